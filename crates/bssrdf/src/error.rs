@@ -1,0 +1,14 @@
+//! What can be wrong with a medium.
+
+/// A medium that cannot be used; the message names the field and the way out.
+#[derive(Debug, thiserror::Error)]
+pub enum MediumError {
+    #[error(
+        "not a medium: {0}; expected {{\"name\", \"unit\": \"1/mm\" or \"1/m\", \"sigma_a\": [r,g,b], \"sigma_s\": [r,g,b], \"g\", \"eta\", \"source\"}}"
+    )]
+    Json(#[from] serde_json::Error),
+    #[error("field `{field}`: {value} is {fault}")]
+    Field { field: &'static str, value: f64, fault: &'static str },
+    #[error("no medium is called `{name}`; {hint}, `gather --list-media` prints all names, or give a FILE.json")]
+    Unknown { name: String, hint: String },
+}

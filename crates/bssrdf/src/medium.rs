@@ -1,0 +1,211 @@
+//! Optical coefficients of a medium and every quantity derived from them, computed once and nowhere else.
+
+use crate::{error::MediumError, fresnel};
+use serde::{Deserialize, Serialize};
+
+/// Smallest relative index the Fresnel fits hold for (exclusive): 1/η ≤ 2.5.
+pub const ETA_MIN: f64 = 0.4;
+/// Largest relative index the Fresnel fits hold for: beyond it `A_C` turns negative (method.md section 2).
+pub const ETA_MAX: f64 = 2.5;
+
+/// A medium as it stands in a JSON file.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MediumFile {
+    pub name: String,
+    pub unit: Unit,
+    pub sigma_a: [f64; 3],
+    pub sigma_s: [f64; 3],
+    #[serde(default)]
+    pub g: Asymmetry,
+    #[serde(default = "default_eta")]
+    pub eta: f64,
+    #[serde(default)]
+    pub source: String,
+}
+
+fn default_eta() -> f64 {
+    1.3
+}
+
+/// Unit of the coefficients in a file.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, PartialEq, Eq)]
+pub enum Unit {
+    #[serde(rename = "1/mm")]
+    PerMillimetre,
+    #[serde(rename = "1/m")]
+    PerMetre,
+}
+
+/// Mean cosine of the phase function: one number, or one per channel.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Asymmetry {
+    Same(f64),
+    PerChannel([f64; 3]),
+}
+
+impl Default for Asymmetry {
+    fn default() -> Self {
+        Asymmetry::Same(0.0)
+    }
+}
+
+/// Coefficients of one colour channel, 1/m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coefficients {
+    /// Absorption, 1/m.
+    pub sigma_a: f64,
+    /// Scattering, 1/m.
+    pub sigma_s: f64,
+    /// Mean cosine `g` of the phase function.
+    pub asymmetry: f64,
+}
+
+impl Coefficients {
+    /// `σ_t = σ_a + σ_s`, 1/m.
+    pub fn extinction(&self) -> f64 {
+        self.sigma_a + self.sigma_s
+    }
+
+    /// `σ_s' = (1 − g) σ_s`, 1/m.
+    pub fn reduced_scattering(&self) -> f64 {
+        (1.0 - self.asymmetry) * self.sigma_s
+    }
+
+    /// `σ_t' = σ_s' + σ_a`, 1/m.
+    pub fn reduced_extinction(&self) -> f64 {
+        self.reduced_scattering() + self.sigma_a
+    }
+
+    /// `α' = σ_s'/σ_t'`; 0 in a vacuum.
+    pub fn reduced_albedo(&self) -> f64 {
+        let scattering = self.reduced_scattering();
+        if scattering == 0.0 { 0.0 } else { scattering / self.reduced_extinction() }
+    }
+
+    /// `D = 1/(3σ_t')` of the standard and the directional dipole, m (method.md 3.2, 5.1).
+    pub fn diffusion(&self) -> f64 {
+        1.0 / (3.0 * self.reduced_extinction())
+    }
+
+    /// note: [transport] `σ_tr = √(3 σ_a (σ_a + (1−g) σ_s))`, 1/m (method.md 5.1).
+    pub fn transport(&self) -> f64 {
+        (3.0 * self.sigma_a * self.reduced_extinction()).sqrt()
+    }
+
+    /// Grosjean's `D = (2σ_a + σ_s')/(3σ_t'²)` of the better dipole, m (method.md 4.1).
+    pub fn grosjean_diffusion(&self) -> f64 {
+        let reduced = self.reduced_extinction();
+        (2.0 * self.sigma_a + self.reduced_scattering()) / (3.0 * reduced * reduced)
+    }
+
+    /// `σ_tr = √(σ_a/D)` with Grosjean's `D`, 1/m (method.md 4.1); 0 in a vacuum.
+    pub fn grosjean_transport(&self) -> f64 {
+        if self.sigma_a == 0.0 { 0.0 } else { (self.sigma_a / self.grosjean_diffusion()).sqrt() }
+    }
+}
+
+/// What the boundary contributes to the models, from the fits of [`fresnel`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interface {
+    /// `C_φ(η)`.
+    pub c_phi: f64,
+    /// `C_E(η)`.
+    pub c_e: f64,
+    /// `4 C_φ(1/η)`: normalises the exit lobe.
+    pub exit_norm: f64,
+    /// `A_C = (1 − C_E)/(2C_φ)` (method.md 2.7).
+    pub reflection: f64,
+    /// `A_F = (1 + F_dr)/(1 − F_dr)` (method.md 3.2).
+    pub reflection_egan: f64,
+}
+
+/// A checked medium; coefficients in 1/m.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Medium {
+    pub name: String,
+    pub source: String,
+    /// Red, green, blue.
+    pub channels: [Coefficients; 3],
+    /// Relative index, inside over outside.
+    pub eta: f64,
+    pub interface: Interface,
+}
+
+impl Medium {
+    /// Parses and checks a medium file.
+    pub fn from_json(text: &str) -> Result<Medium, MediumError> {
+        Medium::new(serde_json::from_str(text)?)
+    }
+
+    /// Checks ranges and converts to 1/m: the one place where a unit is changed.
+    pub fn new(file: MediumFile) -> Result<Medium, MediumError> {
+        let scale = match file.unit {
+            Unit::PerMillimetre => 1000.0,
+            Unit::PerMetre => 1.0,
+        };
+        let g = match file.g {
+            Asymmetry::Same(g) => [g; 3],
+            Asymmetry::PerChannel(g) => g,
+        };
+        for c in 0..3 {
+            check_coefficient("sigma_a", file.sigma_a[c])?;
+            check_coefficient("sigma_s", file.sigma_s[c])?;
+            check("g", g[c], g[c] > -1.0 && g[c] < 1.0, "outside (-1, 1)")?;
+        }
+        check("eta", file.eta, file.eta > ETA_MIN && file.eta <= ETA_MAX, "outside (0.4, 2.5], where the models hold")?;
+        let channel = |c: usize| Coefficients {
+            sigma_a: file.sigma_a[c] * scale,
+            sigma_s: file.sigma_s[c] * scale,
+            asymmetry: g[c],
+        };
+        let interface = Interface::new(file.eta);
+        let channels = [channel(0), channel(1), channel(2)];
+        Ok(Medium { name: file.name, source: file.source, channels, eta: file.eta, interface })
+    }
+
+    /// One value of every channel.
+    pub fn map(&self, f: impl Fn(&Coefficients) -> f64) -> [f64; 3] {
+        [f(&self.channels[0]), f(&self.channels[1]), f(&self.channels[2])]
+    }
+
+    /// `1/σ_t`, the mean free path of each channel, m; infinite in a vacuum.
+    pub fn mean_free_path(&self) -> [f64; 3] {
+        self.map(|c| 1.0 / c.extinction())
+    }
+
+    /// True if no channel scatters: nothing leaves by subsurface scattering.
+    pub fn is_clear(&self) -> bool {
+        self.channels.iter().all(|c| c.reduced_scattering() == 0.0)
+    }
+}
+
+impl Interface {
+    /// The constants of relative index `eta`, inside over outside.
+    pub fn new(eta: f64) -> Interface {
+        let (c_phi, c_e) = (fresnel::c_phi(eta), fresnel::c_e(eta));
+        let diffuse = fresnel::diffuse_reflectance(eta);
+        Interface {
+            c_phi,
+            c_e,
+            exit_norm: 4.0 * fresnel::c_phi(1.0 / eta),
+            reflection: (1.0 - c_e) / (2.0 * c_phi),
+            reflection_egan: (1.0 + diffuse) / (1.0 - diffuse),
+        }
+    }
+}
+
+/// Largest coefficient accepted, in the file's unit: a mean free path below 10⁻⁹ of it is no medium of diffuse light,
+/// and squares of it must stay finite in float32.
+const COEFFICIENT_MAX: f64 = 1e9;
+
+fn check_coefficient(field: &'static str, value: f64) -> Result<(), MediumError> {
+    check(field, value, value.is_finite(), "not a finite number")?;
+    check(field, value, value >= 0.0, "negative; coefficients are zero or more")?;
+    check(field, value, value <= COEFFICIENT_MAX, "above 1e9; is the unit right?")
+}
+
+fn check(field: &'static str, value: f64, good: bool, fault: &'static str) -> Result<(), MediumError> {
+    if good { Ok(()) } else { Err(MediumError::Field { field, value, fault }) }
+}

@@ -1,0 +1,55 @@
+//! How a program ends.
+
+use signal_hook::{
+    consts::{SIGINT, SIGTERM},
+    iterator::Signals,
+};
+use std::fmt::Display;
+
+/// Why a program stops early: one message, and its exit code.
+#[derive(Debug)]
+pub struct Failure {
+    pub code: u8,
+    pub message: String,
+}
+
+impl Failure {
+    /// Bad usage, input or output: exit code 2.
+    pub fn usage(message: impl Into<String>) -> Failure {
+        Failure { code: 2, message: message.into() }
+    }
+
+    /// A number that is not finite reached an output: exit code 3.
+    pub fn numerical(message: impl Into<String>) -> Failure {
+        Failure { code: 3, message: message.into() }
+    }
+}
+
+impl<E: std::error::Error> From<E> for Failure {
+    fn from(error: E) -> Failure {
+        Failure::usage(one_line(error))
+    }
+}
+
+/// A message of a library as one line.
+fn one_line(error: impl Display) -> String {
+    error.to_string().lines().map(str::trim).collect::<Vec<_>>().join(" ")
+}
+
+/// Runs a program and ends the process with its exit code. SIGINT and SIGTERM remove the temporary files and end it
+/// with 128 + the signal's number.
+pub fn run(name: &str, program: impl FnOnce() -> Result<u8, Failure>) -> ! {
+    if let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) {
+        std::thread::spawn(move || {
+            if let Some(signal) = signals.forever().next() {
+                formats::atomic::remove_temporaries();
+                std::process::exit(128 + signal);
+            }
+        });
+    }
+    let code = program().unwrap_or_else(|failure| {
+        crate::tell(format_args!("{name}: {}", failure.message));
+        failure.code
+    });
+    std::process::exit(i32::from(code))
+}

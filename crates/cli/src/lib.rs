@@ -1,0 +1,97 @@
+//! How a stage behaves as a program: arguments in common, exit codes, progress, signals.
+
+mod count;
+mod failure;
+mod progress;
+mod rgb;
+mod scene_args;
+
+pub use count::parse_count;
+pub use failure::{Failure, run};
+pub use progress::Progress;
+pub use rgb::parse_rgb;
+pub use scene_args::{LightUnit, Normals, SceneArgs};
+
+use clap::{Args, ValueEnum};
+use std::io::{self, ErrorKind, Write};
+
+/// Arguments that every program has.
+#[derive(Args, Clone, Debug)]
+pub struct Common {
+    /// Seed of the random numbers; the same seed gives the same bytes
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+    /// Threads to use [default: all cores]
+    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// How to show progress: a bar on a terminal and two lines elsewhere (auto), two lines, or nothing
+    #[arg(long, value_name = "HOW", default_value = "auto")]
+    pub progress: ProgressStyle,
+    /// Print nothing but results and errors
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// How progress is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ProgressStyle {
+    Auto,
+    Plain,
+    None,
+}
+
+impl Common {
+    /// Runs `work` on as many threads as asked for.
+    pub fn in_pool<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads.map_or(0, usize::from)).build();
+        let pool = pool.map_err(|e| Failure::usage(format!("--threads: cannot start them: {e}")))?;
+        Ok(pool.install(work))
+    }
+
+    /// Threads that [`Common::in_pool`] uses.
+    pub fn thread_count(&self) -> usize {
+        let all = || std::thread::available_parallelism().map_or(1, usize::from);
+        self.threads.map_or_else(all, usize::from)
+    }
+
+    /// A line for people, on stderr.
+    pub fn say(&self, line: impl std::fmt::Display) {
+        if !self.quiet {
+            tell(line);
+        }
+    }
+
+    /// A warning, on stderr.
+    pub fn warn(&self, line: impl std::fmt::Display) {
+        self.say(format_args!("warning: {line}"));
+    }
+}
+
+/// A line on stderr; a closed stderr is nobody's fault.
+fn tell(line: impl std::fmt::Display) {
+    writeln!(io::stderr(), "{line}").ok();
+}
+
+/// Writes a result to stdout. A reader that has seen enough (`| head`) is no failure.
+pub fn print(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(Failure::usage(format!("stdout: cannot write: {e}"))),
+        _ => Ok(()),
+    }
+}
+
+/// The most memory this process had, in bytes, where the system tells.
+pub fn peak_memory_bytes() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"));
+    let kibibytes = line.and_then(|l| l.split_whitespace().next()?.parse::<u64>().ok());
+    kibibytes.unwrap_or(0) * 1024
+}
+
+/// Memory that can still be had, in bytes, where the system tells.
+pub fn available_memory_bytes() -> Option<u64> {
+    let info = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = info.lines().find_map(|l| l.strip_prefix("MemAvailable:"))?;
+    Some(line.split_whitespace().next()?.parse::<u64>().ok()? * 1024)
+}

@@ -1,0 +1,107 @@
+//! How the programs read a scene: sampling and gathering must agree on it.
+
+use crate::{Common, Failure, parse_rgb};
+use clap::{Args, ValueEnum};
+use scene::{DVec3, ImportOptions, NormalKind, Scene};
+use std::path::Path;
+
+/// Arguments about the scene.
+#[derive(Args, Clone, Debug)]
+pub struct SceneArgs {
+    /// Light from all around: a constant radiance, W/(m² sr)
+    #[arg(long, value_name = "R,G,B", value_parser = parse_environment)]
+    pub environment: Option<DVec3>,
+    /// Multiplies the environment's radiance
+    #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = parse_scale)]
+    pub environment_scale: f64,
+    /// Turns the environment about +Y; a constant one looks the same
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, value_parser = parse_finite, allow_hyphen_values = true)]
+    pub environment_rotation: f64,
+    /// Normals that cosines are taken with: interpolated from the vertices, or the triangle's as in the note
+    #[arg(long, value_name = "KIND", default_value = "shading")]
+    pub normals: Normals,
+    /// Size of one unit of SCENE, m
+    #[arg(long, value_name = "M", default_value_t = 1.0, value_parser = parse_positive)]
+    pub metres_per_unit: f64,
+    /// Take the file's light numbers as W, or as lm and divide them by 683 lm/W
+    #[arg(long, value_name = "UNIT", default_value = "radiometric")]
+    pub light_unit: LightUnit,
+}
+
+/// Which normals to use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Normals {
+    Shading,
+    Geometric,
+}
+
+/// What the file's light numbers are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LightUnit {
+    Radiometric,
+    Photometric,
+}
+
+impl SceneArgs {
+    /// Reads the scene and adds the environment; prints the import's warnings.
+    pub fn import(&self, path: &Path, common: &Common) -> Result<Scene, Failure> {
+        let light_unit = match self.light_unit {
+            LightUnit::Radiometric => scene::LightUnit::Radiometric,
+            LightUnit::Photometric => scene::LightUnit::Photometric,
+        };
+        let mut scene = Scene::import(path, &ImportOptions { metres_per_unit: self.metres_per_unit, light_unit })?;
+        scene.warnings.iter().for_each(|w| common.warn(format_args!("{}: {w}", path.display())));
+        scene.add_environment(self.radiance());
+        Ok(scene)
+    }
+
+    /// Constant radiance from all around, scale included, W/(m² sr).
+    pub fn radiance(&self) -> DVec3 {
+        self.environment.unwrap_or(DVec3::ZERO) * self.environment_scale
+    }
+
+    pub fn normal_kind(&self) -> NormalKind {
+        match self.normals {
+            Normals::Shading => NormalKind::Shading,
+            Normals::Geometric => NormalKind::Geometric,
+        }
+    }
+}
+
+impl Normals {
+    pub fn name(self) -> &'static str {
+        match self {
+            Normals::Shading => "shading",
+            Normals::Geometric => "geometric",
+        }
+    }
+}
+
+impl LightUnit {
+    pub fn name(self) -> &'static str {
+        match self {
+            LightUnit::Radiometric => "radiometric",
+            LightUnit::Photometric => "photometric",
+        }
+    }
+}
+
+fn parse_environment(text: &str) -> Result<DVec3, String> {
+    let is_map = [".exr", ".hdr"].iter().any(|end| text.to_lowercase().ends_with(end));
+    if is_map {
+        return Err("environment maps are not built yet; give a constant radiance R,G,B".into());
+    }
+    parse_rgb(text).map(DVec3::from_array)
+}
+
+fn parse_finite(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(|| "expected a finite number".into())
+}
+
+fn parse_scale(text: &str) -> Result<f64, String> {
+    parse_finite(text).and_then(|x| if x >= 0.0 { Ok(x) } else { Err("expected a number, zero or more".into()) })
+}
+
+fn parse_positive(text: &str) -> Result<f64, String> {
+    parse_finite(text).and_then(|x| if x > 0.0 { Ok(x) } else { Err("expected a number above zero".into()) })
+}

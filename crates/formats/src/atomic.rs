@@ -1,0 +1,162 @@
+//! Files written whole or not at all: a temporary file beside the target, then a rename.
+//!
+//! Devices and pipes (`/dev/null`, a fifo) are written in place: a rename would replace them.
+
+use crate::Error;
+use std::{
+    fs::{self, File, OpenOptions},
+    io::{self, BufWriter, Write},
+    path::{Path, PathBuf},
+    sync::{
+        Mutex, PoisonError,
+        atomic::{AtomicU64, Ordering},
+    },
+};
+
+/// Temporary files of this process that are still there.
+static TEMPORARIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// An output file that is being written. Dropped without [`Output::commit`], it leaves nothing behind.
+#[derive(Debug)]
+pub struct Output {
+    target: PathBuf,
+    temporary: Option<PathBuf>,
+    file: BufWriter<File>,
+}
+
+impl Output {
+    /// Creates the temporary file, so that a target that cannot be written fails before the work starts.
+    pub fn create(target: &Path) -> Result<Output, Error> {
+        let fail = |source| Error::write(target, source);
+        // A link is followed: it is its target that is replaced, not the link.
+        let target = &fs::canonicalize(target).unwrap_or_else(|_| target.to_owned());
+        let in_place = match fs::metadata(target) {
+            Ok(meta) if meta.is_dir() => return Err(fail(io::Error::other("is a folder"))),
+            Ok(meta) if meta.is_file() && meta.permissions().readonly() => {
+                return Err(fail(io::Error::other("is read-only")));
+            }
+            Ok(meta) => !meta.is_file(),
+            Err(_) => false,
+        };
+        let options = OpenOptions::new().write(true).clone();
+        if in_place {
+            let file = options.clone().open(target).map_err(fail)?;
+            return Ok(Output { target: target.clone(), temporary: None, file: BufWriter::new(file) });
+        }
+        let temporary = temporary_name(target).map_err(fail)?;
+        let file = options.clone().create_new(true).open(&temporary).map_err(fail)?;
+        registered().push(temporary.clone());
+        Ok(Output { target: target.clone(), temporary: Some(temporary), file: BufWriter::new(file) })
+    }
+
+    /// Writes out what is buffered and puts the file in its place.
+    pub fn commit(mut self) -> Result<(), Error> {
+        let path = self.target.clone();
+        self.finish().map_err(|source| Error::write(&path, source))
+    }
+
+    fn finish(&mut self) -> io::Result<()> {
+        self.file.flush()?;
+        let Some(temporary) = self.temporary.as_ref() else {
+            return Ok(());
+        };
+        self.file.get_ref().sync_all()?;
+        fs::rename(temporary, &self.target)?;
+        registered().retain(|p| p != temporary);
+        self.temporary = None;
+        // The rename itself must survive a power cut; folders that cannot be opened or synced are left to the system.
+        if let Ok(folder) = File::open(self.target.parent().filter(|p| p.as_os_str() != "").unwrap_or(Path::new("."))) {
+            folder.sync_all().ok();
+        }
+        Ok(())
+    }
+}
+
+impl Write for Output {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Drop for Output {
+    fn drop(&mut self) {
+        if let Some(temporary) = self.temporary.take() {
+            fs::remove_file(&temporary).ok();
+            registered().retain(|p| *p != temporary);
+        }
+    }
+}
+
+/// Writes `bytes` to `path`, whole or not at all.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    let mut output = Output::create(path)?;
+    output.write_all(bytes).map_err(|source| Error::write(path, source))?;
+    output.commit()
+}
+
+/// Removes the temporary files of all outputs in progress: what a signal handler does before the process ends.
+pub fn remove_temporaries() {
+    registered().drain(..).for_each(|path| {
+        fs::remove_file(path).ok();
+    });
+}
+
+fn registered() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
+    TEMPORARIES.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn temporary_name(target: &Path) -> io::Result<PathBuf> {
+    static COUNTER: AtomicU64 = AtomicU64::new(0);
+    let name = target.file_name().ok_or_else(|| io::Error::other("names no file"))?;
+    let mut hidden = std::ffi::OsString::from(".");
+    hidden.push(name);
+    hidden.push(format!(".{}-{}.tmp", std::process::id(), COUNTER.fetch_add(1, Ordering::Relaxed)));
+    Ok(target.with_file_name(hidden))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_dropped_output_leaves_the_old_file_and_no_other() {
+        let folder = tempfile::tempdir().expect("folder");
+        let path = folder.path().join("file");
+        write(&path, b"old").expect("writes");
+        let mut output = Output::create(&path).expect("creates");
+        output.write_all(b"new").expect("buffers");
+        drop(output);
+        assert_eq!(fs::read(&path).expect("reads"), b"old");
+        assert_eq!(fs::read_dir(folder.path()).expect("lists").count(), 1);
+    }
+
+    #[test]
+    fn a_committed_output_replaces_the_file() {
+        let folder = tempfile::tempdir().expect("folder");
+        let path = folder.path().join("file");
+        write(&path, b"old").expect("writes");
+        write(&path, b"new").expect("writes");
+        assert_eq!(fs::read(&path).expect("reads"), b"new");
+        assert_eq!(fs::read_dir(folder.path()).expect("lists").count(), 1);
+    }
+
+    #[test]
+    fn a_full_device_is_an_error_and_stays_a_device() {
+        let full = Path::new("/dev/full");
+        if full.exists() {
+            let message = write(full, &[0; 100]).expect_err("no space").to_string();
+            assert!(message.contains("/dev/full"), "{message}");
+            assert!(!fs::metadata(full).expect("still there").is_file());
+        }
+    }
+
+    #[test]
+    fn a_target_in_no_folder_is_an_error_at_once() {
+        assert!(Output::create(Path::new("no/such/folder/file")).is_err());
+        assert!(Output::create(Path::new(".")).is_err());
+    }
+}

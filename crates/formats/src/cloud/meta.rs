@@ -1,0 +1,75 @@
+//! What a cloud says of itself.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// One struct per version; old ones are kept so that an old file is named, not misread.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) enum Versioned {
+    V1(Meta),
+}
+
+/// Facts of a cloud. Holds no time, host or path: the same inputs give the same bytes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Meta {
+    /// Identity of everything the samples depend on.
+    pub content: [u8; 32],
+    /// Identity of the mesh, metres and materials' extents.
+    pub geometry: [u8; 32],
+    /// Identity of the lights of the scene file.
+    pub lights: [u8; 32],
+    /// How the samples were made.
+    pub options: Options,
+    /// `K`: samples drawn, the unlit ones included. The estimator divides by it.
+    pub samples_drawn: u64,
+    /// Samples drawn but not stored because they carry no light, by reason.
+    pub samples_dropped: BTreeMap<String, u64>,
+    /// Shadow rays traced.
+    pub shadow_rays: u64,
+    /// Area of the sampled surfaces, m².
+    pub surface_area_m2: f64,
+    /// Mean of the flux over all drawn samples, per channel, W.
+    pub mean_flux_w: [f64; 3],
+    /// Diagonal of the scene's bounding box, m.
+    pub diagonal_m: f64,
+    /// World position that sample positions are relative to, m.
+    pub origin_m: [f64; 3],
+    /// The sampled materials in order; their samples follow each other in the file.
+    pub materials: Vec<SampledMaterial>,
+}
+
+/// What `sample-surface` was asked for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Options {
+    pub seed: u64,
+    /// `area` or `uniform`.
+    pub choice: String,
+    /// `stratified` or `independent`.
+    pub pattern: String,
+    /// `shading` or `geometric`.
+    pub normals: String,
+    pub metres_per_unit: f64,
+    /// `radiometric` or `photometric`.
+    pub light_unit: String,
+    /// Constant radiance from all around, scale included, W/(m² sr).
+    pub environment: [f64; 3],
+}
+
+/// A translucent material and its samples.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SampledMaterial {
+    pub name: String,
+    /// Index into the scene's materials.
+    pub index: u16,
+    /// First stored sample.
+    pub first: u64,
+    /// Stored samples.
+    pub count: u64,
+    /// m².
+    pub area_m2: f64,
+}
+
+/// A digest as hexadecimal text.
+pub fn hex(digest: &[u8; 32]) -> String {
+    digest.iter().map(|b| format!("{b:02x}")).collect()
+}

@@ -1,0 +1,202 @@
+//! OpenEXR bytes to image. The bytes are not trusted.
+
+use std::io::Cursor;
+
+use exr::block::reader::ChunksReader;
+use exr::block::{UncompressedBlock, read};
+use exr::compression::Compression::{PIZ, PXR24, RLE, Uncompressed, ZIP1, ZIP16};
+use exr::error::Error as ExrError;
+use exr::math::Vec2;
+use exr::meta::BlockDescription;
+use exr::meta::attribute::SampleType;
+use exr::meta::header::Header;
+use exr::prelude::f16;
+
+use super::{Channel, Image, ImageError, MAX_SAMPLES, header};
+
+/// First bytes of every OpenEXR file.
+const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+/// A file may unpack to this many times its length, and some more: deflate reaches 1032.
+const MAX_EXPANSION: u64 = 2048;
+/// Unpacked bytes that any file may have, however short.
+const ALWAYS_ALLOWED: u64 = 64 << 20;
+
+/// Sequential, so that a program's thread limit is never exceeded by a pool of the library.
+pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageError> {
+    if !bytes.starts_with(&MAGIC) {
+        return Err(ImageError::NotOpenExr);
+    }
+    let reader = read(Cursor::new(bytes), false).map_err(fault)?;
+    check_size(reader.headers(), bytes.len())?;
+    let mut image = empty_image(reader.headers())?;
+    let several = reader.headers().len() > 1;
+    let mut parts: Vec<Part> = reader.headers().iter().map(Part::new).collect();
+    let chunks = reader.filter_chunks(false, |_, tile, _| tile.level_index == Vec2(0, 0)).map_err(fault)?;
+    let mut blocks = chunks.sequential_decompressor(true);
+    while let Some(block) = blocks.decompress_next_block() {
+        let block = block.map_err(fault)?;
+        let part = parts.get_mut(block.index.layer).ok_or_else(|| damaged("a block of no part"))?;
+        part.place(&block)?;
+    }
+    for part in parts {
+        image.channels.extend(part.finish(several)?);
+    }
+    image.channels.sort_by(|a, b| a.name.as_bytes().cmp(b.name.as_bytes()));
+    if let Some([twice, _]) = image.channels.array_windows().find(|[a, b]| a.name == b.name) {
+        return Err(damaged(&format!("channel `{}` occurs twice", twice.name)));
+    }
+    image.attributes = header::attributes(bytes).ok_or_else(|| damaged("the header ends early"))?;
+    Ok(image)
+}
+
+/// The data window of all parts, without their channels.
+fn empty_image(headers: &[Header]) -> Result<Image, ImageError> {
+    // The others lose data, and the library's decoders of them do not survive damaged files.
+    let trusted = |compression| matches!(compression, Uncompressed | RLE | ZIP1 | ZIP16 | PIZ | PXR24);
+    if let Some(part) = headers.iter().find(|part| !trusted(part.compression)) {
+        return Err(ImageError::Unsupported(part.compression.to_string()));
+    }
+    let first = headers.first().ok_or_else(|| damaged("it has no part"))?;
+    if headers.iter().any(|part| part.data_window() != first.data_window()) {
+        return Err(ImageError::Unsupported("its parts have different data windows".to_owned()));
+    }
+    let (Vec2(width, height), Vec2(x, y)) = (first.layer_size, first.own_attributes.layer_position);
+    Ok(Image { width, height, window: [x, y], ..Image::default() })
+}
+
+/// Refuses sizes that would take much more memory than the file, before any of it is taken.
+fn check_size(headers: &[Header], file_length: usize) -> Result<(), ImageError> {
+    let allowed = ALWAYS_ALLOWED + (file_length as u64).saturating_mul(MAX_EXPANSION);
+    let mut samples = 0_u64;
+    for part in headers {
+        let Vec2(width, height) = part.layer_size;
+        let channels = part.channels.list.len();
+        if width == 0 || height == 0 || channels == 0 {
+            return Err(damaged(&format!("{width} x {height} pixels with {channels} channels")));
+        }
+        // Data windows end below 2^30, so two factors fit; the third may not.
+        let pixels = (width as u64).saturating_mul(height as u64);
+        samples = samples.saturating_add(pixels.saturating_mul(channels as u64));
+        let too_large = |limit| Err(ImageError::TooLarge { width, height, channels, limit });
+        if samples > MAX_SAMPLES {
+            return too_large(format!("{MAX_SAMPLES} samples"));
+        }
+        if samples * 4 > allowed {
+            return too_large(format!("a file of {file_length} bytes can hold"));
+        }
+        if let BlockDescription::Tiles(tiles) = part.blocks {
+            let Vec2(width, height) = tiles.tile_size;
+            let tile = (width as u64).saturating_mul(height as u64).saturating_mul(channels as u64);
+            if tile > MAX_SAMPLES {
+                return Err(damaged(&format!("tiles of {width} x {height} pixels")));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// One part while its blocks arrive.
+struct Part {
+    layer: Option<String>,
+    width: usize,
+    channels: Vec<(SampleType, Channel)>,
+    block: Vec2<usize>,
+    blocks_per_row: usize,
+    seen: Vec<bool>,
+}
+
+impl Part {
+    fn new(header: &Header) -> Part {
+        let Vec2(width, height) = header.layer_size;
+        let block = header.max_block_pixel_size();
+        let blocks_per_row = width.div_ceil(block.0);
+        let channels = header.channels.list.iter().map(|channel| {
+            let name = header::text(channel.name.as_slice());
+            (channel.sample_type, Channel { name, samples: vec![0.0; width * height] })
+        });
+        Part {
+            layer: header.own_attributes.layer_name.as_ref().map(|name| header::text(name.as_slice())),
+            width,
+            channels: channels.collect(),
+            block,
+            blocks_per_row,
+            seen: vec![false; blocks_per_row * height.div_ceil(block.1)],
+        }
+    }
+
+    /// Each block may come once: the offsets in the file could name one block twice and another never.
+    fn place(&mut self, block: &UncompressedBlock) -> Result<(), ImageError> {
+        let (Vec2(x, y), Vec2(width, height)) = (block.index.pixel_position, block.index.pixel_size);
+        let number = y / self.block.1 * self.blocks_per_row + x / self.block.0;
+        match self.seen.get_mut(number) {
+            Some(seen) if !*seen && block.index.level == Vec2(0, 0) => *seen = true,
+            _ => return Err(damaged("a block that is out of place")),
+        }
+        let mut rest = block.data.as_slice();
+        for row in y..y + height {
+            for (kind, channel) in &mut self.channels {
+                let start = row * self.width + x;
+                let target = channel.samples.get_mut(start..start + width);
+                let source = rest.split_at_checked(width * kind.bytes_per_sample());
+                let (Some(target), Some((line, next))) = (target, source) else {
+                    return Err(damaged("a block that is too short or out of place"));
+                };
+                convert(*kind, line, target);
+                rest = next;
+            }
+        }
+        Ok(())
+    }
+
+    /// The channels, with the name of the part as their layer if there are several parts.
+    fn finish(self, several: bool) -> Result<impl Iterator<Item = Channel>, ImageError> {
+        let missing = self.seen.iter().filter(|seen| !**seen).count();
+        if missing > 0 {
+            return Err(damaged(&format!("{missing} of {} blocks of pixels are missing", self.seen.len())));
+        }
+        let layer = self.layer.filter(|layer| several && !layer.is_empty()).map(|layer| layer + ".");
+        Ok(self.channels.into_iter().map(move |(_, mut channel)| {
+            if let Some(layer) = layer.as_ref().filter(|layer| !channel.name.starts_with(layer.as_str())) {
+                channel.name.insert_str(0, layer);
+            }
+            channel
+        }))
+    }
+}
+
+/// One row of one channel, in the byte order of this machine, to float32.
+fn convert(kind: SampleType, line: &[u8], target: &mut [f32]) {
+    match kind {
+        SampleType::F16 => {
+            for (value, bytes) in target.iter_mut().zip(line.as_chunks().0) {
+                *value = f16::from_ne_bytes(*bytes).to_f32();
+            }
+        }
+        SampleType::F32 => {
+            for (value, bytes) in target.iter_mut().zip(line.as_chunks().0) {
+                *value = f32::from_ne_bytes(*bytes);
+            }
+        }
+        SampleType::U32 => {
+            for (value, bytes) in target.iter_mut().zip(line.as_chunks().0) {
+                *value = u32::from_ne_bytes(*bytes) as f32;
+            }
+        }
+    }
+}
+
+fn fault(error: ExrError) -> ImageError {
+    match error {
+        ExrError::NotSupported(what) => ImageError::Unsupported(what.into_owned()),
+        ExrError::Invalid(what) => ImageError::Damaged(what.into_owned()),
+        ExrError::Io(error) => ImageError::Damaged(error.to_string()),
+        ExrError::Aborted => ImageError::Damaged("reading was broken off".to_owned()),
+    }
+}
+
+fn damaged(what: &str) -> ImageError {
+    ImageError::Damaged(what.to_owned())
+}
+
+#[cfg(test)]
+mod tests;

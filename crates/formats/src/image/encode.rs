@@ -1,0 +1,196 @@
+//! Image to OpenEXR bytes.
+
+use std::collections::HashMap;
+use std::io::Cursor;
+use std::num::NonZeroUsize;
+
+use exr::block::chunk::Chunk;
+use exr::block::writer::ChunksWriter;
+use exr::block::{BlockIndex, UncompressedBlock, write};
+use exr::compression::Compression;
+use exr::math::Vec2;
+use exr::meta::BlockDescription;
+use exr::meta::attribute::{
+    AttributeValue, ChannelDescription, Chromaticities, IntegerBounds, LineOrder, SampleType, Text,
+};
+use exr::meta::header::{Header, LayerAttributes};
+use exr::prelude::SmallVec;
+
+use super::{Attribute, Channel, Image, ImageError, MAX_SAMPLES, header};
+
+/// Blocks of 16 rows that a thread compresses at a time: enough to outweigh its start, few enough for memory.
+const BLOCKS_PER_THREAD: usize = 4;
+/// Longest name of a channel or attribute, bytes (OpenEXR file layout, "long names").
+const MAX_NAME: usize = 255;
+/// Largest coordinate of a data window that OpenEXR libraries accept.
+const MAX_COORDINATE: i64 = (i32::MAX / 2) as i64;
+
+/// Compression takes the time, so blocks are compressed by several threads, then written in order.
+pub(super) fn encode(image: &Image, threads: NonZeroUsize) -> Result<Vec<u8>, ImageError> {
+    check(image)?;
+    let mut channels: Vec<&Channel> = image.channels.iter().collect();
+    channels.sort_by(|a, b| a.name.as_bytes().cmp(b.name.as_bytes()));
+    let header = describe(image, &channels);
+    let mut file = Cursor::new(Vec::new());
+    // The library's own checks would refuse standard attributes that it has fields for.
+    write(&mut file, SmallVec::from_iter([header]), false, |meta, writer| {
+        let blocks: Vec<_> = meta.enumerate_ordered_header_block_indices().collect();
+        for group in blocks.chunks(threads.get().saturating_mul(BLOCKS_PER_THREAD)) {
+            let compress = |index| block(image.width, &channels, index).compress_to_chunk(&meta.headers);
+            for ((position, _), chunk) in group.iter().zip(parallel(threads, group, compress)) {
+                writer.write_chunk(*position, chunk?)?;
+            }
+        }
+        Ok(())
+    })
+    .map_err(|error| ImageError::Unwritable(error.to_string()))?;
+    let mut bytes = file.into_inner();
+    header::sort(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// What `compress` makes of each block, in order of the blocks.
+fn parallel(
+    threads: NonZeroUsize,
+    blocks: &[(usize, BlockIndex)],
+    compress: impl Fn(BlockIndex) -> exr::error::Result<Chunk> + Sync,
+) -> Vec<exr::error::Result<Chunk>> {
+    let run = |share: &[(usize, BlockIndex)]| share.iter().map(|(_, index)| compress(*index)).collect::<Vec<_>>();
+    if threads.get() == 1 {
+        return run(blocks);
+    }
+    let shares = blocks.chunks(blocks.len().div_ceil(threads.get()).max(1));
+    std::thread::scope(|scope| {
+        let started: Vec<_> = shares.map(|share| scope.spawn(|| run(share))).collect();
+        started
+            .into_iter()
+            .flat_map(|thread| thread.join().expect("compression has no input it cannot handle"))
+            .collect()
+    })
+}
+
+/// The samples of some whole rows as the file stores them: row by row, in it channel by channel.
+fn block(width: usize, channels: &[&Channel], index: BlockIndex) -> UncompressedBlock {
+    let first = index.pixel_position.y();
+    let rows = first..first + index.pixel_size.height();
+    let mut data = Vec::with_capacity(rows.len() * width * channels.len() * 4);
+    for row in rows {
+        for channel in channels {
+            let samples = &channel.samples[row * width..(row + 1) * width];
+            data.extend(samples.iter().flat_map(|sample| sample.to_ne_bytes()));
+        }
+    }
+    UncompressedBlock { index, data }
+}
+
+fn describe(image: &Image, channels: &[&Channel]) -> Header {
+    let list = channels.iter().map(|channel| ChannelDescription {
+        name: text(&channel.name),
+        sample_type: SampleType::F32,
+        quantize_linearly: false,
+        sampling: Vec2(1, 1),
+    });
+    let position = Vec2(image.window[0], image.window[1]);
+    let size = Vec2(image.width, image.height);
+    let attributes = LayerAttributes {
+        layer_position: position,
+        other: image.attributes.iter().map(|(name, value)| (text(name), attribute(value))).collect::<HashMap<_, _>>(),
+        ..LayerAttributes::default()
+    };
+    Header::new(text(""), size, list.collect())
+        .with_encoding(Compression::ZIP16, BlockDescription::ScanLines, LineOrder::Increasing)
+        .with_display_window(IntegerBounds::new(position, size))
+        .with_attributes(attributes)
+}
+
+/// Bytes as they are: OpenEXR text has no encoding of its own, and its tools show UTF-8.
+fn text(value: &str) -> Text {
+    Text::from_bytes_unchecked(SmallVec::from_slice(value.as_bytes()))
+}
+
+fn attribute(value: &Attribute) -> AttributeValue {
+    match value {
+        Attribute::Text(value) => AttributeValue::Text(text(value)),
+        Attribute::Float(value) => AttributeValue::F32(*value),
+        Attribute::Double(value) => AttributeValue::F64(*value),
+        Attribute::Int(value) => AttributeValue::I32(*value),
+        Attribute::Vector([x, y, z]) => AttributeValue::FloatVec3((*x, *y, *z)),
+        Attribute::Matrix(value) => AttributeValue::Matrix4x4(*value),
+        Attribute::Chromaticities(value) => AttributeValue::Chromaticities(Chromaticities {
+            red: Vec2(value[0], value[1]),
+            green: Vec2(value[2], value[3]),
+            blue: Vec2(value[4], value[5]),
+            white: Vec2(value[6], value[7]),
+        }),
+        Attribute::Texts(values) => AttributeValue::TextVector(values.iter().map(|value| text(value)).collect()),
+    }
+}
+
+fn check(image: &Image) -> Result<(), ImageError> {
+    let samples =
+        [image.width, image.height, image.channels.len()].iter().try_fold(1_u64, |n, m| n.checked_mul(*m as u64));
+    if samples.is_none_or(|samples| samples > MAX_SAMPLES) {
+        let (width, height, channels) = (image.width, image.height, image.channels.len());
+        return Err(ImageError::TooLarge { width, height, channels, limit: format!("{MAX_SAMPLES} samples") });
+    }
+    if samples == Some(0) {
+        return unwritable(format!(
+            "{} x {} pixels with {} channels hold nothing",
+            image.width,
+            image.height,
+            image.channels.len()
+        ));
+    }
+    for (origin, length) in image.window.into_iter().zip([image.width, image.height]) {
+        let origin = i64::from(origin);
+        if origin <= -MAX_COORDINATE || origin + length as i64 >= MAX_COORDINATE {
+            return unwritable(format!("data window {origin} + {length} lies beyond {MAX_COORDINATE}"));
+        }
+    }
+    check_channels(image)?;
+    image.attributes.iter().try_for_each(|(name, value)| check_attribute(name, value))
+}
+
+fn check_channels(image: &Image) -> Result<(), ImageError> {
+    let mut names = std::collections::HashSet::new();
+    for Channel { name, samples } in &image.channels {
+        check_name("channel", name)?;
+        if !names.insert(name) {
+            return unwritable(format!("channel `{name}` occurs twice"));
+        }
+        if samples.len() != image.width * image.height {
+            let (width, height, found) = (image.width, image.height, samples.len());
+            return unwritable(format!("channel `{name}` has {found} samples, not {width} x {height}"));
+        }
+    }
+    Ok(())
+}
+
+fn check_attribute(name: &str, value: &Attribute) -> Result<(), ImageError> {
+    check_name("attribute", name)?;
+    if header::LAYOUT.contains(&name) {
+        return unwritable(format!("attribute `{name}` describes the layout of the file"));
+    }
+    let value = attribute(value);
+    let kind = header::text(value.kind_name());
+    match header::standard_kind(name) {
+        Some(expected) if expected != kind => {
+            unwritable(format!("attribute `{name}` must be of type {expected}, not {kind}"))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn check_name(what: &str, name: &str) -> Result<(), ImageError> {
+    if name.is_empty() || name.len() > MAX_NAME || name.contains('\0') {
+        return unwritable(format!("{what} name {name:?} is not of 1 to {MAX_NAME} bytes without a zero"));
+    }
+    Ok(())
+}
+
+fn unwritable<T>(fault: String) -> Result<T, ImageError> {
+    Err(ImageError::Unwritable(fault))
+}
+
+#[cfg(test)]
+mod tests;

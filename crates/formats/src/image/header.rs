@@ -1,0 +1,221 @@
+//! The attributes of an OpenEXR header as bytes: name, zero, type, zero, size, value; a zero ends the list.
+
+use super::{Attribute, ImageError};
+
+/// Bytes of the magic number and of the version field, which come first.
+const PREAMBLE: usize = 8;
+/// Bit of the version field: the file has several parts.
+const SEVERAL_PARTS: u8 = 0x10;
+
+/// Attributes that describe the layout of the file: written by the library, never part of an image.
+pub(super) const LAYOUT: [&str; 14] = [
+    "channels",
+    "chunkCount",
+    "compression",
+    "dataWindow",
+    "displayWindow",
+    "lineOrder",
+    "maxSamplesPerPixel",
+    "name",
+    "pixelAspectRatio",
+    "screenWindowCenter",
+    "screenWindowWidth",
+    "tiles",
+    "type",
+    "version",
+];
+
+/// Standard attributes and their types (openexr.com, "Standard Attributes"): readers expect these.
+const STANDARD: [(&str, &str); 35] = [
+    ("adoptedNeutral", "v2f"),
+    ("altitude", "float"),
+    ("aperture", "float"),
+    ("capDate", "string"),
+    ("chromaticities", "chromaticities"),
+    ("comments", "string"),
+    ("deepImageState", "deepImageState"),
+    ("dwaCompressionLevel", "float"),
+    ("envmap", "envmap"),
+    ("expTime", "float"),
+    ("far", "float"),
+    ("fieldOfViewHorizontal", "float"),
+    ("fieldOfViewVertical", "float"),
+    ("focus", "float"),
+    ("framesPerSecond", "rational"),
+    ("isoSpeed", "float"),
+    ("keyCode", "keycode"),
+    ("latitude", "float"),
+    ("longitude", "float"),
+    ("lookModTransform", "string"),
+    ("multiView", "stringvector"),
+    ("near", "float"),
+    ("originalDataWindow", "box2i"),
+    ("owner", "string"),
+    ("preview", "preview"),
+    ("renderingTransform", "string"),
+    ("software", "string"),
+    ("timeCode", "timecode"),
+    ("utcOffset", "float"),
+    ("view", "string"),
+    ("whiteLuminance", "float"),
+    ("worldToCamera", "m44f"),
+    ("worldToNDC", "m44f"),
+    ("wrapmodes", "string"),
+    ("xDensity", "float"),
+];
+
+/// The type that readers expect of an attribute, if it is a standard one.
+pub(super) fn standard_kind(name: &str) -> Option<&'static str> {
+    STANDARD.iter().find(|(standard, _)| *standard == name).map(|(_, kind)| *kind)
+}
+
+/// One attribute as it lies in the file.
+struct Entry<'a> {
+    name: &'a [u8],
+    kind: &'a [u8],
+    value: &'a [u8],
+    all: &'a [u8],
+}
+
+/// Puts the attributes of a file of one part in order of name.
+///
+/// The exr crate keeps custom attributes in a hash map, so their order changes from run to run. Sorting keeps
+/// the length of the header, hence the offsets of the pixels stay valid.
+pub(super) fn sort(bytes: &mut [u8]) -> Result<(), ImageError> {
+    let malformed = || ImageError::Unwritable("the header came out malformed".to_owned());
+    let (mut entries, rest) = split(bytes.get(PREAMBLE..).ok_or_else(malformed)?).ok_or_else(malformed)?;
+    let end = bytes.len() - rest.len() - 1;
+    entries.sort_by_key(|entry| entry.name);
+    let sorted: Vec<u8> = entries.iter().flat_map(|entry| entry.all).copied().collect();
+    bytes[PREAMBLE..end].copy_from_slice(&sorted);
+    Ok(())
+}
+
+/// The attributes of all parts that an image may hold; where parts disagree, the first counts.
+pub(super) fn attributes(bytes: &[u8]) -> Option<std::collections::BTreeMap<String, Attribute>> {
+    let several = bytes.get(5)? & SEVERAL_PARTS != 0;
+    let mut found = std::collections::BTreeMap::new();
+    let mut rest = bytes.get(PREAMBLE..)?;
+    loop {
+        let (entries, after) = split(rest)?;
+        for entry in &entries {
+            let name = text(entry.name);
+            if let (false, Some(value)) = (LAYOUT.contains(&name.as_str()), value(entry)) {
+                found.entry(name).or_insert(value);
+            }
+        }
+        if !several || entries.is_empty() {
+            return Some(found);
+        }
+        rest = after;
+    }
+}
+
+/// The attributes up to the zero that ends the list, and what follows it.
+fn split(bytes: &[u8]) -> Option<(Vec<Entry<'_>>, &[u8])> {
+    let mut entries = Vec::new();
+    let mut rest = bytes;
+    while *rest.first()? != 0 {
+        let (name, after_name) = split_at_zero(rest)?;
+        let (kind, after_kind) = split_at_zero(after_name)?;
+        let (size, after_size) = after_kind.split_first_chunk::<4>()?;
+        let size = usize::try_from(i32::from_le_bytes(*size)).ok()?;
+        let (value, next) = after_size.split_at_checked(size)?;
+        let all = &rest[..rest.len() - next.len()];
+        entries.push(Entry { name, kind, value, all });
+        rest = next;
+    }
+    Some((entries, &rest[1..]))
+}
+
+fn split_at_zero(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
+    let end = bytes.iter().position(|byte| *byte == 0)?;
+    Some((&bytes[..end], &bytes[end + 1..]))
+}
+
+/// `None` for types that an image does not hold, and for values of the wrong size.
+fn value(entry: &Entry<'_>) -> Option<Attribute> {
+    Some(match entry.kind {
+        b"string" => Attribute::Text(text(entry.value)),
+        b"float" => Attribute::Float(f32::from_le_bytes(entry.value.try_into().ok()?)),
+        b"double" => Attribute::Double(f64::from_le_bytes(entry.value.try_into().ok()?)),
+        b"int" => Attribute::Int(i32::from_le_bytes(entry.value.try_into().ok()?)),
+        b"v3f" => Attribute::Vector(floats(entry.value)?),
+        b"m44f" => Attribute::Matrix(floats(entry.value)?),
+        b"chromaticities" => Attribute::Chromaticities(floats(entry.value)?),
+        b"stringvector" => Attribute::Texts(texts(entry.value)?),
+        _ => return None,
+    })
+}
+
+fn floats<const N: usize>(bytes: &[u8]) -> Option<[f32; N]> {
+    let (values, rest) = bytes.as_chunks::<4>();
+    let values: &[[u8; 4]; N] = values.try_into().ok()?;
+    rest.is_empty().then(|| values.map(f32::from_le_bytes))
+}
+
+fn texts(bytes: &[u8]) -> Option<Vec<String>> {
+    let mut list = Vec::new();
+    let mut rest = bytes;
+    while !rest.is_empty() {
+        let (size, after_size) = rest.split_first_chunk::<4>()?;
+        let size = usize::try_from(i32::from_le_bytes(*size)).ok()?;
+        let (value, next) = after_size.split_at_checked(size)?;
+        list.push(text(value));
+        rest = next;
+    }
+    Some(list)
+}
+
+/// Text is UTF-8 in files of today; Latin-1, which never fails, in older ones.
+pub(super) fn text(bytes: &[u8]) -> String {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text.to_owned(),
+        Err(_) => bytes.iter().copied().map(char::from).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Magic number, version, and two attributes.
+    fn header() -> Vec<u8> {
+        let mut bytes = b"\x76\x2f\x31\x01\x02\0\0\0".to_vec();
+        bytes.extend(b"b\0int\0\x04\0\0\0\x07\0\0\0");
+        bytes.extend(b"a\0stringvector\0\x0b\0\0\0\x02\0\0\0xy\x01\0\0\0z\0");
+        bytes
+    }
+
+    #[test]
+    fn attributes_are_read_and_sorted() {
+        let mut bytes = header();
+        sort(&mut bytes).unwrap();
+        assert_eq!((bytes[8], bytes.len()), (b'a', header().len()));
+        let expected = [("a", Attribute::Texts(vec!["xy".into(), "z".into()])), ("b", Attribute::Int(7))];
+        for bytes in [bytes, header()] {
+            assert_eq!(attributes(&bytes), Some(expected.clone().map(|(name, value)| (name.to_owned(), value)).into()));
+        }
+    }
+
+    /// A size that is negative or beyond the end ends the reading, not the program.
+    #[test]
+    fn damage_never_panics() {
+        let whole = header();
+        for end in 0..whole.len() {
+            assert_eq!(attributes(&whole[..end]), None, "{end} bytes");
+            for byte in [0, 1, 0x7f, 0x80, 0xff] {
+                let mut damaged = whole.clone();
+                damaged[end] = byte;
+                attributes(&damaged);
+                sort(&mut damaged).ok();
+            }
+        }
+    }
+
+    #[test]
+    fn old_text_is_latin() {
+        assert_eq!(text(b"Gr\xc3\xbc\xc3\x9fe"), "Grüße");
+        assert_eq!(text(b"Gr\xfc\xdfe"), "Grüße");
+    }
+}

@@ -1,0 +1,75 @@
+//! Unit vectors in four bytes: the octahedral map (Meyer, Süßmuth, Sußner, Stamminger, Greiner 2010; rounding to the
+//! best of four neighbours after Cigolla, Donow, Evangelakos, Mara, McGuire, Meyer 2014).
+
+use glam::DVec3;
+
+const STEPS: f64 = i16::MAX as f64;
+
+/// The code whose vector is nearest to the unit vector `v`; within 5·10⁻⁵ rad.
+pub fn encode(v: DVec3) -> [i16; 2] {
+    let flat = v / (v.x.abs() + v.y.abs() + v.z.abs());
+    let (x, y) = if v.z < 0.0 {
+        ((1.0 - flat.y.abs()) * sign(flat.x), (1.0 - flat.x.abs()) * sign(flat.y))
+    } else {
+        (flat.x, flat.y)
+    };
+    let (low_x, low_y) = ((x * STEPS).floor(), (y * STEPS).floor());
+    let mut best = [0i16; 2];
+    let mut closest = f64::NEG_INFINITY;
+    for (dx, dy) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
+        let code = [(low_x + dx).clamp(-STEPS, STEPS) as i16, (low_y + dy).clamp(-STEPS, STEPS) as i16];
+        let cosine = decode(code).dot(v);
+        if cosine > closest {
+            (best, closest) = (code, cosine);
+        }
+    }
+    best
+}
+
+/// The unit vector of a code; any code gives one.
+pub fn decode(code: [i16; 2]) -> DVec3 {
+    let (x, y) = (f64::from(code[0]).max(-STEPS) / STEPS, f64::from(code[1]).max(-STEPS) / STEPS);
+    let z = 1.0 - x.abs() - y.abs();
+    let (x, y) = if z < 0.0 { ((1.0 - y.abs()) * sign(x), (1.0 - x.abs()) * sign(y)) } else { (x, y) };
+    DVec3::new(x, y, z).normalize()
+}
+
+fn sign(x: f64) -> f64 {
+    if x < 0.0 { -1.0 } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes_are_exact_and_everything_else_is_close() {
+        for v in [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z] {
+            assert_eq!(decode(encode(v)), v);
+        }
+        let mut worst = 0.0f64;
+        for k in 0..200_000 {
+            let z = 1.0 - 2.0 * (f64::from(k) + 0.5) / 200_000.0;
+            let (s, c) = (f64::from(k) * 2.399_963).sin_cos();
+            let v = DVec3::new(c, s, 0.0) * (1.0 - z * z).sqrt() + DVec3::Z * z;
+            worst = worst.max(decode(encode(v)).cross(v).length());
+        }
+        assert!(worst < 5e-5, "{worst}");
+    }
+
+    #[test]
+    fn mirrored_vectors_have_mirrored_codes() {
+        let v = DVec3::new(0.3, -0.5, 0.7).normalize();
+        let mirrored = decode(encode(v * DVec3::new(-1.0, 1.0, 1.0)));
+        assert!((mirrored * DVec3::new(-1.0, 1.0, 1.0) - decode(encode(v))).length() < 1e-15);
+    }
+
+    #[test]
+    fn every_code_is_a_unit_vector() {
+        for x in [i16::MIN, -1, 0, 1, i16::MAX] {
+            for y in [i16::MIN, -1, 0, 1, i16::MAX] {
+                assert!((decode([x, y]).length() - 1.0).abs() < 1e-15);
+            }
+        }
+    }
+}

@@ -1,0 +1,25 @@
+//! Clouds as PLY, for viewers: binary little-endian.
+
+use crate::{Error, atomic::Output, cloud::Cloud};
+use std::{io::Write, path::Path};
+
+/// Writes position (world, m), normal, direction to the light and flux (W) of every stored sample.
+pub fn write_ply(path: &Path, cloud: &Cloud) -> Result<(), Error> {
+    let mut output = Output::create(path)?;
+    let fail = |source| Error::write(path, source);
+    let names = ["x", "y", "z", "nx", "ny", "nz", "wx", "wy", "wz", "flux_r", "flux_g", "flux_b"];
+    let properties: String = names.iter().map(|n| format!("property float {n}\n")).collect();
+    let count = cloud.len();
+    let head = format!("ply\nformat binary_little_endian 1.0\nelement vertex {count}\n{properties}end_header\n");
+    output.write_all(head.as_bytes()).map_err(fail)?;
+    let origin = glam::DVec3::from_array(cloud.meta().origin_m);
+    for sample in cloud.samples(0, count) {
+        let world = (sample.position.as_dvec3() + origin).as_vec3();
+        for v in [world, sample.normal.as_vec3(), sample.direction.as_vec3(), sample.flux] {
+            for x in v.to_array() {
+                output.write_all(&x.to_le_bytes()).map_err(fail)?;
+            }
+        }
+    }
+    output.commit()
+}

@@ -1,0 +1,83 @@
+//! What a file asks for and we do not do: refused by name where the picture would be wrong, else a warning.
+
+use super::{Fault, Placed};
+use gltf::json;
+
+/// Extensions that a file may require.
+const SUPPORTED: &[&str] = &[
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_transmission",
+    "KHR_materials_volume",
+];
+
+/// Extensions that change geometry: without them the mesh is not there, required or not.
+const GEOMETRY: &[(&str, &str)] = &[
+    ("KHR_draco_mesh_compression", "export again without compression"),
+    ("EXT_meshopt_compression", "export again without compression"),
+    ("KHR_mesh_quantization", "export again without quantisation"),
+    ("EXT_mesh_gpu_instancing", "export again with instances as nodes"),
+];
+
+/// Refuses what is required and unknown; returns warnings.
+pub(super) fn check(root: &json::Root) -> Result<Vec<String>, Fault> {
+    for name in &root.extensions_required {
+        if !SUPPORTED.contains(&name.as_str()) {
+            let hint = GEOMETRY.iter().find(|(n, _)| n == name).map_or("export again without it", |(_, hint)| hint);
+            return Err(format!("extensionsRequired: {name} is not supported; {hint}"));
+        }
+    }
+    for (name, hint) in GEOMETRY {
+        if root.extensions_used.iter().any(|n| n == name) {
+            return Err(format!("extensionsUsed: {name} is not supported; {hint}"));
+        }
+    }
+    let unknown = root.extensions_used.iter().filter(|n| !SUPPORTED.contains(&n.as_str()));
+    Ok(unknown.map(|n| format!("extension {n} is not used")).collect())
+}
+
+/// Refuses poses that are not in the mesh itself: skins, morph targets, animations of anything above a mesh.
+pub(super) fn check_nodes(root: &json::Root, nodes: &[Placed], warnings: &mut Vec<String>) -> Result<(), Fault> {
+    const BAKE: &str = "apply the pose to the mesh and export again";
+    for placed in nodes {
+        let Some(mesh) = placed.node.mesh.as_ref().and_then(|m| root.meshes.get(m.value())) else {
+            continue;
+        };
+        if placed.node.skin.is_some() {
+            return Err(format!("node `{}`: skinned meshes are not supported; {BAKE}", placed.name));
+        }
+        if mesh.primitives.iter().any(|p| p.targets.as_ref().is_some_and(|t| !t.is_empty())) {
+            return Err(format!("node `{}`: morph targets are not supported; {BAKE}", placed.name));
+        }
+    }
+    for (k, animation) in root.animations.iter().enumerate() {
+        let name = animation.name.clone().unwrap_or_else(|| format!("animation{k}"));
+        for channel in &animation.channels {
+            let node = channel.target.node.value();
+            if moves_a_mesh(root, node) {
+                return Err(format!("animation `{name}` moves a mesh (node {node}), which is not supported; {BAKE}"));
+            }
+        }
+        warnings.push(format!("animation `{name}` is not used: cameras and lights stay at rest"));
+    }
+    Ok(())
+}
+
+/// True if the node or one below it carries a mesh. The nodes in use were found to be a tree; others may not be, so
+/// each is visited once.
+fn moves_a_mesh(root: &json::Root, node: usize) -> bool {
+    let mut seen = vec![false; root.nodes.len()];
+    let mut stack = vec![node];
+    while let Some(index) = stack.pop() {
+        let Some(node) = root.nodes.get(index) else { continue };
+        if std::mem::replace(&mut seen[index], true) {
+            continue;
+        }
+        if node.mesh.is_some() {
+            return true;
+        }
+        stack.extend(node.children.iter().flatten().map(|c| c.value()));
+    }
+    false
+}

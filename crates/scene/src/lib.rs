@@ -1,0 +1,87 @@
+//! What is lit and seen: a triangle mesh, its lights and cameras, and ray queries.
+//!
+//! Knows neither a medium nor how an image is made. Lengths are metres once imported. Positions are float32 relative
+//! to [`Scene::origin`], the centre of the mesh in float64: an object far from the origin loses no digits.
+
+mod error;
+pub mod import;
+pub mod light;
+mod mesh;
+pub mod random;
+mod rays;
+mod view;
+pub mod warp;
+
+pub use error::SceneError;
+pub use glam::{DVec3, Vec3};
+pub use import::{ImportOptions, LightUnit};
+pub use mesh::{Mesh, NormalKind, SurfacePoint, Triangle};
+pub use rays::{Hit, Rays};
+pub use view::{Camera, Projection, View};
+
+/// What a surface looks like to light, apart from any medium below it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    pub name: String,
+    /// Diffuse albedo of an opaque surface.
+    pub base_color: DVec3,
+    /// Radiance it emits, W/(m² sr).
+    pub emission: DVec3,
+    /// The file marks the surface as the boundary of a volume.
+    pub volume: bool,
+    /// Emits to both sides.
+    pub double_sided: bool,
+}
+
+impl Material {
+    /// True if any channel emits.
+    pub fn emits(&self) -> bool {
+        self.emission != DVec3::ZERO
+    }
+}
+
+/// An imported scene, checked: indices in range, every number finite, no triangle without area.
+pub struct Scene {
+    pub mesh: Mesh,
+    pub materials: Vec<Material>,
+    pub lights: Vec<Box<dyn light::Light>>,
+    pub cameras: Vec<Camera>,
+    /// World position of the mesh's centre, m.
+    pub origin: DVec3,
+    /// What was left out or looks wrong, one line each.
+    pub warnings: Vec<String>,
+    /// Triangles without area, left out.
+    pub degenerate_triangles: u64,
+    /// Identity of the lights as the file gives them.
+    pub light_digest: [u8; 32],
+}
+
+impl Scene {
+    /// Adds light of the same radiance (W/(m² sr)) from all around.
+    pub fn add_environment(&mut self, radiance: DVec3) {
+        if radiance != DVec3::ZERO {
+            self.lights.push(Box::new(light::ConstantEnvironment { radiance }));
+        }
+    }
+
+    /// Identity of the geometry and of which material covers which triangle, as a BLAKE3 digest.
+    pub fn geometry_digest(&self) -> [u8; 32] {
+        let mut hasher = blake3::Hasher::new();
+        let mut put = |bytes: &[u8]| {
+            hasher.update(bytes);
+        };
+        self.origin.to_array().iter().for_each(|x| put(&x.to_le_bytes()));
+        for v in self.mesh.positions.iter().chain(&self.mesh.normals) {
+            v.to_array().iter().for_each(|x| put(&x.to_le_bytes()));
+        }
+        for t in &self.mesh.triangles {
+            t.vertices.iter().for_each(|i| put(&i.to_le_bytes()));
+            put(&t.material.to_le_bytes());
+        }
+        for m in &self.materials {
+            put(&(m.name.len() as u64).to_le_bytes());
+            put(m.name.as_bytes());
+        }
+        *hasher.finalize().as_bytes()
+    }
+}

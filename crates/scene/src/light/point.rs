@@ -1,0 +1,61 @@
+//! Light from one point, to all sides or within a cone.
+
+use super::{Illumination, Light, strength};
+use crate::mesh::SurfacePoint;
+use glam::DVec3;
+
+/// The cone of a spot light.
+#[derive(Clone, Copy, Debug)]
+pub struct Spot {
+    /// Unit direction the cone opens to.
+    pub axis: DVec3,
+    pub cos_inner: f64,
+    pub cos_outer: f64,
+}
+
+/// A point or spot light (KHR_lights_punctual): `E = I (n·ω)/d²`.
+#[derive(Clone, Debug)]
+pub struct PointLight {
+    /// m, relative to the scene's origin.
+    pub position: DVec3,
+    /// Radiant intensity `I`, W/sr.
+    pub intensity: DVec3,
+    pub spot: Option<Spot>,
+    /// Distance at which the light fades to nothing, m.
+    pub range: Option<f64>,
+}
+
+impl PointLight {
+    /// Share of the intensity that leaves towards a point at `distance` in direction `-direction`.
+    fn attenuation(&self, direction: DVec3, distance: f64) -> f64 {
+        let cone = self.spot.map_or(1.0, |spot| {
+            let cosine = spot.axis.dot(-direction);
+            let width = (spot.cos_inner - spot.cos_outer).max(0.001);
+            ((cosine - spot.cos_outer) / width).clamp(0.0, 1.0).powi(2)
+        });
+        let window = self.range.map_or(1.0, |range| (1.0 - (distance / range).powi(4)).clamp(0.0, 1.0));
+        cone * window
+    }
+}
+
+impl Light for PointLight {
+    fn importance(&self, at: &SurfacePoint) -> f64 {
+        match self.illuminate(at, [0.0; 2]) {
+            Some(light) if light.direction.dot(at.geometric_normal) > 0.0 => strength(light.irradiance),
+            _ => 0.0,
+        }
+    }
+
+    fn illuminate(&self, at: &SurfacePoint, _xi: [f64; 2]) -> Option<Illumination> {
+        let offset = self.position - at.position;
+        let distance = offset.length();
+        if distance == 0.0 {
+            return None; // the light lies in the surface: no direction, no finite irradiance
+        }
+        let direction = offset / distance;
+        let cosine = at.normal.dot(direction);
+        let factor = self.attenuation(direction, distance) * cosine / (distance * distance);
+        let lit = cosine > 0.0 && factor > 0.0 && factor.is_finite();
+        lit.then(|| Illumination { direction, distance, irradiance: self.intensity * factor })
+    }
+}

@@ -1,0 +1,172 @@
+//! Cameras: of the glTF file, or of a view file.
+
+use crate::SceneError;
+use glam::{DMat4, DVec2, DVec3};
+use serde::Deserialize;
+use std::path::Path;
+
+/// How rays leave the camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// Tangent of half the vertical field of view.
+    Perspective { tangent: f64 },
+    /// Half the height of what is seen, m.
+    Orthographic { half_height: f64 },
+}
+
+/// A camera in world space (m, not yet relative to the scene's origin).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    pub name: String,
+    pub position: DVec3,
+    pub right: DVec3,
+    pub up: DVec3,
+    pub forward: DVec3,
+    pub projection: Projection,
+    /// Width over height that the file asks for.
+    pub aspect: Option<f64>,
+}
+
+impl Camera {
+    /// Vertical field of view in degrees, or none for an orthographic camera.
+    pub fn yfov_degrees(&self) -> Option<f64> {
+        match self.projection {
+            Projection::Perspective { tangent } => Some(2.0 * tangent.atan().to_degrees()),
+            Projection::Orthographic { .. } => None,
+        }
+    }
+
+    /// Origin (world, m) and unit direction of the ray through `point` of an image of `size` pixels; the top left
+    /// corner is (0, 0).
+    pub fn ray(&self, point: DVec2, size: DVec2) -> (DVec3, DVec3) {
+        let x = (2.0 * point.x - size.x) / size.y;
+        let y = 1.0 - 2.0 * point.y / size.y;
+        match self.projection {
+            Projection::Perspective { tangent } => {
+                (self.position, (self.forward + tangent * (x * self.right + y * self.up)).normalize())
+            }
+            Projection::Orthographic { half_height } => {
+                (self.position + half_height * (x * self.right + y * self.up), self.forward)
+            }
+        }
+    }
+
+    /// `worldToCamera` in OpenEXR's row-vector convention, row-major: the camera looks along −Z, Y is up.
+    pub fn world_to_camera(&self) -> [f32; 16] {
+        let back = -self.forward;
+        let columns = [self.right, self.up, back];
+        let mut m = [0.0f32; 16];
+        for (c, axis) in columns.iter().enumerate() {
+            for r in 0..3 {
+                m[4 * r + c] = axis[r] as f32;
+            }
+            m[12 + c] = -self.position.dot(*axis) as f32;
+        }
+        m[15] = 1.0;
+        m
+    }
+
+    /// The camera of a node: its scale does not matter.
+    pub(crate) fn of_node(
+        name: String,
+        transform: &DMat4,
+        projection: Projection,
+        aspect: Option<f64>,
+    ) -> Option<Camera> {
+        let axis = |v: DVec3| transform.transform_vector3(v).try_normalize();
+        let forward = axis(-DVec3::Z)?;
+        let right = forward.cross(axis(DVec3::Y)?).try_normalize()?;
+        let position = transform.transform_point3(DVec3::ZERO);
+        Some(Camera { name, position, right, up: right.cross(forward), forward, projection, aspect })
+    }
+}
+
+/// A camera in a file of its own: metres, degrees.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct View {
+    pub eye: [f64; 3],
+    pub target: [f64; 3],
+    #[serde(default = "default_up")]
+    pub up: [f64; 3],
+    /// Vertical field of view, degrees.
+    pub yfov: f64,
+    pub width: Option<u32>,
+    pub height: Option<u32>,
+}
+
+fn default_up() -> [f64; 3] {
+    [0.0, 1.0, 0.0]
+}
+
+impl View {
+    /// Reads and checks a view file.
+    pub fn read(path: &Path) -> Result<(View, Camera), SceneError> {
+        let text =
+            std::fs::read_to_string(path).map_err(|source| SceneError::Read { path: path.to_owned(), source })?;
+        let invalid = |what: String| SceneError::Invalid { path: path.to_owned(), what };
+        let expected = "expected {\"eye\": [x,y,z], \"target\": [x,y,z], \"up\", \"yfov\" (degrees), \"width\", \"height\"}";
+        let view: View = serde_json::from_str(&text).map_err(|e| invalid(format!("not a view: {e}; {expected}")))?;
+        let name = path.file_stem().map_or("view".into(), |s| s.to_string_lossy().into_owned());
+        let camera = view.camera(name).map_err(invalid)?;
+        Ok((view, camera))
+    }
+
+    fn camera(&self, name: String) -> Result<Camera, String> {
+        let [eye, target, up] = [self.eye, self.target, self.up].map(DVec3::from_array);
+        if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
+            return Err("fields `eye`, `target`, `up` must be finite numbers".into());
+        }
+        if !(self.yfov > 0.0 && self.yfov < 180.0) {
+            return Err(format!("field `yfov`: {} is outside (0, 180) degrees", self.yfov));
+        }
+        let forward = (target - eye).try_normalize().ok_or("fields `eye` and `target` are the same point")?;
+        let right = forward.cross(up).try_normalize().ok_or("field `up` is zero or along the line of sight")?;
+        let tangent = (0.5 * self.yfov).to_radians().tan();
+        let projection = Projection::Perspective { tangent };
+        let aspect = match (self.width, self.height) {
+            (Some(w), Some(h)) if w > 0 && h > 0 => Some(f64::from(w) / f64::from(h)),
+            _ => None,
+        };
+        Ok(Camera { name, position: eye, right, up: right.cross(forward), forward, projection, aspect })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn view(json: &str) -> Result<Camera, String> {
+        let view: View = serde_json::from_str(json).map_err(|e| e.to_string())?;
+        view.camera("test".into())
+    }
+
+    #[test]
+    fn corners_of_the_image_lie_where_the_field_of_view_says() {
+        let camera = view(r#"{"eye":[0,0,2],"target":[0,0,0],"yfov":90}"#).expect("valid");
+        let size = DVec2::new(200.0, 100.0);
+        let (_, top_left) = camera.ray(DVec2::ZERO, size);
+        assert!((top_left - DVec3::new(-2.0, 1.0, -1.0).normalize()).length() < 1e-15);
+        let (_, centre) = camera.ray(size / 2.0, size);
+        assert!((centre - DVec3::NEG_Z).length() < 1e-15);
+    }
+
+    /// OpenEXR multiplies row vectors: p · M.
+    #[test]
+    fn world_to_camera_takes_the_target_onto_the_negative_z_axis() {
+        let camera = view(r#"{"eye":[1,2,3],"target":[4,2,-1],"yfov":30}"#).expect("valid");
+        let m = camera.world_to_camera();
+        let target = [4.0f32, 2.0, -1.0, 1.0];
+        let column = |c: usize| (0..4).map(|r| target[r] * m[4 * r + c]).sum::<f32>();
+        assert!(column(0).abs() < 1e-5 && column(1).abs() < 1e-5);
+        assert!((column(2) + 5.0).abs() < 1e-5 && column(3) == 1.0);
+    }
+
+    #[test]
+    fn nonsense_is_named() {
+        assert!(view(r#"{"eye":[0,0,0],"target":[0,0,0],"yfov":30}"#).unwrap_err().contains("same point"));
+        assert!(view(r#"{"eye":[0,0,1],"target":[0,0,0],"yfov":0}"#).unwrap_err().contains("yfov"));
+        assert!(view(r#"{"eye":[0,1,0],"target":[0,0,0],"yfov":30}"#).unwrap_err().contains("up"));
+        assert!(view(r#"{"eye":[0,1,0],"target":[0,0,0],"yfov":30,"fov":1}"#).unwrap_err().contains("fov"));
+    }
+}

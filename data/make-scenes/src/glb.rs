@@ -1,0 +1,219 @@
+//! A scene as binary glTF 2.0: one JSON chunk, one binary chunk.
+
+use glam::{DQuat, DVec3, Vec3};
+use serde_json::{Value, json};
+
+use crate::scene::{Light, LightKind, Part, Scene, Shot, Surface};
+
+/// Numbers that the glTF 2.0 specification fixes, sections 3.6, 5.1 and 5.11.
+const MAGIC: u32 = 0x4654_6C67;
+const VERSION: u32 = 2;
+const JSON_CHUNK: u32 = 0x4E4F_534A;
+const BINARY_CHUNK: u32 = 0x004E_4942;
+const FLOAT: u32 = 5126;
+const UNSIGNED_INT: u32 = 5125;
+const ARRAY_BUFFER: u32 = 34962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+
+/// Clip plane nearest to the camera, metres; glTF requires one, ray tracing does not use it.
+const NEAR_M: f64 = 0.001;
+
+pub fn encode(scene: &Scene) -> Vec<u8> {
+    let mut buffer = Buffer::default();
+    let meshes: Vec<_> = scene.parts.iter().enumerate().map(|(i, p)| buffer.mesh(i, p)).collect();
+    let mut document = json!({
+        "asset": { "version": "2.0", "generator": "make-scenes" },
+        "extensionsUsed": [
+            "KHR_lights_punctual", "KHR_materials_ior", "KHR_materials_transmission", "KHR_materials_volume",
+        ],
+        "extensions": { "KHR_lights_punctual": { "lights": list(&scene.lights, light) } },
+        "scene": 0,
+        "scenes": [{ "name": scene.name, "nodes": (0..node_count(scene)).collect::<Vec<_>>() }],
+        "nodes": nodes(scene),
+        "cameras": list(&scene.cameras, camera),
+        "materials": list(&scene.parts, material),
+        "meshes": meshes,
+        "accessors": buffer.accessors,
+        "bufferViews": buffer.views,
+        "buffers": [{ "byteLength": buffer.bytes.len() }],
+    });
+    // Whether serde_json keeps insertion order depends on who else is built; sorted, the bytes do not.
+    document.sort_all_objects();
+    container(document.to_string().into_bytes(), buffer.bytes)
+}
+
+fn list<T>(items: &[T], to_json: impl Fn(&T) -> Value) -> Vec<Value> {
+    items.iter().map(to_json).collect()
+}
+
+fn node_count(scene: &Scene) -> usize {
+    scene.parts.len() + scene.lights.len() + scene.cameras.len()
+}
+
+fn nodes(scene: &Scene) -> Vec<Value> {
+    let parts = scene.parts.iter().enumerate();
+    let parts = parts.map(|(i, part)| json!({ "name": part.name, "mesh": i }));
+    let lights = scene.lights.iter().enumerate().map(|(i, light)| {
+        let reference = json!({ "KHR_lights_punctual": { "light": i } });
+        let Light { name, position, .. } = *light;
+        placed(json!({ "name": name, "extensions": reference }), position, light.rotation())
+    });
+    let cameras = scene
+        .cameras
+        .iter()
+        .enumerate()
+        .map(|(i, shot)| placed(json!({ "name": shot.name, "camera": i }), shot.eye, shot.rotation()));
+    parts.chain(lights).chain(cameras).collect()
+}
+
+fn placed(mut node: Value, position: DVec3, rotation: DQuat) -> Value {
+    node["translation"] = json!(position.to_array());
+    node["rotation"] = json!(rotation.to_array());
+    node
+}
+
+fn light(light: &Light) -> Value {
+    let mut value = json!({ "name": light.name, "color": light.color, "intensity": light.intensity });
+    value["type"] = match light.kind {
+        LightKind::Directional => json!("directional"),
+        LightKind::Point => json!("point"),
+        LightKind::Spot { .. } => json!("spot"),
+    };
+    if let LightKind::Spot { inner_cone_radians, outer_cone_radians } = light.kind {
+        value["spot"] = json!({ "innerConeAngle": inner_cone_radians, "outerConeAngle": outer_cone_radians });
+    }
+    value
+}
+
+/// Square, as every view here is.
+fn camera(shot: &Shot) -> Value {
+    let yfov = shot.yfov_degrees.to_radians();
+    json!({
+        "name": shot.name,
+        "type": "perspective",
+        "perspective": { "aspectRatio": 1.0, "yfov": yfov, "znear": NEAR_M },
+    })
+}
+
+fn material(part: &Part) -> Value {
+    let reflectance = |[r, g, b]: [f64; 3]| json!({ "baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.0 });
+    match part.surface {
+        Surface::Translucent { index_of_refraction } => json!({
+            "name": part.name,
+            "pbrMetallicRoughness": { "metallicFactor": 0.0, "roughnessFactor": 0.0 },
+            "extensions": {
+                "KHR_materials_ior": { "ior": index_of_refraction },
+                "KHR_materials_transmission": { "transmissionFactor": 1.0 },
+                // Positive thickness is what marks the inside of a closed surface as a volume.
+                "KHR_materials_volume": { "thicknessFactor": 1.0 },
+            },
+        }),
+        Surface::Opaque { base_color } => {
+            json!({ "name": part.name, "pbrMetallicRoughness": reflectance(base_color) })
+        }
+    }
+}
+
+/// The binary chunk as it grows, with the descriptions that refer to it.
+#[derive(Default)]
+struct Buffer {
+    bytes: Vec<u8>,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+}
+
+impl Buffer {
+    /// Stores the mesh and describes it; its material has the same index as its part.
+    fn mesh(&mut self, index: usize, part: &Part) -> Value {
+        let mesh = &part.mesh;
+        let (low, high) = mesh.bounds();
+        let mut positions = vectors(&mesh.positions);
+        positions["min"] = json!(low.to_array());
+        positions["max"] = json!(high.to_array());
+        let mut attributes = json!({ "POSITION": self.add(positions, bytes_of(&mesh.positions)) });
+        if !mesh.normals.is_empty() {
+            attributes["NORMAL"] = json!(self.add(vectors(&mesh.normals), bytes_of(&mesh.normals)));
+        }
+        let corners = mesh.triangles.as_flattened();
+        let indices = json!({ "componentType": UNSIGNED_INT, "count": corners.len(), "type": "SCALAR" });
+        let index_bytes = corners.iter().flat_map(|corner| corner.to_le_bytes()).collect();
+        let primitive = json!({
+            "attributes": attributes,
+            "indices": self.add(indices, index_bytes),
+            "material": index,
+        });
+        json!({ "name": part.name, "primitives": [primitive] })
+    }
+
+    /// Appends an array in a view of its own; returns the index of its accessor. Every element is a multiple of four
+    /// bytes long, so that every array starts aligned.
+    fn add(&mut self, mut accessor: Value, bytes: Vec<u8>) -> usize {
+        let target = if accessor["type"] == "SCALAR" { ELEMENT_ARRAY_BUFFER } else { ARRAY_BUFFER };
+        accessor["bufferView"] = json!(self.views.len());
+        self.views.push(json!({
+            "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len(), "target": target,
+        }));
+        self.bytes.extend(bytes);
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
+    }
+}
+
+fn vectors(items: &[Vec3]) -> Value {
+    json!({ "componentType": FLOAT, "count": items.len(), "type": "VEC3" })
+}
+
+fn bytes_of(items: &[Vec3]) -> Vec<u8> {
+    items.iter().flat_map(|v| v.to_array()).flat_map(f32::to_le_bytes).collect()
+}
+
+/// Header and both chunks, each padded to four bytes with what its format ignores.
+fn container(mut json: Vec<u8>, mut binary: Vec<u8>) -> Vec<u8> {
+    json.resize(json.len().next_multiple_of(4), b' ');
+    binary.resize(binary.len().next_multiple_of(4), 0);
+    let total = 12 + 8 + json.len() + 8 + binary.len();
+    let mut bytes = Vec::with_capacity(total);
+    for word in [MAGIC, VERSION, total as u32, json.len() as u32, JSON_CHUNK] {
+        bytes.extend(word.to_le_bytes());
+    }
+    bytes.extend(json);
+    for word in [binary.len() as u32, BINARY_CHUNK] {
+        bytes.extend(word.to_le_bytes());
+    }
+    bytes.extend(binary);
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The limits of what the repository carries.
+    const FILE_LIMIT_BYTES: usize = 1_200_000;
+    const TOTAL_LIMIT_BYTES: usize = 3_000_000;
+
+    #[test]
+    fn files_are_small_and_equal_on_every_build() {
+        let files = |scenes: &[Scene]| scenes.iter().map(encode).collect::<Vec<_>>();
+        let first = files(&crate::SCENES);
+        assert!(first == files(&crate::all()), "two builds differ");
+        assert!(first.iter().all(|file| file.len() < FILE_LIMIT_BYTES));
+        assert!(first.iter().map(Vec::len).sum::<usize>() < TOTAL_LIMIT_BYTES);
+    }
+
+    #[test]
+    fn chunks_are_aligned_and_fill_the_file() {
+        for scene in crate::SCENES.iter() {
+            let bytes = encode(scene);
+            let word = |at: usize| u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
+            assert_eq!([word(0), word(4), word(8)], [MAGIC, VERSION, bytes.len() as u32]);
+            let json_bytes = word(12) as usize;
+            assert_eq!((word(16), json_bytes % 4), (JSON_CHUNK, 0));
+            let document: Value = serde_json::from_slice(&bytes[20..20 + json_bytes]).expect("valid JSON");
+            let binary_at = 20 + json_bytes;
+            assert_eq!(word(binary_at + 4), BINARY_CHUNK);
+            assert_eq!(document["buffers"][0]["byteLength"], word(binary_at));
+            assert_eq!(bytes.len(), binary_at + 8 + word(binary_at) as usize);
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! The scenes of `data/`, built from a few numbers each.
+//!
+//! Every file has the same bytes on every run and machine: the shapes use only sums, products, quotients and square
+//! roots, which IEEE 754 rounds alike everywhere, and no order depends on a hash. Hence the files can be committed
+//! and a change of one byte is a change of the scene.
+
+pub mod field;
+pub mod figure;
+pub mod glb;
+pub mod lattice;
+pub mod mesh;
+pub mod scene;
+pub mod slab;
+pub mod slivers;
+pub mod sphere;
+pub mod surface_nets;
+
+use scene::Scene;
+
+/// Every scene, in the order in which a newcomer should look at them.
+pub fn all() -> Vec<Scene> {
+    vec![slab::scene(), sphere::scene(), slivers::scene(), figure::scene()]
+}
+
+/// Built once for all tests, which only read them.
+#[cfg(test)]
+static SCENES: std::sync::LazyLock<Vec<Scene>> = std::sync::LazyLock::new(all);

@@ -1,0 +1,116 @@
+//! Triangle meshes as the files hold them: f32, shared vertices, counter-clockwise seen from outside.
+
+use glam::{DVec3, Vec3};
+
+#[derive(Default)]
+pub struct Mesh {
+    /// Metres.
+    pub positions: Vec<Vec3>,
+    /// One per position on smooth shapes; empty on flat ones, whose normals glTF then takes from the triangles.
+    pub normals: Vec<Vec3>,
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl Mesh {
+    pub fn corners(&self, triangle: [u32; 3]) -> [DVec3; 3] {
+        triangle.map(|vertex| self.positions[vertex as usize].as_dvec3())
+    }
+
+    /// m², in f64: the areas of one mesh may span eight decades.
+    pub fn triangle_area(&self, triangle: [u32; 3]) -> f64 {
+        let [a, b, c] = self.corners(triangle);
+        0.5 * (b - a).cross(c - a).length()
+    }
+
+    /// Smallest box around the vertices, (low, high).
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        let empty = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        self.positions.iter().fold(empty, |(low, high), &p| (low.min(p), high.max(p)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::{BTreeMap, BTreeSet};
+
+    use super::*;
+    use crate::scene::Surface;
+
+    /// m³; positive when triangles face outward. Sum of tetrahedra with the origin.
+    fn volume(mesh: &Mesh) -> f64 {
+        let tetrahedron = |[a, b, c]: [DVec3; 3]| a.dot(b.cross(c)) / 6.0;
+        mesh.triangles.iter().map(|&t| tetrahedron(mesh.corners(t))).sum()
+    }
+
+    fn translucent_meshes() -> impl Iterator<Item = (&'static str, &'static Mesh)> {
+        let parts = crate::SCENES.iter().flat_map(|scene| &scene.parts);
+        parts.filter(|part| matches!(part.surface, Surface::Translucent { .. })).map(|part| (part.name, &part.mesh))
+    }
+
+    #[test]
+    fn translucent_meshes_are_closed_and_face_outward() {
+        for (name, mesh) in translucent_meshes() {
+            let mut edges = BTreeSet::new();
+            for &[a, b, c] in &mesh.triangles {
+                for edge in [(a, b), (b, c), (c, a)] {
+                    assert!(edges.insert(edge), "{name}: directed edge {edge:?} occurs twice");
+                }
+            }
+            let open = edges.iter().find(|&&(a, b)| !edges.contains(&(b, a)));
+            assert_eq!(open, None, "{name}: edge without its reverse");
+            assert!(volume(mesh) > 0.0, "{name}: inside out");
+        }
+    }
+
+    /// Each vertex's triangles form one fan, and no vertex is unused: two sheets that meet in a point would pass the
+    /// edge test.
+    #[test]
+    fn translucent_meshes_are_manifold_at_each_vertex() {
+        for (name, mesh) in translucent_meshes() {
+            let mut next_around = vec![BTreeMap::new(); mesh.positions.len()];
+            for &[a, b, c] in &mesh.triangles {
+                for [center, from, to] in [[a, b, c], [b, c, a], [c, a, b]] {
+                    next_around[center as usize].insert(from, to);
+                }
+            }
+            for (vertex, next) in next_around.iter().enumerate() {
+                let start = *next.keys().next().unwrap_or_else(|| panic!("{name}: vertex {vertex} is unused"));
+                let mut fan = 1;
+                let mut at = next[&start];
+                while at != start && fan <= next.len() {
+                    at = next[&at];
+                    fan += 1;
+                }
+                assert_eq!(fan, next.len(), "{name}: vertex {vertex} joins several sheets");
+            }
+        }
+    }
+
+    #[test]
+    fn no_triangle_is_degenerate() {
+        for scene in crate::SCENES.iter() {
+            for part in &scene.parts {
+                for &triangle in &part.mesh.triangles {
+                    let area_m2 = part.mesh.triangle_area(triangle);
+                    assert!(area_m2 > 1e-12, "{}: triangle {triangle:?} has {area_m2} m²", part.name);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn vertex_normals_are_unit_and_agree_with_the_triangles() {
+        for (name, mesh) in translucent_meshes().filter(|(_, mesh)| !mesh.normals.is_empty()) {
+            assert_eq!(mesh.normals.len(), mesh.positions.len());
+            for &triangle in &mesh.triangles {
+                let [a, b, c] = mesh.corners(triangle);
+                let facing = (b - a).cross(c - a).normalize();
+                for vertex in triangle {
+                    let normal = mesh.normals[vertex as usize].as_dvec3();
+                    assert!((normal.length() - 1.0).abs() < 1e-6, "{name}: normal {normal}");
+                    assert!(normal.dot(facing) > 0.3, "{name}: normal {normal} on a triangle facing {facing}");
+                }
+            }
+        }
+    }
+}

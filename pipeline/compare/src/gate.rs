@@ -1,0 +1,137 @@
+//! Limits, and whether they are held.
+//!
+//! Every gate passes only if value <= limit, so a value that is no number fails it.
+
+use serde::Serialize;
+
+use crate::layer::{BEAUTY, Layer};
+use crate::metric::{Metrics, bitwise_differences, pixels_beyond};
+use crate::{Choice, Mismatch, Report, Settings};
+
+/// A limit; those of a metric hold for every channel of the layer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Gate {
+    /// Relative difference of the means, without sign.
+    Bias(f64),
+    /// Mean squared error relative to the reference.
+    RelMse(f64),
+    /// Root of the mean squared error, in units of the channel.
+    Rmse(f64),
+    /// Largest absolute error, in units of the channel.
+    Abs(f64),
+    /// So many pixels may differ by more than a threshold in units of the channel.
+    Outliers {
+        /// Pixels allowed.
+        count: u64,
+        /// Absolute error that makes an outlier.
+        threshold: f64,
+    },
+    /// Every bit of every sample.
+    Exact,
+}
+
+/// What became of a gate on one layer.
+#[derive(Clone, Debug, Serialize)]
+pub struct Judgement {
+    /// Its name: that of the option, or `nonfinite`.
+    pub gate: &'static str,
+    /// The layer.
+    pub layer: String,
+    /// The channel of the value, where it belongs to one.
+    pub channel: Option<String>,
+    /// What was found: of metrics, the worst channel's.
+    pub value: f64,
+    /// The most that passes.
+    pub limit: f64,
+    /// Absolute error that makes an outlier, for `max-outliers`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub threshold: Option<f64>,
+    /// Whether it passed.
+    pub ok: bool,
+}
+
+impl Gate {
+    fn name(self) -> &'static str {
+        match self {
+            Gate::Bias(_) => "max-bias",
+            Gate::RelMse(_) => "max-relmse",
+            Gate::Rmse(_) => "max-rmse",
+            Gate::Abs(_) => "max-abs",
+            Gate::Outliers { .. } => "max-outliers",
+            Gate::Exact => "exact",
+        }
+    }
+
+    fn limit(self) -> f64 {
+        match self {
+            Gate::Bias(limit) | Gate::RelMse(limit) | Gate::Rmse(limit) | Gate::Abs(limit) => limit,
+            Gate::Outliers { count, .. } => count as f64,
+            Gate::Exact => 0.0,
+        }
+    }
+
+    fn judge(self, layer: &Layer<'_>, report: &Report) -> Judgement {
+        let worst = |metric: fn(&Metrics) -> f64| report.worst_channel(&layer.name, metric);
+        let (value, channel) = match self {
+            Gate::Bias(_) => worst(|metrics| metrics.bias.abs()),
+            Gate::RelMse(_) => worst(|metrics| metrics.relmse),
+            Gate::Rmse(_) => worst(|metrics| metrics.rmse),
+            Gate::Abs(_) => worst(|metrics| metrics.max.error),
+            Gate::Outliers { threshold, .. } => (pixels_beyond(&layer.samples(), threshold) as f64, None),
+            Gate::Exact => (bitwise_differences(&layer.samples()) as f64, None),
+        };
+        let threshold = if let Gate::Outliers { threshold, .. } = self { Some(threshold) } else { None };
+        let limit = self.limit();
+        Judgement { gate: self.name(), layer: layer.name.clone(), channel, value, limit, threshold, ok: value <= limit }
+    }
+}
+
+/// The finiteness of all channels first, then every gate on every layer that it looks at.
+pub(crate) fn judge(layers: &[Layer<'_>], report: &Report, settings: &Settings) -> Vec<Judgement> {
+    let mut judgements = Vec::new();
+    if !settings.allow_nonfinite {
+        let value = (report.nonfinite.reference + report.nonfinite.test) as f64;
+        let layer = "all".to_owned();
+        let (gate, limit) = ("nonfinite", 0.0);
+        judgements.push(Judgement { gate, layer, channel: None, value, limit, threshold: None, ok: value <= limit });
+    }
+    for gate in &settings.gates {
+        let looks_at = looks_at(*gate, &settings.choice);
+        let chosen = layers.iter().filter(|layer| looks_at.is_none_or(|name| layer.name == name));
+        judgements.extend(chosen.map(|layer| gate.judge(layer, report)));
+    }
+    judgements
+}
+
+/// The layer, or `None` for all.
+fn looks_at(gate: Gate, choice: &Choice) -> Option<&str> {
+    match (choice, gate) {
+        (Choice::Default, Gate::Exact) | (Choice::All, _) => None,
+        (Choice::Default, _) => Some(BEAUTY),
+        (Choice::Named(name), _) => Some(name),
+    }
+}
+
+/// A gate without a layer to look at would always pass.
+pub(crate) fn check_choice(layers: &[Layer<'_>], settings: &Settings) -> Result<(), Mismatch> {
+    let asked = settings.gates.iter().filter_map(|gate| looks_at(*gate, &settings.choice));
+    let named = if let Choice::Named(name) = &settings.choice { Some(name.as_str()) } else { None };
+    match asked.chain(named).find(|name| layers.iter().all(|layer| layer.name != *name)) {
+        None => Ok(()),
+        Some(name) => Err(Mismatch::NoLayer {
+            name: name.to_owned(),
+            present: layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>().join(", "),
+        }),
+    }
+}
+
+/// Names of the layers that the verdict speaks of: all, if there is no beauty layer.
+pub(crate) fn judged_layers(layers: &[Layer<'_>], choice: &Choice) -> Vec<String> {
+    let wanted = match choice {
+        Choice::Default => Some(BEAUTY),
+        Choice::All => None,
+        Choice::Named(name) => Some(name.as_str()),
+    };
+    let wanted = wanted.filter(|name| layers.iter().any(|layer| layer.name == *name));
+    layers.iter().map(|layer| layer.name.clone()).filter(|name| wanted.is_none_or(|wanted| name == wanted)).collect()
+}

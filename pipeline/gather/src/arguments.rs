@@ -1,0 +1,110 @@
+//! The command line.
+
+use clap::{Parser, ValueEnum};
+use cli::{Common, SceneArgs};
+use std::path::PathBuf;
+
+/// Renders a scene's translucent surfaces from a point cloud.
+///
+/// Lengths are metres, radiance W/(m² sr); media are in the unit that their file states.
+#[derive(Parser)]
+#[command(version)]
+pub struct Arguments {
+    /// Cloud of sample-surface (with --list-cameras: SCENE alone is enough)
+    pub cloud: Option<PathBuf>,
+    /// The scene that the cloud was sampled from
+    pub scene: Option<PathBuf>,
+    /// OpenEXR image to write
+    #[arg(short, long, value_name = "IMAGE.exr", required_unless_present_any = ["list_cameras", "list_media"])]
+    pub output: Option<PathBuf>,
+    /// Camera of SCENE by name or index [default: the first]
+    #[arg(long, value_name = "NAME|INDEX")]
+    pub camera: Option<String>,
+    /// Camera in a file of its own; beats --camera
+    #[arg(long, value_name = "FILE.json")]
+    pub view: Option<PathBuf>,
+    /// Width, pixels [default: 512, or by the height]
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=65536))]
+    pub width: Option<u32>,
+    /// Height, pixels [default: by the camera's aspect]
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=65536))]
+    pub height: Option<u32>,
+    /// Medium, by built-in name or from a file; of one material, or of all (repeatable)
+    #[arg(long, value_name = "[MATERIAL=]NAME|FILE.json")]
+    pub medium: Vec<String>,
+    /// How light scatters from point to point
+    #[arg(long, value_name = "MODEL", default_value = "directional-dipole")]
+    pub bssrdf: ModelName,
+    /// Sum over the cloud: hierarchical (cut, not built yet), by the note's roulette, or all samples
+    #[arg(long, value_name = "HOW", default_value = "roulette")]
+    pub estimator: EstimatorName,
+    /// Target relative error of one gather, of `--estimator cut` only
+    #[arg(long, value_name = "X")]
+    pub accuracy: Option<f64>,
+    /// Acceptance rule of the roulette; mean is the note's, and unbounded in variance for coloured media
+    #[arg(long, value_name = "RULE", default_value = "mixture")]
+    pub roulette: RuleName,
+    /// Camera paths a pixel
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=1_048_576))]
+    pub spp: u32,
+    /// Spread the paths over the pixel (box), or send all through its centre (point)
+    #[arg(long, value_name = "FILTER", default_value = "box")]
+    pub filter: FilterName,
+    /// Interface events a path may have; what is cut off is counted
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=65536))]
+    pub max_depth: u32,
+    #[command(flatten)]
+    pub scene_args: SceneArgs,
+    /// Also write a tone-mapped picture
+    #[arg(long, value_name = "FILE.png")]
+    pub preview: Option<PathBuf>,
+    /// Brighten the preview by powers of two
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, value_parser = parse_stops, allow_hyphen_values = true)]
+    pub exposure: f64,
+    /// Write statistics as JSON
+    #[arg(long, value_name = "FILE")]
+    pub stats: Option<PathBuf>,
+    /// Leave out of image and statistics what differs from run to run
+    #[arg(long)]
+    pub no_timings: bool,
+    /// Print the cameras of SCENE
+    #[arg(long)]
+    pub list_cameras: bool,
+    /// Print the built-in media
+    #[arg(long)]
+    pub list_media: bool,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+fn parse_stops(text: &str) -> Result<f64, String> {
+    let stops = text.parse().ok().filter(|x: &f64| x.abs() <= 64.0);
+    stops.ok_or_else(|| "expected a number between -64 and 64".into())
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ModelName {
+    DirectionalDipole,
+    BetterDipole,
+    StandardDipole,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum EstimatorName {
+    Cut,
+    Roulette,
+    Exhaustive,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum RuleName {
+    Mixture,
+    Mean,
+    Min,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FilterName {
+    Box,
+    Point,
+}

@@ -1,0 +1,338 @@
+//! `gather CLOUD SCENE -o IMAGE.exr`: arguments and files; the phase itself is the library.
+
+mod arguments;
+mod report;
+
+use arguments::{Arguments, EstimatorName, FilterName, ModelName, RuleName};
+use bssrdf::{Medium, Model, built_in, built_in_names};
+use clap::Parser;
+use cli::{Failure, Progress};
+use formats::{
+    atomic::{self, Output},
+    cloud::Cloud,
+};
+use gather::{
+    Filter, Input, Rendered, Settings,
+    estimator::{Estimator, Rule},
+    film, media, preview, render,
+};
+use report::{Facts, Seconds};
+use scene::{Camera, Rays, Scene, View};
+use std::{
+    fmt::Write as _,
+    io::Write as _,
+    num::NonZeroUsize,
+    path::{Path, PathBuf},
+    time::Instant,
+};
+
+fn main() {
+    let arguments = Arguments::parse();
+    cli::run("gather", || run(&arguments).map(|()| 0));
+}
+
+fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.list_media {
+        return list_media();
+    }
+    if arguments.list_cameras {
+        return list_cameras(arguments);
+    }
+    let start = Instant::now();
+    let common = &arguments.common;
+    let (cloud_path, scene_path) = paths(arguments)?;
+    let estimator = estimator(arguments)?;
+    let cloud = Cloud::open(cloud_path)?;
+    let scene = arguments.scene_args.import(scene_path, common)?;
+    check_fit(&cloud, cloud_path, &scene, scene_path, arguments)?;
+    let camera = camera(arguments, &scene, scene_path)?;
+    let settings = settings(arguments, &camera, estimator)?;
+    check_memory(&cloud, &settings)?;
+    let media = media::assign(&arguments.medium, cloud.meta())?;
+    show_scale(arguments, &scene, &cloud, &media, &settings);
+    let output_path = arguments.output.as_deref().ok_or_else(|| Failure::usage("--output: give IMAGE.exr"))?;
+    let mut output = Output::create(output_path)?;
+    cloud.verify(cloud_path)?;
+    let mut seconds = Seconds(vec![("open", start.elapsed().as_secs_f64())]);
+    let step = Instant::now();
+    let rays = common.in_pool(|| Rays::new(&scene.mesh))?;
+    seconds.0.push(("ray_tree", step.elapsed().as_secs_f64()));
+
+    let input = Input { scene: &scene, rays: &rays, cloud: &cloud, media: &media, camera: &camera.camera };
+    let progress = Progress::start(common, "gathering", (settings.width * settings.height) as u64, "pixels");
+    let rendered = common.in_pool(|| render(&input, &settings, |n| progress.add(n)))?;
+    seconds.0.push(("render", progress.finish()));
+
+    let facts = Facts { settings: &settings, cloud: cloud.meta(), media: &media, camera: &camera.camera };
+    let step = Instant::now();
+    if rendered.non_finite_count == 0 {
+        write_image(arguments, &facts, &rendered, &mut output, output_path)?;
+        output.commit()?;
+    }
+    seconds.0.push(("write", step.elapsed().as_secs_f64()));
+    seconds.0.push(("total", start.elapsed().as_secs_f64()));
+    if let Some(path) = &arguments.stats {
+        let seconds = (!arguments.no_timings).then_some(&seconds);
+        atomic::write(path, &facts.statistics(&rendered, seconds, common.thread_count()))?;
+    }
+    finish(arguments, &facts, &rendered)
+}
+
+fn paths(arguments: &Arguments) -> Result<(&Path, &Path), Failure> {
+    match (&arguments.cloud, &arguments.scene) {
+        (Some(cloud), Some(scene)) => Ok((cloud, scene)),
+        _ => Err(Failure::usage("give CLOUD and SCENE; see --help")),
+    }
+}
+
+fn estimator(arguments: &Arguments) -> Result<Estimator, Failure> {
+    if arguments.accuracy.is_some() && arguments.estimator != EstimatorName::Cut {
+        return Err(Failure::usage("--accuracy: only --estimator cut has an accuracy; leave it out"));
+    }
+    match arguments.estimator {
+        EstimatorName::Cut => Err(Failure::usage("--estimator cut is not built yet; use roulette or exhaustive")),
+        EstimatorName::Exhaustive => Ok(Estimator::Exhaustive),
+        EstimatorName::Roulette => Ok(Estimator::Roulette(match arguments.roulette {
+            RuleName::Mixture => Rule::Mixture,
+            RuleName::Mean => Rule::Mean,
+            RuleName::Min => Rule::Min,
+        })),
+    }
+}
+
+/// Refuses a cloud that was sampled from something else, and says what differs.
+fn check_fit(
+    cloud: &Cloud,
+    cloud_path: &Path,
+    scene: &Scene,
+    scene_path: &Path,
+    arguments: &Arguments,
+) -> Result<(), Failure> {
+    let meta = cloud.meta();
+    let (here, there) = (arguments.scene_args.metres_per_unit, meta.options.metres_per_unit);
+    let unit = arguments.scene_args.light_unit.name();
+    let differs = if here != there {
+        format!("--metres-per-unit is {here}, the cloud's {there}")
+    } else if unit != meta.options.light_unit {
+        format!("--light-unit is {unit}, the cloud's {}", meta.options.light_unit)
+    } else if scene.geometry_digest() != meta.geometry {
+        "its mesh or materials differ".into()
+    } else if scene.light_digest != meta.lights {
+        "its lights differ".into()
+    } else {
+        let (seen, lit) = (arguments.scene_args.radiance().to_array(), meta.options.environment);
+        if seen != lit {
+            let [r, g, b] = lit;
+            let text = format!("rays that escape see --environment {seen:?}, the cloud was lit by {r},{g},{b}");
+            arguments.common.warn(text);
+        }
+        return Ok(());
+    };
+    Err(Failure::usage(format!(
+        "{}: this cloud is not of {}: {differs}; sample the scene again",
+        cloud_path.display(),
+        scene_path.display()
+    )))
+}
+
+/// A camera, and the size of image that its view file asks for.
+struct Chosen {
+    camera: Camera,
+    width: Option<u32>,
+    height: Option<u32>,
+}
+
+fn camera(arguments: &Arguments, scene: &Scene, scene_path: &Path) -> Result<Chosen, Failure> {
+    if let Some(path) = &arguments.view {
+        let (view, camera) = View::read(path)?;
+        return Ok(Chosen { camera, width: view.width, height: view.height });
+    }
+    let cameras = &scene.cameras;
+    let names = || cameras.iter().map(|c| format!("`{}`", c.name)).collect::<Vec<_>>().join(", ");
+    if cameras.is_empty() {
+        let message = format!("{}: no camera; give one with --view FILE.json", scene_path.display());
+        return Err(Failure::usage(message));
+    }
+    let found = match &arguments.camera {
+        None => cameras.first(),
+        Some(wanted) => cameras
+            .iter()
+            .find(|c| c.name == *wanted)
+            .or_else(|| wanted.parse::<usize>().ok().and_then(|index| cameras.get(index))),
+    };
+    let camera = found.cloned().ok_or_else(|| {
+        let wanted = arguments.camera.as_deref().unwrap_or_default();
+        Failure::usage(format!("--camera: {} has no `{wanted}`; it has {}", scene_path.display(), names()))
+    })?;
+    Ok(Chosen { camera, width: None, height: None })
+}
+
+/// Most pixels of an image.
+const MAX_PIXELS: u64 = 1 << 28;
+
+fn settings(arguments: &Arguments, chosen: &Chosen, estimator: Estimator) -> Result<Settings, Failure> {
+    let (width, height) = size(arguments, chosen)?;
+    if width as u64 * height as u64 > MAX_PIXELS {
+        return Err(Failure::usage(format!("--width, --height: {width} x {height} is more than {MAX_PIXELS} pixels")));
+    }
+    let wanted = chosen.camera.aspect.filter(|a| (a * height as f64 / width as f64 - 1.0).abs() > 0.01);
+    if let Some(aspect) = wanted {
+        arguments.common.warn(format_args!(
+            "the camera's aspect is {aspect:.3}, the image's {:.3}: its vertical field of view is kept",
+            width as f64 / height as f64
+        ));
+    }
+    let model = match arguments.bssrdf {
+        ModelName::DirectionalDipole => Model::DirectionalDipole,
+        ModelName::BetterDipole => Model::BetterDipole,
+        ModelName::StandardDipole => Model::StandardDipole,
+    };
+    Ok(Settings {
+        width,
+        height,
+        paths_per_pixel: arguments.spp,
+        filter: match arguments.filter {
+            FilterName::Box => Filter::Box,
+            FilterName::Point => Filter::Point,
+        },
+        estimator,
+        model,
+        normals: arguments.scene_args.normal_kind(),
+        environment: arguments.scene_args.radiance(),
+        max_depth: arguments.max_depth,
+        seed: arguments.common.seed,
+    })
+}
+
+/// Width and height: flags beat the view file, what is missing follows from the aspect.
+fn size(arguments: &Arguments, chosen: &Chosen) -> Result<(usize, usize), Failure> {
+    let given = (arguments.width, arguments.height);
+    let (width, height) = if given == (None, None) { (chosen.width, chosen.height) } else { given };
+    let aspect = chosen.camera.aspect.unwrap_or(1.0);
+    let (width, height) = match (width, height) {
+        (Some(w), Some(h)) => (f64::from(w), f64::from(h)),
+        (Some(w), None) => (f64::from(w), (f64::from(w) / aspect).round()),
+        (None, Some(h)) => ((f64::from(h) * aspect).round(), f64::from(h)),
+        (None, None) => (512.0, (512.0 / aspect).round()),
+    };
+    let good = |x: f64| (1.0..=65536.0).contains(&x);
+    if good(width) && good(height) {
+        return Ok((width as usize, height as usize));
+    }
+    Err(Failure::usage(format!("--width, --height: {width} x {height} pixels; each must lie between 1 and 65536")))
+}
+
+/// Refuses what cannot fit before any work is done: the samples as the sum reads them, and the image thrice.
+fn check_memory(cloud: &Cloud, settings: &Settings) -> Result<(), Failure> {
+    let pixels = settings.width as u64 * settings.height as u64;
+    let needed = cloud.len().saturating_mul(48).saturating_add(pixels * 3 * 256);
+    match cli::available_memory_bytes() {
+        Some(available) if needed > available => Err(Failure::usage(format!(
+            "this image of this cloud needs {:.1} GiB of memory, {:.1} GiB are free; make either smaller",
+            needed as f64 / 2f64.powi(30),
+            available as f64 / 2f64.powi(30)
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Prints each medium's lengths beside its object's.
+fn show_scale(arguments: &Arguments, scene: &Scene, cloud: &Cloud, media: &[Medium], settings: &Settings) {
+    for (material, medium) in cloud.meta().materials.iter().zip(media) {
+        let diagonal = diagonal(scene, material.index);
+        let spacing = (material.area_m2 / material.count.max(1) as f64).sqrt();
+        let transport = settings.model.of(medium).transport();
+        let scale = media::scale(&material.name, medium, transport, diagonal, spacing);
+        scale.lines.iter().for_each(|line| arguments.common.say(line));
+        scale.warnings.iter().for_each(|warning| arguments.common.warn(warning));
+    }
+}
+
+/// Diagonal of the box around one material's triangles, m.
+fn diagonal(scene: &Scene, material: u16) -> f64 {
+    let mesh = &scene.mesh;
+    let own = (0..mesh.triangles.len()).filter(|k| mesh.triangles[*k].material == material);
+    let start = (scene::DVec3::INFINITY, scene::DVec3::NEG_INFINITY);
+    let corners = own.flat_map(|k| mesh.corners(k));
+    let (low, high) = corners.fold(start, |(low, high), p| (low.min(p), high.max(p)));
+    (high - low).length()
+}
+
+fn write_image(
+    arguments: &Arguments,
+    facts: &Facts,
+    rendered: &Rendered,
+    output: &mut Output,
+    path: &Path,
+) -> Result<(), Failure> {
+    let settings = facts.settings;
+    let mut image = film::image(&rendered.pixels, settings.width, settings.height);
+    image.attributes = facts.attributes(arguments);
+    let threads = NonZeroUsize::new(arguments.common.thread_count()).unwrap_or(NonZeroUsize::MIN);
+    let bytes = image.encode_with(threads)?;
+    output.write_all(&bytes).map_err(|source| formats::Error::write(path, source))?;
+    if let Some(preview_path) = &arguments.preview {
+        let png = preview::png(&rendered.pixels, settings.width, settings.height, arguments.exposure)?;
+        atomic::write(preview_path, &png)?;
+    }
+    Ok(())
+}
+
+/// Says how good the image is; fails if it has a number that is not finite.
+fn finish(arguments: &Arguments, facts: &Facts, rendered: &Rendered) -> Result<(), Failure> {
+    if rendered.non_finite_count > 0 {
+        let places: Vec<String> = rendered.non_finite.iter().map(|p| format!("{:?}", facts.pixel(*p))).collect();
+        return Err(Failure::numerical(format!(
+            "{} pixels are not finite, no image was written; the first are {}",
+            rendered.non_finite_count,
+            places.join(" ")
+        )));
+    }
+    let counts = &rendered.counts;
+    let error = film::relative_error(&rendered.pixels, facts.settings.paths_per_pixel);
+    let error = error.map_or("unknown".into(), |e| format!("{:.2} %", 100.0 * e));
+    arguments.common.say(format_args!(
+        "{} gathers, {:.3e} BSSRDF evaluations; relative error of the paths {error} (the cloud's comes on top)",
+        counts.gathers, counts.evaluations as f64
+    ));
+    let share = |n: u64| 100.0 * n as f64 / counts.paths as f64;
+    if counts.cut_by_depth > 0 {
+        let limit = facts.settings.max_depth;
+        let line = format!("{:.3} % of the paths were cut off at --max-depth {limit}", share(counts.cut_by_depth));
+        arguments.common.say(line);
+    }
+    if counts.escaped_inside > 0 {
+        let line = format!("{:.3} % of the paths left a medium through a hole in its mesh", share(counts.escaped_inside));
+        arguments.common.warn(line);
+    }
+    Ok(())
+}
+
+fn list_media() -> Result<(), Failure> {
+    let mut text = format!("{:<28} {:>6}  {:<32} {:<32} source\n", "name", "eta", "sigma_a, 1/mm", "sigma_s, 1/mm");
+    for name in built_in_names() {
+        let medium = built_in(name)?;
+        let three = |v: [f64; 3]| v.map(|x| format!("{:.4e}", x / 1000.0)).join(" ");
+        let (absorbs, scatters) = (three(medium.map(|c| c.sigma_a)), three(medium.map(|c| c.sigma_s)));
+        let source = medium.source.split(',').next().unwrap_or_default();
+        let year = medium.source.split_whitespace().map(|w| w.trim_end_matches(',')).find(|w| w.len() == 4 && w.parse::<u16>().is_ok());
+        let year = year.unwrap_or_default();
+        writeln!(text, "{name:<28} {:>6}  {absorbs:<32} {scatters:<32} {source} et al. {year}", medium.eta)?;
+    }
+    cli::print(&text)
+}
+
+fn list_cameras(arguments: &Arguments) -> Result<(), Failure> {
+    let path: &PathBuf = match (&arguments.cloud, &arguments.scene) {
+        (_, Some(scene)) | (Some(scene), None) => scene,
+        _ => return Err(Failure::usage("--list-cameras: give SCENE")),
+    };
+    let scene = arguments.scene_args.import(path, &arguments.common)?;
+    let mut text = String::new();
+    for (index, camera) in scene.cameras.iter().enumerate() {
+        let kind = camera.yfov_degrees().map_or("orthographic".into(), |yfov| format!("yfov {yfov:.2} degrees"));
+        let aspect = camera.aspect.map_or("any aspect".into(), |a| format!("aspect {a:.3}"));
+        writeln!(text, "{index}\t{}\t{kind}\t{aspect}", camera.name)?;
+    }
+    cli::print(&text)
+}

@@ -1,0 +1,177 @@
+//! What an image and its statistics say of how they were made.
+
+use crate::arguments::Arguments;
+use bssrdf::Medium;
+use formats::{
+    Attribute,
+    cloud::{Meta, hex},
+};
+use gather::{Rendered, Settings, estimator::Estimator, film};
+use scene::Camera;
+use std::collections::BTreeMap;
+
+/// Facts about one image.
+pub struct Facts<'a> {
+    pub settings: &'a Settings,
+    pub cloud: &'a Meta,
+    pub media: &'a [Medium],
+    pub camera: &'a Camera,
+}
+
+fn estimator_name(estimator: Estimator) -> String {
+    match estimator {
+        Estimator::Exhaustive => "exhaustive".into(),
+        Estimator::Roulette(rule) => format!("roulette {}", rule.name()),
+    }
+}
+
+fn filter_name(settings: &Settings) -> &'static str {
+    match settings.filter {
+        gather::Filter::Box => "box",
+        gather::Filter::Point => "point",
+    }
+}
+
+impl Facts<'_> {
+    /// Attributes of the image's header. Nothing in them depends on the machine, the threads or the time, unless
+    /// SOURCE_DATE_EPOCH gives one.
+    pub fn attributes(&self, arguments: &Arguments) -> BTreeMap<String, Attribute> {
+        let mut all = BTreeMap::new();
+        let mut put = |name: &str, value: Attribute| {
+            all.insert(name.to_owned(), value);
+        };
+        let text = |s: &str| Attribute::Text(s.to_owned());
+        let version = env!("CARGO_PKG_VERSION");
+        put("worldToCamera", Attribute::Matrix(self.camera.world_to_camera()));
+        put("comments", text("W/(m^2 sr), scene-linear; lengths in m"));
+        put("software", Attribute::Text(format!("gather {version}")));
+        // Rec. 709 primaries and D65.
+        put("chromaticities", Attribute::Chromaticities([0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329]));
+        put("samplesPerPixel", Attribute::Int(self.settings.paths_per_pixel as i32));
+        if let Some(date) = capture_date().filter(|_| !arguments.no_timings) {
+            put("capDate", Attribute::Text(date));
+            put("utcOffset", Attribute::Float(0.0));
+        }
+        put("pcsss/cloud", Attribute::Text(hex(&self.cloud.content)));
+        put("pcsss/scene", Attribute::Text(hex(&self.cloud.geometry)));
+        put("pcsss/samplesDrawn", Attribute::Double(self.cloud.samples_drawn as f64));
+        put("pcsss/cloudSeed", Attribute::Text(self.cloud.options.seed.to_string()));
+        put("pcsss/seed", Attribute::Text(self.settings.seed.to_string()));
+        put("pcsss/bssrdf", text(self.settings.model.name()));
+        put("pcsss/estimator", Attribute::Text(estimator_name(self.settings.estimator)));
+        put("pcsss/version", text(version));
+        put("pcsss/arguments", Attribute::Text(self.arguments(arguments)));
+        let covers = match self.settings.paths_per_pixel {
+            1 => "nothing: one path a pixel",
+            _ => "camera paths and roulette, not the cloud",
+        };
+        put("pcsss/varianceCovers", text(covers));
+        let media = self.cloud.materials.iter().zip(self.media);
+        put("pcsss/media", Attribute::Texts(media.map(|(m, medium)| describe(&m.name, medium)).collect()));
+        all
+    }
+
+    /// The arguments that change values, in one order; not where files lie, nor threads.
+    fn arguments(&self, arguments: &Arguments) -> String {
+        let s = self.settings;
+        let camera = match &arguments.view {
+            Some(_) => "--view".to_owned(),
+            None => format!("--camera {}", self.camera.name),
+        };
+        format!(
+            "{camera} --width {} --height {} --bssrdf {} --estimator {} --spp {} --filter {} --max-depth {} --seed {} \
+             --environment {},{},{} --normals {}",
+            s.width,
+            s.height,
+            s.model.name(),
+            estimator_name(s.estimator),
+            s.paths_per_pixel,
+            filter_name(s),
+            s.max_depth,
+            s.seed,
+            s.environment.x,
+            s.environment.y,
+            s.environment.z,
+            arguments.scene_args.normals.name(),
+        )
+    }
+
+    /// Statistics as JSON.
+    pub fn statistics(&self, rendered: &Rendered, seconds: Option<&Seconds>, threads: usize) -> Vec<u8> {
+        let counts = &rendered.counts;
+        let mut value = serde_json::json!({
+            "schema": 1,
+            "threads": threads,
+            "pixels": rendered.pixels.len(),
+            "paths": counts.paths,
+            "gathers": counts.gathers,
+            "bssrdf_evaluations": counts.evaluations,
+            "nodes_visited": 0,
+            "rays": counts.rays,
+            "shadow_rays": counts.shadow_rays,
+            "paths_cut_by_depth": counts.cut_by_depth,
+            "paths_escaped_inside": counts.escaped_inside,
+            "nested_surfaces_passed": counts.nested,
+            "geometric_normals_taken": counts.geometric_normals,
+            "estimated_relative_error": film::relative_error(&rendered.pixels, self.settings.paths_per_pixel),
+            "estimated_relative_error_covers": "camera paths and roulette, not the cloud",
+            "non_finite": rendered.non_finite_count,
+            "non_finite_pixels": rendered.non_finite.iter().map(|p| self.pixel(*p)).collect::<Vec<_>>(),
+            "cloud": hex(&self.cloud.content),
+            "samples_drawn": self.cloud.samples_drawn,
+            "estimator": estimator_name(self.settings.estimator),
+            "bssrdf": self.settings.model.name(),
+        });
+        if let Some(seconds) = seconds {
+            let rate = counts.evaluations as f64 / seconds.of("render").max(1e-9);
+            value["seconds"] = seconds.0.iter().map(|(k, v)| ((*k).to_owned(), *v)).collect();
+            value["bssrdf_evaluations_per_second"] = rate.into();
+            value["peak_memory_bytes"] = cli::peak_memory_bytes().into();
+        }
+        format!("{value:#}\n").into_bytes()
+    }
+
+    /// Column and row of a pixel.
+    pub fn pixel(&self, index: usize) -> [usize; 2] {
+        [index % self.settings.width, index / self.settings.width]
+    }
+}
+
+/// Seconds per step.
+#[derive(Default)]
+pub struct Seconds(pub Vec<(&'static str, f64)>);
+
+impl Seconds {
+    pub fn of(&self, step: &str) -> f64 {
+        self.0.iter().find(|(name, _)| *name == step).map_or(0.0, |(_, s)| *s)
+    }
+}
+
+fn describe(material: &str, medium: &Medium) -> String {
+    let three = |v: [f64; 3]| format!("{},{},{}", v[0], v[1], v[2]);
+    format!(
+        "{material}={}: sigma_a {} sigma_s {} 1/m, g {}, eta {}",
+        medium.name,
+        three(medium.map(|c| c.sigma_a)),
+        three(medium.map(|c| c.sigma_s)),
+        three(medium.map(|c| c.asymmetry)),
+        medium.eta
+    )
+}
+
+/// `YYYY:MM:DD hh:mm:ss` of SOURCE_DATE_EPOCH, UTC.
+fn capture_date() -> Option<String> {
+    let seconds: u64 = std::env::var("SOURCE_DATE_EPOCH").ok()?.parse().ok().filter(|s| *s < 1 << 40)?;
+    let (days, time) = (seconds / 86_400, seconds % 86_400);
+    // Civil date from days since 1970 in the proleptic Gregorian calendar: years begin in March here.
+    let shifted = days + 719_468;
+    let (era, day_of_era) = (shifted / 146_097, shifted % 146_097);
+    let year_of_era = (day_of_era - day_of_era / 1_460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
+    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
+    let shifted_month = (5 * day_of_year + 2) / 153;
+    let day = day_of_year - (153 * shifted_month + 2) / 5 + 1;
+    let month = if shifted_month < 10 { shifted_month + 3 } else { shifted_month - 9 };
+    let year = year_of_era + era * 400 + u64::from(month <= 2);
+    let (hour, minute, second) = (time / 3_600, time / 60 % 60, time % 60);
+    Some(format!("{year:04}:{month:02}:{day:02} {hour:02}:{minute:02}:{second:02}"))
+}
