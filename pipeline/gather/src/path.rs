@@ -8,7 +8,7 @@ use crate::{
 use bssrdf::{Medium, fresnel, lanes::LaneModel, simd};
 use scene::{
     Camera, DVec3, Hit, NormalKind, Rays, Scene, SurfacePoint,
-    light::{Lit, light_at},
+    light::all_light_at,
     random::{Item, Stream},
 };
 use std::f64::consts::PI;
@@ -210,11 +210,9 @@ impl<M: LaneModel> Renderer<'_, M> {
             facing.normal = -facing.normal;
             facing.geometric_normal = -facing.geometric_normal;
         }
-        let xi = [walker.uniform(), walker.uniform(), walker.uniform()];
-        let lit = light_at(&self.scene.lights, self.rays, &facing, xi, &mut counts.shadow_rays);
-        if let Lit::Light { irradiance, .. } = lit {
-            walker.add(Layer::Diffuse, material.base_color / PI * irradiance);
-        }
+        let xi = || [walker.uniform(), walker.uniform()];
+        let irradiance = all_light_at(&self.scene.lights, self.rays, &facing, xi, &mut counts.shadow_rays);
+        walker.add(Layer::Diffuse, material.base_color / PI * irradiance);
     }
 
     /// Reflection with probability R, else refraction, which shows emitted and scattered light and goes on inside.

@@ -47,11 +47,14 @@ impl AreaLight {
 }
 
 impl Light for AreaLight {
-    /// The light as if it were a small one-sided source at its centre, at least its radius away. Cannot vanish: no
-    /// bound on what lies behind the surface is kept.
+    /// The light as if it were a small one-sided source at its centre, at least its radius away, under the largest
+    /// cosine that a point of it can have; 0 only if all of it lies behind the surface.
     fn importance(&self, at: &SurfacePoint) -> f64 {
-        let distance_squared = self.centre.distance_squared(at.position).max(self.radius * self.radius);
-        strength(self.radiance) * self.area / (PI * distance_squared)
+        let offset = self.centre - at.position;
+        let distance = offset.length().max(self.radius);
+        let cosine = |normal: DVec3| ((offset.dot(normal) + self.radius) / distance).clamp(0.0, 1.0);
+        let cosine = cosine(at.normal) * if cosine(at.geometric_normal) > 0.0 { 1.0 } else { 0.0 };
+        strength(self.radiance) * self.area * cosine / (PI * distance * distance)
     }
 
     fn illuminate(&self, at: &SurfacePoint, xi: [f64; 2]) -> Option<Illumination> {

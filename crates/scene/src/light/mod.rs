@@ -71,6 +71,29 @@ pub fn light_at(
     Lit::Light { direction: arriving.direction, irradiance: arriving.irradiance / probability }
 }
 
+/// Irradiance from all lights, one direction of each: for surfaces that are lit once a path, where the choice of a light
+/// would be noise. `xi` gives two uniform numbers for each light.
+pub fn all_light_at(
+    lights: &[Box<dyn Light>],
+    rays: &Rays,
+    at: &SurfacePoint,
+    mut xi: impl FnMut() -> [f64; 2],
+    shadow_rays: &mut u64,
+) -> DVec3 {
+    let mut irradiance = DVec3::ZERO;
+    for light in lights {
+        let Some(arriving) = light.illuminate(at, xi()) else { continue };
+        if arriving.direction.dot(at.geometric_normal) <= 0.0 {
+            continue;
+        }
+        *shadow_rays += 1;
+        if rays.visible(at.position, arriving.direction, arriving.distance, Some(at.triangle)) {
+            irradiance += arriving.irradiance;
+        }
+    }
+    irradiance
+}
+
 /// A light and the probability of having been picked, in proportion to its importance; none if all are zero.
 pub fn pick(lights: &[Box<dyn Light>], at: &SurfacePoint, xi: f64) -> Option<(usize, f64)> {
     let total: f64 = lights.iter().map(|l| l.importance(at)).sum();
