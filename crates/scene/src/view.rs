@@ -1,6 +1,6 @@
 //! Cameras: of the glTF file, or of a view file.
 
-use crate::SceneError;
+use crate::{SceneError, import::files};
 use glam::{DMat4, DVec2, DVec3};
 use serde::Deserialize;
 use std::path::Path;
@@ -102,11 +102,11 @@ fn default_up() -> [f64; 3] {
 impl View {
     /// Reads and checks a view file.
     pub fn read(path: &Path) -> Result<(View, Camera), SceneError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|source| SceneError::Read { path: path.to_owned(), source })?;
+        let text = files::read(path).map_err(|source| SceneError::Read { path: path.to_owned(), source })?;
         let invalid = |what: String| SceneError::Invalid { path: path.to_owned(), what };
-        let expected = "expected {\"eye\": [x,y,z], \"target\": [x,y,z], \"up\", \"yfov\" (degrees), \"width\", \"height\"}";
-        let view: View = serde_json::from_str(&text).map_err(|e| invalid(format!("not a view: {e}; {expected}")))?;
+        let expected =
+            "expected {\"eye\": [x,y,z], \"target\": [x,y,z], \"up\", \"yfov\" (degrees), \"width\", \"height\"}";
+        let view: View = serde_json::from_slice(&text).map_err(|e| invalid(format!("not a view: {e}; {expected}")))?;
         let name = path.file_stem().map_or("view".into(), |s| s.to_string_lossy().into_owned());
         let camera = view.camera(name).map_err(invalid)?;
         Ok((view, camera))

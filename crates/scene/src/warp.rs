@@ -48,10 +48,9 @@ mod tests {
         let normal = DVec3::new(0.6, 0.0, -0.8);
         let n = 100;
         let grid = |k: usize| (k as f64 + 0.5) / n as f64;
-        let mean: f64 = (0..n * n)
-            .map(|k| cosine_hemisphere(normal, [grid(k / n), grid(k % n)]).dot(normal))
-            .sum::<f64>()
-            / (n * n) as f64;
+        let mean: f64 =
+            (0..n * n).map(|k| cosine_hemisphere(normal, [grid(k / n), grid(k % n)]).dot(normal)).sum::<f64>()
+                / (n * n) as f64;
         assert!((mean - 2.0 / 3.0).abs() < 1e-4);
     }
 }

@@ -1,21 +1,29 @@
-//! Typed reading of accessors with every range checked.
+//! Accessors with every range checked before anything is read.
 
-use super::{Fault, get};
+use super::{Fault, container::Document, get};
 use glam::Vec3;
 use gltf::json::{
-    Accessor, Index, Root,
-    accessor::{ComponentType, Type},
+    Accessor, Index,
+    accessor::{ComponentType, Type, sparse::Sparse},
+    buffer::View,
     validation::Checked,
 };
 
-/// The file's lists and the bytes of its buffers.
-#[derive(Clone, Copy)]
-pub(super) struct Buffers<'a> {
-    pub root: &'a Root,
-    pub data: &'a [Vec<u8>],
+/// An accessor whose type and range are right; its elements are still bytes.
+pub(super) struct Column<'a> {
+    /// Where the file names it, for messages.
+    field: String,
+    elements: Elements<'a>,
+    changes: Option<Changes<'a>>,
 }
 
-/// The bytes of an accessor, element by element.
+/// Elements of a sparse accessor that differ from its buffer view.
+struct Changes<'a> {
+    places: Elements<'a>,
+    values: Elements<'a>,
+}
+
+/// `count` elements of `size` bytes, all within `bytes`.
 struct Elements<'a> {
     bytes: &'a [u8],
     count: usize,
@@ -30,83 +38,159 @@ impl<'a> Elements<'a> {
     }
 }
 
-impl<'a> Buffers<'a> {
-    /// A list of float32 vectors, every component finite.
-    pub fn vectors(&self, index: &Index<Accessor>, field: &str) -> Result<Vec<Vec3>, Fault> {
-        let accessor = get(&self.root.accessors, index, field)?;
-        let wanted = (Checked::Valid(Type::Vec3), ComponentType::F32);
-        match &accessor.component_type {
-            Checked::Valid(c) if (accessor.type_, c.0) == wanted => {}
-            _ => return Err(format!("{field}: the accessor must hold VEC3 of 32-bit float")),
+impl<'a> Column<'a> {
+    /// A list of float32 vectors.
+    pub fn vectors(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self, Fault> {
+        let accessor = get(&document.root.accessors, index, &field)?;
+        let float = component(accessor) == Some(ComponentType::F32);
+        if !float && component(accessor).is_some() || accessor.normalized {
+            let quantised = "quantised (KHR_mesh_quantization), not 32-bit float; export again without quantisation";
+            return Err(format!("{field}: the accessor is {quantised}"));
         }
-        let elements = self.elements(accessor, 12, 4, field)?;
-        let mut vectors = Vec::with_capacity(elements.count);
-        for (k, bytes) in elements.iter().enumerate() {
-            let at = |i: usize| f32::from_le_bytes([bytes[i], bytes[i + 1], bytes[i + 2], bytes[i + 3]]);
-            let vector = Vec3::new(at(0), at(4), at(8));
-            if !vector.is_finite() {
-                return Err(format!("{field}: element {k} is {vector}, not finite; repair the mesh and export again"));
-            }
-            vectors.push(vector);
+        if !float || accessor.type_ != Checked::Valid(Type::Vec3) {
+            return Err(format!("{field}: the accessor must hold VEC3 of 32-bit float"));
         }
-        Ok(vectors)
+        Column::new(document, accessor, 12, field)
     }
 
-    /// A list of vertex indices, each below `vertices`.
-    pub fn indices(&self, index: &Index<Accessor>, vertices: usize, field: &str) -> Result<Vec<u32>, Fault> {
-        let accessor = get(&self.root.accessors, index, field)?;
-        let scalar = accessor.type_ == Checked::Valid(Type::Scalar);
-        let size = match &accessor.component_type {
-            Checked::Valid(c) if scalar && c.0 == ComponentType::U8 => 1,
-            Checked::Valid(c) if scalar && c.0 == ComponentType::U16 => 2,
-            Checked::Valid(c) if scalar && c.0 == ComponentType::U32 => 4,
-            _ => return Err(format!("{field}: the accessor must hold unsigned integers")),
-        };
-        let elements = self.elements(accessor, size, size, field)?;
-        let mut indices = Vec::with_capacity(elements.count);
-        for (k, bytes) in elements.iter().enumerate() {
-            let value = bytes.iter().rev().fold(0u32, |sum, b| sum << 8 | u32::from(*b));
-            if value as usize >= vertices {
-                return Err(format!("{field}: index {value} at {k} is out of range, there are {vertices} vertices"));
+    /// A list of vertex indices.
+    pub fn indices(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self, Fault> {
+        let accessor = get(&document.root.accessors, index, &field)?;
+        let size = component(accessor).and_then(unsigned_size);
+        match size {
+            Some(size) if accessor.type_ == Checked::Valid(Type::Scalar) && !accessor.normalized => {
+                Column::new(document, accessor, size, field)
             }
-            indices.push(value);
+            _ => Err(format!("{field}: the accessor must hold SCALAR unsigned integers, not normalized")),
         }
-        Ok(indices)
     }
 
-    /// The bytes of `accessor` with elements of `size` bytes, all within the buffer.
-    fn elements(&self, accessor: &Accessor, size: usize, align: usize, field: &str) -> Result<Elements<'a>, Fault> {
-        if accessor.sparse.is_some() {
-            return Err(format!("{field}: sparse accessors are not read; export the mesh with its changes applied"));
-        }
+    fn new(document: &'a Document, accessor: &Accessor, size: usize, field: String) -> Result<Self, Fault> {
         let Some(view) = &accessor.buffer_view else {
-            return Err(format!("{field}: the accessor has no buffer view (compressed geometry?)"));
+            let way_out = "compressed geometry? export again without compression";
+            return Err(format!("{field}: the accessor has no bufferView ({way_out})"));
         };
-        let view = get(&self.root.buffer_views, view, "accessor.bufferView")?;
-        let data = self
-            .data
-            .get(view.buffer.value())
-            .ok_or_else(|| format!("{field}: bufferView.buffer {} is out of range", view.buffer.value()))?;
-        let stride = view.byte_stride.map_or(size, |s| s.0);
-        if stride < size || stride % align != 0 {
-            return Err(format!("{field}: byteStride {stride} does not fit elements of {size} bytes"));
-        }
-        let count = accessor.count.0;
-        let bytes = slice(data, view.byte_offset.map_or(0, |o| o.0), view.byte_length.0)
-            .and_then(|view| view.get(usize::try_from(accessor.byte_offset.map_or(0, |o| o.0)).ok()?..));
-        let needed = count
-            .checked_sub(1)
-            .map_or(Some(0), |last| last.checked_mul(stride as u64)?.checked_add(size as u64));
-        match (bytes, needed) {
-            (Some(bytes), Some(needed)) if needed <= bytes.len() as u64 => {
-                Ok(Elements { bytes, count: count as usize, stride, size })
+        let fault = |e: Fault| format!("{field}: {e}");
+        let offset = accessor.byte_offset.map_or(0, |o| o.0);
+        let run = Run { view, offset, count: accessor.count.0, size };
+        let elements = run.elements(document).map_err(fault)?;
+        let changes = accessor.sparse.as_ref().map(|s| Changes::new(document, s, size)).transpose();
+        let changes = changes.map_err(|e| fault(format!("sparse: {e}")))?;
+        Ok(Column { field, elements, changes })
+    }
+
+    pub fn len(&self) -> usize {
+        self.elements.count
+    }
+
+    /// The vectors, every component finite.
+    pub fn read_vectors(&self) -> Result<Vec<Vec3>, Fault> {
+        let vectors = self.read(|bytes| {
+            let at = |i: usize| f32::from_le_bytes([bytes[i], bytes[i + 1], bytes[i + 2], bytes[i + 3]]);
+            Vec3::new(at(0), at(4), at(8))
+        })?;
+        match vectors.iter().enumerate().find(|(_, v)| !v.is_finite()) {
+            Some((k, v)) => {
+                Err(format!("{}: element {k} is {v}, not finite; repair the mesh and export again", self.field))
             }
-            _ => Err(format!("{field}: {count} elements do not fit their buffer; is the file truncated?")),
+            None => Ok(vectors),
         }
+    }
+
+    /// The indices, each below `vertices`.
+    pub fn read_indices(&self, vertices: usize) -> Result<Vec<u32>, Fault> {
+        let indices = self.read(unsigned)?;
+        match indices.iter().enumerate().find(|(_, i)| **i as usize >= vertices) {
+            Some((k, i)) => {
+                Err(format!("{}: index {i} at {k} is out of range, there are {vertices} vertices", self.field))
+            }
+            None => Ok(indices),
+        }
+    }
+
+    fn read<T>(&self, decode: impl Fn(&[u8]) -> T) -> Result<Vec<T>, Fault> {
+        let mut list: Vec<T> = self.elements.iter().map(&decode).collect();
+        let Some(changes) = &self.changes else { return Ok(list) };
+        for (place, value) in changes.places.iter().zip(changes.values.iter()) {
+            let k = unsigned(place) as usize;
+            let slot = list.get_mut(k).ok_or_else(|| format!("{}: sparse index {k} is out of range", self.field))?;
+            *slot = decode(value);
+        }
+        Ok(list)
     }
 }
 
-fn slice(data: &[u8], offset: u64, length: u64) -> Option<&[u8]> {
-    let end = offset.checked_add(length)?;
-    data.get(usize::try_from(offset).ok()?..usize::try_from(end).ok()?)
+impl<'a> Changes<'a> {
+    fn new(document: &'a Document, sparse: &Sparse, size: usize) -> Result<Self, Fault> {
+        let count = sparse.count.0;
+        let (indices, values) = (&sparse.indices, &sparse.values);
+        let index_size = match &indices.component_type {
+            Checked::Valid(c) => unsigned_size(c.0),
+            Checked::Invalid => None,
+        };
+        let index_size = index_size.ok_or("the indices must be unsigned integers")?;
+        let places = Run { view: &indices.buffer_view, offset: indices.byte_offset.0, count, size: index_size };
+        let values = Run { view: &values.buffer_view, offset: values.byte_offset.0, count, size };
+        Ok(Changes { places: places.elements(document)?, values: values.elements(document)? })
+    }
+}
+
+/// Elements as the file describes them, in a buffer view.
+struct Run<'a> {
+    view: &'a Index<View>,
+    offset: u64,
+    count: u64,
+    size: usize,
+}
+
+impl Run<'_> {
+    /// The elements, if all lie within view and buffer.
+    fn elements<'a>(&self, document: &'a Document) -> Result<Elements<'a>, Fault> {
+        let view = get(&document.root.buffer_views, self.view, "accessor.bufferView")?;
+        let buffer = view.buffer.value();
+        let data = document.buffer(buffer).ok_or_else(|| format!("bufferView.buffer {buffer} is out of range"))?;
+        let (size, count) = (self.size, self.count);
+        let stride = view.byte_stride.map_or(size, |s| s.0);
+        if stride < size || stride % size.min(4) != 0 {
+            return Err(format!("byteStride {stride} does not fit elements of {size} bytes"));
+        }
+        let (start, length) = (view.byte_offset.map_or(0, |o| o.0), view.byte_length.0);
+        let Some(bytes) = part(data, start, length) else {
+            let have = data.len();
+            return Err(format!("the bufferView (bytes {start} + {length}) exceeds its buffer of {have} bytes"));
+        };
+        let bytes = part(bytes, self.offset, length.saturating_sub(self.offset)).unwrap_or_default();
+        let needed = count.checked_sub(1).map_or(Some(0), |n| n.checked_mul(stride as u64)?.checked_add(size as u64));
+        if needed.is_none_or(|n| n > bytes.len() as u64) {
+            let have = bytes.len();
+            return Err(format!("{count} elements of {size} bytes do not fit the {have} bytes of their bufferView"));
+        }
+        Ok(Elements { bytes, count: count as usize, stride, size })
+    }
+}
+
+fn part(data: &[u8], start: u64, length: u64) -> Option<&[u8]> {
+    let end = start.checked_add(length)?;
+    data.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?)
+}
+
+fn component(accessor: &Accessor) -> Option<ComponentType> {
+    match &accessor.component_type {
+        Checked::Valid(c) => Some(c.0),
+        Checked::Invalid => None,
+    }
+}
+
+fn unsigned_size(component: ComponentType) -> Option<usize> {
+    match component {
+        ComponentType::U8 => Some(1),
+        ComponentType::U16 => Some(2),
+        ComponentType::U32 => Some(4),
+        _ => None,
+    }
+}
+
+/// Little-endian.
+fn unsigned(bytes: &[u8]) -> u32 {
+    bytes.iter().rev().fold(0, |sum, b| sum << 8 | u32::from(*b))
 }

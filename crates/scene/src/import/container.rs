@@ -1,125 +1,141 @@
-//! The file as bytes: .glb or .gltf, its buffers, its node transforms in float64.
+//! The file as bytes: .glb or .gltf, and its buffers.
 
-use super::Fault;
+use super::{
+    Fault,
+    files::{self, Files},
+    nodes::NodeTransform,
+};
 use crate::SceneError;
-use base64::{Engine, engine::general_purpose::STANDARD};
-use glam::{DMat4, DQuat, DVec3};
 use gltf::json;
 use serde::Deserialize;
-use std::path::{Component, Path};
+use std::{ops::Range, path::Path, rc::Rc};
 
 /// A parsed file with its buffers; nothing in it is checked yet.
 pub(super) struct Document {
     pub root: json::Root,
-    pub buffers: Vec<Vec<u8>>,
-    transforms: Vec<NodeTransform>,
+    /// As the file has them: the gltf crate rounds them to float32. One for each node.
+    pub transforms: Vec<NodeTransform>,
+    bytes: Vec<u8>,
+    buffers: Vec<Buffer>,
 }
 
-/// Transforms as the file has them: the gltf crate rounds them to float32.
+/// Where the bytes of a buffer are.
+enum Buffer {
+    /// In the .glb itself.
+    Chunk(Range<usize>),
+    /// Read or decoded; buffers that name the same file share it.
+    Loaded(Rc<Vec<u8>>, usize),
+}
+
 #[derive(Deserialize)]
 struct Transforms {
     #[serde(default)]
     nodes: Vec<NodeTransform>,
 }
 
-#[derive(Deserialize)]
-struct NodeTransform {
-    matrix: Option<[f64; 16]>,
-    translation: Option<[f64; 3]>,
-    rotation: Option<[f64; 4]>,
-    scale: Option<[f64; 3]>,
-}
-
 impl Document {
     pub fn read(path: &Path) -> Result<Document, SceneError> {
-        let bytes = std::fs::read(path).map_err(|source| SceneError::Read { path: path.to_owned(), source })?;
-        Document::parse(&bytes, path).map_err(|what| SceneError::Invalid { path: path.to_owned(), what })
+        let bytes = files::read(path).map_err(|source| SceneError::Read { path: path.to_owned(), source })?;
+        Document::parse(bytes, path).map_err(|what| SceneError::Invalid { path: path.to_owned(), what })
     }
 
-    fn parse(bytes: &[u8], path: &Path) -> Result<Document, Fault> {
-        let (text, binary) = if bytes.starts_with(b"glTF") { split_glb(bytes)? } else { (bytes, None) };
+    fn parse(bytes: Vec<u8>, path: &Path) -> Result<Document, Fault> {
+        let whole = 0..bytes.len();
+        let (text, chunk) = if bytes.starts_with(b"glTF") { split_glb(&bytes)? } else { (whole, None) };
+        let text = &bytes[text];
+        let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text); // byte order mark of some editors
         let not_gltf = |e: json::Error| format!("not a glTF file (.glb or .gltf): {e}");
         let root: json::Root = json::deserialize::from_slice(text).map_err(not_gltf)?;
         let transforms: Transforms = json::deserialize::from_slice(text).map_err(not_gltf)?;
-        if !root.asset.version.starts_with("2.") {
-            return Err(format!("asset.version is `{}`; only glTF 2 is read", root.asset.version));
-        }
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let mut buffers = Vec::new();
+        check_version(&root.asset)?;
+        let mut files = Files::new(path);
+        let mut buffers = Vec::with_capacity(root.buffers.len());
         for (k, buffer) in root.buffers.iter().enumerate() {
-            let data = match (&buffer.uri, binary) {
-                (Some(uri), _) => read_uri(uri, folder).map_err(|e| format!("buffers[{k}].uri: {e}"))?,
-                (None, Some(chunk)) if k == 0 => chunk.to_vec(),
-                (None, _) => return Err(format!("buffers[{k}] has no uri and the file no binary chunk for it")),
-            };
-            if (data.len() as u64) < buffer.byte_length.0 {
-                let (have, want) = (data.len(), buffer.byte_length.0);
-                return Err(format!("buffers[{k}] holds {have} bytes, byteLength says {want}; is the file truncated?"));
-            }
-            buffers.push(data);
+            buffers.push(locate(k, buffer, chunk.clone(), &mut files)?);
         }
-        Ok(Document { root, buffers, transforms: transforms.nodes })
+        Ok(Document { root, transforms: transforms.nodes, bytes, buffers })
     }
 
-    /// A node's own transform; `index` is in range.
-    pub fn local_transform(&self, index: usize) -> DMat4 {
-        let t = &self.transforms[index];
-        if let Some(matrix) = &t.matrix {
-            return DMat4::from_cols_array(matrix);
+    /// The bytes of a buffer, as many as its `byteLength` says.
+    pub fn buffer(&self, index: usize) -> Option<&[u8]> {
+        match self.buffers.get(index)? {
+            Buffer::Chunk(range) => self.bytes.get(range.clone()),
+            Buffer::Loaded(data, length) => data.get(..*length),
         }
-        let rotation = DQuat::from_array(t.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]));
-        let length = rotation.length();
-        let rotation = if length > 0.0 { rotation / length } else { DQuat::IDENTITY };
-        DMat4::from_scale_rotation_translation(
-            DVec3::from_array(t.scale.unwrap_or([1.0; 3])),
-            rotation,
-            DVec3::from_array(t.translation.unwrap_or([0.0; 3])),
-        )
     }
 }
 
-/// JSON and binary chunk of a .glb file.
-fn split_glb(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Fault> {
-    let word = |at: usize| -> Result<u32, Fault> {
-        let four = bytes.get(at..at + 4).and_then(|b| b.try_into().ok());
-        four.map(u32::from_le_bytes).ok_or_else(|| "the .glb header is truncated".into())
+fn check_version(asset: &json::Asset) -> Result<(), Fault> {
+    if !asset.version.starts_with("2.") {
+        return Err(format!("asset.version is `{}`; only glTF 2 is read", asset.version));
+    }
+    match &asset.min_version {
+        Some(version) if version != "2.0" => Err(format!("asset.minVersion is `{version}`; only 2.0 is read")),
+        _ => Ok(()),
+    }
+}
+
+/// Finds the bytes of buffer `k`, and checks that they are as many as it says.
+fn locate(k: usize, buffer: &json::Buffer, chunk: Option<Range<usize>>, files: &mut Files) -> Result<Buffer, Fault> {
+    let wanted = buffer.byte_length.0;
+    let enough = |have: usize| match usize::try_from(wanted) {
+        Ok(wanted) if wanted <= have => Ok(wanted),
+        _ => Err(format!("buffers[{k}] holds {have} bytes, byteLength says {wanted}; is the file truncated?")),
     };
-    let version = word(4)?;
+    match (&buffer.uri, chunk) {
+        (Some(uri), _) => {
+            let data = files.resolve(uri).map_err(|e| format!("buffers[{k}].uri: {e}"))?;
+            let length = enough(data.len())?;
+            Ok(Buffer::Loaded(data, length))
+        }
+        (None, Some(chunk)) if k == 0 => {
+            let length = enough(chunk.len())?;
+            Ok(Buffer::Chunk(chunk.start..chunk.start + length))
+        }
+        (None, _) => Err(format!("buffers[{k}] has no uri and the file no binary chunk for it")),
+    }
+}
+
+/// A chunk of a .glb: its kind and where its content lies.
+struct Chunk {
+    kind: [u8; 4],
+    content: Range<usize>,
+}
+
+/// Where JSON and binary chunk of a .glb file lie. The binary chunk is the second, if there is one.
+fn split_glb(bytes: &[u8]) -> Result<(Range<usize>, Option<Range<usize>>), Fault> {
+    let version = word(bytes, 4)?;
     if version != 2 {
         return Err(format!("the .glb has version {version}; only version 2 is read"));
     }
-    let length = word(8)? as usize;
-    if length > bytes.len() {
+    let length = word(bytes, 8)? as usize;
+    let Some(bytes) = bytes.get(..length) else {
         return Err(format!("the .glb is truncated: {} of {length} bytes are there", bytes.len()));
-    }
-    let chunk = |at: usize, kind: &[u8; 4]| -> Result<(&[u8], usize), Fault> {
-        let size = word(at)? as usize;
-        let end = at.checked_add(8).and_then(|start| start.checked_add(size));
-        match end.filter(|end| *end <= bytes.len() && bytes.get(at + 4..at + 8) == Some(&kind[..])) {
-            Some(end) => Ok((&bytes[at + 8..end], end)),
-            None => Err(format!("the .glb has no whole {} chunk at byte {at}", kind.escape_ascii())),
-        }
     };
-    let (text, end) = chunk(12, b"JSON")?;
-    let end = end.next_multiple_of(4);
-    let binary = if end + 8 <= length { Some(chunk(end, b"BIN\0")?.0) } else { None };
-    Ok((text, binary))
+    let text = chunk_at(bytes, 12)?;
+    if &text.kind != b"JSON" {
+        return Err(format!("the first chunk of the .glb is `{}`, not `JSON`", text.kind.escape_ascii()));
+    }
+    let second = text.content.end.next_multiple_of(4);
+    if second >= length {
+        return Ok((text.content, None));
+    }
+    let binary = chunk_at(bytes, second)?;
+    // glTF wants chunks of other kinds to be ignored.
+    Ok((text.content, (&binary.kind == b"BIN\0").then_some(binary.content)))
 }
 
-/// A data URI, or a file in the scene's folder or below.
-fn read_uri(uri: &str, folder: &Path) -> Result<Vec<u8>, Fault> {
-    if let Some(data) = uri.strip_prefix("data:") {
-        let encoded = data.split_once(";base64,").ok_or("only base64 data is read")?.1;
-        return STANDARD.decode(encoded).map_err(|e| format!("not base64: {e}"));
+fn chunk_at(bytes: &[u8], at: usize) -> Result<Chunk, Fault> {
+    let size = word(bytes, at)? as usize;
+    let kind = word(bytes, at + 4)?.to_le_bytes();
+    let (start, left) = (at + 8, bytes.len() - (at + 8));
+    if size > left {
+        return Err(format!("the .glb chunk at byte {at} has {size} bytes, {left} are left; is the file truncated?"));
     }
-    let decoded = percent_encoding::percent_decode_str(uri)
-        .decode_utf8()
-        .map_err(|_| format!("`{uri}` is not UTF-8"))?;
-    let relative = Path::new(decoded.as_ref());
-    let inside = relative.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
-    if !inside || decoded.contains("://") {
-        return Err(format!("`{decoded}` is not a file in the scene's folder"));
-    }
-    let path = folder.join(relative);
-    std::fs::read(&path).map_err(|e| format!("{}: {e}", path.display()))
+    Ok(Chunk { kind, content: start..start + size })
+}
+
+fn word(bytes: &[u8], at: usize) -> Result<u32, Fault> {
+    let four = bytes.get(at..at.saturating_add(4)).and_then(|b| b.try_into().ok());
+    four.map(u32::from_le_bytes).ok_or_else(|| "the .glb header is truncated".into())
 }

@@ -1,6 +1,6 @@
 //! What a file asks for and we do not do: refused by name where the picture would be wrong, else a warning.
 
-use super::{Fault, Placed};
+use super::{Fault, nodes::Placed};
 use gltf::json;
 
 /// Extensions that a file may require.
@@ -51,33 +51,35 @@ pub(super) fn check_nodes(root: &json::Root, nodes: &[Placed], warnings: &mut Ve
             return Err(format!("node `{}`: morph targets are not supported; {BAKE}", placed.name));
         }
     }
+    let moves_a_mesh = above_meshes(root);
     for (k, animation) in root.animations.iter().enumerate() {
         let name = animation.name.clone().unwrap_or_else(|| format!("animation{k}"));
-        for channel in &animation.channels {
-            let node = channel.target.node.value();
-            if moves_a_mesh(root, node) {
-                return Err(format!("animation `{name}` moves a mesh (node {node}), which is not supported; {BAKE}"));
-            }
+        let targets = animation.channels.iter().map(|c| c.target.node.value());
+        if let Some(node) = targets.into_iter().find(|n| moves_a_mesh.get(*n) == Some(&true)) {
+            return Err(format!("animation `{name}` moves a mesh (node {node}), which is not supported; {BAKE}"));
         }
         warnings.push(format!("animation `{name}` is not used: cameras and lights stay at rest"));
     }
     Ok(())
 }
 
-/// True if the node or one below it carries a mesh. The nodes in use were found to be a tree; others may not be, so
-/// each is visited once.
-fn moves_a_mesh(root: &json::Root, node: usize) -> bool {
-    let mut seen = vec![false; root.nodes.len()];
-    let mut stack = vec![node];
-    while let Some(index) = stack.pop() {
-        let Some(node) = root.nodes.get(index) else { continue };
-        if std::mem::replace(&mut seen[index], true) {
-            continue;
+/// For each node, whether it or one below it carries a mesh. The nodes in use were found to be a tree; others may not
+/// be, so each is visited once.
+fn above_meshes(root: &json::Root) -> Vec<bool> {
+    let mut parents = vec![Vec::new(); root.nodes.len()];
+    for (k, node) in root.nodes.iter().enumerate() {
+        for child in node.children.iter().flatten() {
+            if let Some(list) = parents.get_mut(child.value()) {
+                list.push(k);
+            }
         }
-        if node.mesh.is_some() {
-            return true;
-        }
-        stack.extend(node.children.iter().flatten().map(|c| c.value()));
     }
-    false
+    let mut above = vec![false; root.nodes.len()];
+    let mut stack: Vec<usize> = (0..root.nodes.len()).filter(|k| root.nodes[*k].mesh.is_some()).collect();
+    while let Some(index) = stack.pop() {
+        if !std::mem::replace(&mut above[index], true) {
+            stack.extend(&parents[index]);
+        }
+    }
+    above
 }

@@ -1,6 +1,6 @@
 //! The file's lights, and their identity.
 
-use super::{Fault, ImportOptions, Light, Placed, get};
+use super::{Fault, ImportOptions, Light, Root, get, nodes::Placed};
 use crate::{
     Material,
     light::{AreaLight, DirectionalLight, PointLight, Spot},
@@ -8,10 +8,10 @@ use crate::{
 };
 use glam::DVec3;
 use gltf::json::{
-    Root,
     extensions::scene::khr_lights_punctual::{Light as Punctual, Type},
     validation::Checked,
 };
+use std::f64::consts::FRAC_PI_2;
 
 /// Lights with a digest of everything that defines them.
 #[derive(Default)]
@@ -30,13 +30,55 @@ impl Lights {
 
     /// One area light for each emitting material that is on the mesh.
     pub fn add_emitters(&mut self, mesh: &Mesh, materials: &[Material]) {
-        for (k, m) in materials.iter().enumerate().filter(|(_, m)| m.emits()) {
-            if let Some(light) = AreaLight::new(mesh, k as u16, m.emission, m.double_sided) {
+        let mut triangles = vec![Vec::new(); materials.len()];
+        for (k, t) in mesh.triangles.iter().enumerate() {
+            if materials[t.material as usize].emits() {
+                triangles[t.material as usize].push(k);
+            }
+        }
+        for (k, m) in materials.iter().enumerate() {
+            if let Some(light) = AreaLight::new(mesh, &triangles[k], m.emission, m.double_sided) {
                 self.note(3, &[k as f64, f64::from(u8::from(m.double_sided))]);
                 self.note(3, &m.emission.to_array());
                 self.list.push(Box::new(light));
             }
         }
+    }
+
+    /// Adds the light of a node.
+    fn add(&mut self, light: &Punctual, place: &Place, power: DVec3, metres_per_unit: f64) -> Result<(), Fault> {
+        match light.type_ {
+            Checked::Valid(Type::Directional) => {
+                let axis = place.axis()?;
+                self.note(1, &[axis.to_array(), power.to_array()].concat());
+                self.list.push(Box::new(DirectionalLight { direction: -axis, irradiance: power }));
+            }
+            Checked::Valid(kind) => {
+                let spot = if kind == Type::Spot { Some(spot_of(light, place.axis()?)?) } else { None };
+                let range = range_of(light, metres_per_unit)?;
+                self.note(2, &[place.position.to_array(), power.to_array()].concat());
+                self.note(2, &spot.map_or(vec![], |s| vec![s.axis.x, s.axis.y, s.axis.z, s.cos_inner, s.cos_outer]));
+                self.note(2, &[range.unwrap_or(f64::INFINITY)]);
+                self.list.push(Box::new(PointLight { position: place.position, intensity: power, spot, range }));
+            }
+            Checked::Invalid => return Err("its type is not directional, point or spot".into()),
+        }
+        Ok(())
+    }
+}
+
+/// Where a light is.
+struct Place<'a> {
+    node: &'a Placed<'a>,
+    /// m, relative to the scene's origin.
+    position: DVec3,
+}
+
+impl Place<'_> {
+    /// Unit vector that the light shines along.
+    fn axis(&self) -> Result<DVec3, Fault> {
+        let axis = self.node.transform.transform_vector3(DVec3::NEG_Z).try_normalize();
+        axis.ok_or_else(|| "its node's matrix has no direction (scale 0?)".into())
     }
 }
 
@@ -51,57 +93,45 @@ pub(super) fn punctual(
 ) -> Result<Lights, Fault> {
     let mut lights = Lights::default();
     let defined = root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
-    for placed in nodes {
-        let Some(reference) = placed.node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref()) else {
+    for node in nodes {
+        let Some(reference) = node.node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref()) else {
             continue;
         };
-        let defined = defined.ok_or("a node names a light but the file defines none")?;
-        let light = get(&defined.lights, &reference.light, "KHR_lights_punctual.light")?;
-        let fault = |what: &str| format!("light of node `{}`: {what}", placed.name);
-        let color = DVec3::from_array(light.color.map(f64::from));
-        let power = color * f64::from(light.intensity) * options.light_unit.watts();
-        if !power.is_finite() || power.min_element() < 0.0 {
-            return Err(fault("color times intensity must be finite and not negative"));
-        }
+        let fault = |what: Fault| format!("light of node `{}`: {what}", node.name);
+        let defined = defined.ok_or("the file has no `lights` in KHR_lights_punctual".into()).map_err(fault)?;
+        let light = get(&defined.lights, &reference.light, "KHR_lights_punctual.light").map_err(fault)?;
+        let power = power_of(light, options).map_err(fault)?;
         if power == DVec3::ZERO {
-            warnings.push(fault("its intensity is 0"));
+            warnings.push(fault("its intensity is 0".into()));
             continue;
         }
-        let axis = placed.transform.transform_vector3(DVec3::NEG_Z).try_normalize();
-        let axis = axis.ok_or_else(|| fault("its node's matrix has no direction (scale 0?)"))?;
-        let position = placed.transform.transform_point3(DVec3::ZERO) - origin;
-        if light.type_ == Checked::Valid(Type::Directional) {
-            lights.note(1, &[axis.to_array(), power.to_array()].concat());
-            lights.list.push(Box::new(DirectionalLight { direction: -axis, irradiance: power }));
-            continue;
-        }
-        let spot = spot_of(light, axis).map_err(|e| fault(&e))?;
-        let range = range_of(light, options).map_err(|e| fault(&e))?;
-        lights.note(2, &[position.to_array(), power.to_array()].concat());
-        lights.note(2, &spot.map_or(vec![], |s| vec![axis.x, axis.y, axis.z, s.cos_inner, s.cos_outer]));
-        lights.note(2, &[range.unwrap_or(f64::INFINITY)]);
-        lights.list.push(Box::new(PointLight { position, intensity: power, spot, range }));
+        let position = node.transform.transform_point3(DVec3::ZERO) - origin;
+        lights.add(light, &Place { node, position }, power, options.metres_per_unit).map_err(fault)?;
     }
     Ok(lights)
 }
 
-fn spot_of(light: &Punctual, axis: DVec3) -> Result<Option<Spot>, Fault> {
-    match (&light.type_, &light.spot) {
-        (Checked::Valid(Type::Point), _) => Ok(None),
-        (Checked::Valid(Type::Spot), Some(cone)) => {
-            let (inner, outer) = (f64::from(cone.inner_cone_angle), f64::from(cone.outer_cone_angle));
-            if !(inner >= 0.0 && inner < outer && outer <= std::f64::consts::FRAC_PI_2 + 1e-6) {
-                return Err(format!("cone angles {inner}, {outer} must satisfy 0 <= inner < outer <= pi/2"));
-            }
-            Ok(Some(Spot { axis, cos_inner: inner.cos(), cos_outer: outer.cos() }))
-        }
-        (Checked::Valid(Type::Spot), None) => Err("a spot light without its `spot` object".into()),
-        _ => Err("its type is not directional, point or spot".into()),
+/// W/m² or W/sr.
+fn power_of(light: &Punctual, options: &ImportOptions) -> Result<DVec3, Fault> {
+    let power = DVec3::from_array(light.color.map(f64::from)) * f64::from(light.intensity);
+    if !power.is_finite() || power.min_element() < 0.0 {
+        return Err(format!("color times intensity, {power}, must be finite and not negative"));
     }
+    Ok(power * options.light_unit.watts())
 }
 
-fn range_of(light: &Punctual, options: &ImportOptions) -> Result<Option<f64>, Fault> {
-    let range = light.range.map(|r| f64::from(r) * options.metres_per_unit);
+/// A sharp cone (inner = outer) is beyond the letter of glTF, but its falloff has a width for it.
+fn spot_of(light: &Punctual, axis: DVec3) -> Result<Spot, Fault> {
+    let cone = light.spot.as_ref().ok_or("a spot light without its `spot` object")?;
+    let (inner, outer) = (f64::from(cone.inner_cone_angle), f64::from(cone.outer_cone_angle));
+    if !(inner >= 0.0 && inner <= outer && outer > 0.0 && outer <= FRAC_PI_2 + 1e-6) {
+        return Err(format!("spot: innerConeAngle {inner}, outerConeAngle {outer} must be 0 <= inner < outer <= pi/2"));
+    }
+    Ok(Spot { axis, cos_inner: inner.cos(), cos_outer: outer.cos() })
+}
+
+fn range_of(light: &Punctual, metres_per_unit: f64) -> Result<Option<f64>, Fault> {
+    let range = light.range.map(|r| f64::from(r) * metres_per_unit);
     match range {
         Some(r) if !(r > 0.0 && r.is_finite()) => Err(format!("range {r} must be positive")),
         range => Ok(range),

@@ -30,13 +30,13 @@ pub struct AreaLight {
 }
 
 impl AreaLight {
-    /// The triangles of `mesh` with material index `material`, emitting `radiance`, W/(m² sr); none if there are none.
-    pub fn new(mesh: &Mesh, material: u16, radiance: DVec3, double_sided: bool) -> Option<AreaLight> {
+    /// These triangles of `mesh`, emitting `radiance`, W/(m² sr); none if there are none.
+    pub fn new(mesh: &Mesh, triangles: &[usize], radiance: DVec3, double_sided: bool) -> Option<AreaLight> {
         let (mut emitters, mut area) = (Vec::new(), 0.0);
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for (k, _) in mesh.triangles.iter().enumerate().filter(|(_, t)| t.material == material) {
-            let corners = mesh.corners(k);
-            area += mesh.area(k);
+        for k in triangles {
+            let corners = mesh.corners(*k);
+            area += mesh.area(*k);
             corners.iter().for_each(|c| (low, high) = (low.min(*c), high.max(*c)));
             let normal = unit((corners[1] - corners[0]).cross(corners[2] - corners[0]));
             emitters.push(Emitter { corners, normal, area_so_far: area });

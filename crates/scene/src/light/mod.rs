@@ -48,13 +48,7 @@ pub enum Lit {
 
 /// Picks one light by importance, then a direction, and looks whether it is visible (method.md 6.4). Light must come
 /// from above the triangle, whatever normal the cosine is taken with. `shadow_rays` counts the rays traced.
-pub fn light_at(
-    lights: &[Box<dyn Light>],
-    rays: &Rays,
-    at: &SurfacePoint,
-    xi: [f64; 3],
-    shadow_rays: &mut u64,
-) -> Lit {
+pub fn light_at(lights: &[Box<dyn Light>], rays: &Rays, at: &SurfacePoint, xi: [f64; 3], shadow_rays: &mut u64) -> Lit {
     let Some((index, probability)) = pick(lights, at, xi[0]) else {
         return Lit::FacingAway;
     };
@@ -97,7 +91,7 @@ pub fn all_light_at(
 /// A light and the probability of having been picked, in proportion to its importance; none if all are zero.
 pub fn pick(lights: &[Box<dyn Light>], at: &SurfacePoint, xi: f64) -> Option<(usize, f64)> {
     let total: f64 = lights.iter().map(|l| l.importance(at)).sum();
-    if !(total > 0.0) {
+    if total.is_nan() || total <= 0.0 {
         return None;
     }
     let mut left = xi * total;

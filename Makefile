@@ -1,0 +1,123 @@
+# The pipeline: scene -> cloud -> images. `make help` lists what there is.
+#
+# Every recipe is $(SUBMIT) program --threads $(THREADS) ... -o $@: it reads files, writes one, and never asks.
+
+.DELETE_ON_ERROR:
+.SECONDARY:
+.SUFFIXES:
+unexport MAKEFLAGS
+
+OUT     ?= out
+THREADS ?= $(shell nproc)
+SUBMIT  ?=
+CARGO   ?= cargo
+SAMPLES ?= 100k
+SEED    ?= 0
+SPP     ?= 4
+MODEL   ?= directional-dipole
+
+BIN := target/release
+SAMPLE := $(BIN)/sample-surface
+GATHER := $(BIN)/gather
+MAKE_SCENES := $(BIN)/make-scenes
+RUN_NAME := k$(SAMPLES)-s$(SEED)
+
+# The gallery: scene:medium, each from every view of the scene in data/views.
+GALLERY := figure:skin1 figure:wholemilk sphere:skimmilk slivers:ketchup slab:marble
+
+pictures_of = $(patsubst data/views/$(1)/%.json,$(OUT)/$(1)/$(RUN_NAME)/$(2)-$(MODEL)/%.exr,$(wildcard data/views/$(1)/*.json))
+PICTURES := $(foreach g,$(GALLERY),$(call pictures_of,$(word 1,$(subst :, ,$(g))),$(word 2,$(subst :, ,$(g)))))
+
+ifdef SCENE
+.DEFAULT_GOAL := own
+else
+.DEFAULT_GOAL := gallery
+endif
+
+.PHONY: gallery own own-images build test slow lint scenes clouds images help clean clean-images
+
+## gallery: build, and render every scene, medium and view of the gallery (what `make` does)
+gallery: build
+	@$(MAKE) --no-print-directory images
+	@echo "The pictures are in $(OUT)/: see $(OUT)/figure/$(RUN_NAME)/*/*.png; beside each lies its OpenEXR image."
+
+## images: the gallery's images, with programs that are built
+images: $(PICTURES)
+
+## clouds: the gallery's clouds
+clouds: $(foreach s,$(sort $(foreach g,$(GALLERY),$(word 1,$(subst :, ,$(g))))),$(OUT)/$(s)/$(RUN_NAME).cloud)
+
+## build: the programs, optimised
+build:
+	$(CARGO) build --release --workspace --quiet
+
+# A cloud depends on its scene and on the format's version; programs are order-only, so a rebuild keeps clouds. What
+# else changes a cloud (samples, seed) is in its name.
+$(OUT)/%/$(RUN_NAME).cloud: data/scenes/%.glb crates/formats/cloud-version | $(SAMPLE)
+	@mkdir -p $(@D)
+	$(SUBMIT) $(SAMPLE) --threads $(THREADS) --seed $(SEED) --samples $(SAMPLES) --quiet $< -o $@
+
+# $(1) scene, $(2) medium, $(3) view
+define picture
+$(OUT)/$(1)/$(RUN_NAME)/$(2)-$(MODEL)/$(3).exr: $(OUT)/$(1)/$(RUN_NAME).cloud data/media/$(2).json data/views/$(1)/$(3).json | $(GATHER)
+	@mkdir -p $$(@D)
+	$$(SUBMIT) $$(GATHER) --threads $$(THREADS) --seed $$(SEED) --spp $$(SPP) --bssrdf $$(MODEL) --medium data/media/$(2).json \
+	  --view data/views/$(1)/$(3).json --preview $$(basename $$@).png --exposure $$(or $$(EXPOSURE_$(1)),0) --quiet $$< data/scenes/$(1).glb -o $$@
+endef
+$(foreach g,$(GALLERY),$(foreach v,$(notdir $(basename $(wildcard data/views/$(word 1,$(subst :, ,$(g)))/*.json))),\
+$(eval $(call picture,$(word 1,$(subst :, ,$(g))),$(word 2,$(subst :, ,$(g))),$(v)))))
+
+# A user's own file: make SCENE=path.glb MEDIUM=marble [SAMPLES=4M], one image for each of its cameras.
+ifdef SCENE
+MEDIUM ?= marble
+OWN := $(OUT)/$(notdir $(basename $(SCENE)))/$(RUN_NAME)
+OWN_IMAGES := $(OWN)/$(notdir $(basename $(MEDIUM)))-$(MODEL)
+
+own: build
+	@$(MAKE) --no-print-directory own-images CAMERAS="$$($(GATHER) --list-cameras --quiet '$(SCENE)' | cut -f1 | tr '\n' ' ')"
+	@echo "The pictures are in $(OWN_IMAGES)/: one .png and one OpenEXR image for each camera, by its number."
+
+own-images: $(foreach c,$(CAMERAS),$(OWN_IMAGES)/camera$(c).exr)
+
+$(OWN).cloud: $(SCENE) crates/formats/cloud-version | $(SAMPLE)
+	@mkdir -p $(@D)
+	$(SUBMIT) $(SAMPLE) --threads $(THREADS) --seed $(SEED) --samples $(SAMPLES) $(foreach t,$(TRANSLUCENT),--translucent $(t)) '$<' -o $@
+
+$(OWN_IMAGES)/camera%.exr: $(OWN).cloud $(wildcard $(MEDIUM)) | $(GATHER)
+	@mkdir -p $(@D)
+	$(SUBMIT) $(GATHER) --threads $(THREADS) --seed $(SEED) --spp $(SPP) --bssrdf $(MODEL) --medium $(MEDIUM) --camera $* \
+	  --preview $(basename $@).png --exposure $(or $(EXPOSURE),0) $< '$(SCENE)' -o $@
+endif
+
+$(SAMPLE) $(GATHER) $(MAKE_SCENES): | build ;
+
+## scenes: write data/scenes and data/views again
+scenes: build
+	$(MAKE_SCENES) data
+
+## test: all fast tests
+test:
+	$(CARGO) test --workspace --quiet
+
+## slow: statistical and stability tests at full sample counts
+slow:
+	$(CARGO) test --release --package pipeline-tests --features slow
+
+## lint: formatting, and clippy without warnings
+lint:
+	$(CARGO) fmt --all --check
+	$(CARGO) clippy --workspace --all-targets --quiet -- -D warnings
+
+## clean-images: remove images, keep clouds
+clean-images:
+	find $(OUT) \( -name '*.exr' -o -name '*.png' \) -delete
+
+## clean: remove all that was rendered
+clean:
+	rm -rf $(OUT)
+
+## help: this list
+help:
+	@sed -n 's/^## /  make /p' $(MAKEFILE_LIST)
+	@echo "  make SCENE=path.glb MEDIUM=marble [SAMPLES=4M] [TRANSLUCENT=Wax] [EXPOSURE=1]: your own file, one image a camera"
+	@echo "  variables: OUT=$(OUT) THREADS=$(THREADS) SUBMIT=$(SUBMIT) SAMPLES=$(SAMPLES) SEED=$(SEED) SPP=$(SPP) MODEL=$(MODEL)"

@@ -1,0 +1,48 @@
+//! The file's cameras.
+
+use super::{Fault, get, nodes::Placed};
+use crate::{Camera, Projection};
+use gltf::json::{self, camera::Type, validation::Checked};
+use std::f64::consts::PI;
+
+/// One camera for each node that carries one, in the order of the nodes.
+pub(super) fn read(root: &json::Root, nodes: &[Placed], metres_per_unit: f64) -> Result<Vec<Camera>, Fault> {
+    let mut cameras = Vec::new();
+    for placed in nodes {
+        let Some(index) = &placed.node.camera else { continue };
+        let fault = |what: Fault| format!("camera of node `{}`: {what}", placed.name);
+        let camera = get(&root.cameras, index, "node.camera").map_err(fault)?;
+        cameras.push(of_node(placed, camera, metres_per_unit).map_err(fault)?);
+    }
+    Ok(cameras)
+}
+
+fn of_node(placed: &Placed, camera: &json::Camera, metres_per_unit: f64) -> Result<Camera, Fault> {
+    let (projection, aspect) = match (&camera.type_, &camera.perspective, &camera.orthographic) {
+        (Checked::Valid(Type::Perspective), Some(p), _) => {
+            (perspective(f64::from(p.yfov))?, p.aspect_ratio.map(f64::from))
+        }
+        (Checked::Valid(Type::Orthographic), _, Some(o)) => {
+            let half_height = f64::from(o.ymag) * metres_per_unit;
+            if !(half_height > 0.0 && half_height.is_finite()) {
+                return Err(format!("ymag {} must be positive", o.ymag));
+            }
+            (Projection::Orthographic { half_height }, Some(f64::from(o.xmag) / f64::from(o.ymag)))
+        }
+        _ => return Err("neither a perspective nor an orthographic projection".into()),
+    };
+    if let Some(a) = aspect.filter(|a| !(*a > 0.0 && a.is_finite())) {
+        return Err(format!("its aspect ratio {a} must be positive"));
+    }
+    Camera::of_node(placed.name.clone(), &placed.transform, projection, aspect)
+        .ok_or_else(|| "its node's matrix has no direction (scale 0?)".into())
+}
+
+fn perspective(yfov: f64) -> Result<Projection, Fault> {
+    let tangent = (0.5 * yfov).tan();
+    // Beyond pi the tangent is that of another angle.
+    if !(yfov > 0.0 && yfov < PI && tangent.is_finite()) {
+        return Err(format!("yfov {yfov} must lie between 0 and pi"));
+    }
+    Ok(Projection::Perspective { tangent })
+}

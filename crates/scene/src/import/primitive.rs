@@ -1,0 +1,99 @@
+//! The primitives of a mesh, checked but not read: a mesh may be placed many times, or be too large to place at all.
+
+use super::{Fault, accessor::Column, container::Document};
+use gltf::json::{
+    self,
+    mesh::{Mode, Primitive, Semantic},
+    validation::Checked,
+};
+
+/// The triangles of a mesh.
+#[derive(Default)]
+pub(super) struct MeshParts<'a> {
+    pub list: Vec<Part<'a>>,
+    pub triangles: u64,
+    pub vertices: u64,
+}
+
+/// A primitive: where its vertices and triangles are in the file.
+pub(super) struct Part<'a> {
+    pub positions: Column<'a>,
+    pub normals: Option<Column<'a>>,
+    pub indices: Option<Column<'a>>,
+    /// The material's index; one past the file's last for primitives without.
+    pub material: u16,
+    mode: Mode,
+}
+
+impl<'a> MeshParts<'a> {
+    /// Checks the primitives of a mesh; `warnings` tells which make no triangles.
+    pub fn new(
+        document: &'a Document,
+        mesh: &json::Mesh,
+        name: &str,
+        warnings: &mut Vec<String>,
+    ) -> Result<Self, Fault> {
+        let mut parts = MeshParts::default();
+        for (k, primitive) in mesh.primitives.iter().enumerate() {
+            let name = format!("mesh `{name}`, primitive {k}");
+            let Checked::Valid(mode) = primitive.mode else {
+                return Err(format!("{name}: unknown mode"));
+            };
+            if matches!(mode, Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) {
+                warnings.push(format!("{name}: points and lines are left out"));
+                continue;
+            }
+            let part = Part::new(document, primitive, mode, &name)?;
+            let triangles = part.triangle_count();
+            if triangles == 0 {
+                warnings.push(format!("{name}: makes no triangle"));
+            }
+            parts.triangles += triangles;
+            parts.vertices += part.positions.len() as u64;
+            parts.list.push(part);
+        }
+        Ok(parts)
+    }
+}
+
+impl<'a> Part<'a> {
+    fn new(document: &'a Document, primitive: &Primitive, mode: Mode, name: &str) -> Result<Self, Fault> {
+        let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic));
+        let position = attribute(Semantic::Positions).ok_or_else(|| format!("{name}: no POSITION"))?;
+        let positions = Column::vectors(document, position, format!("{name}: POSITION"))?;
+        let normals = attribute(Semantic::Normals);
+        let normals = normals.map(|n| Column::vectors(document, n, format!("{name}: NORMAL"))).transpose()?;
+        if let Some(normals) = normals.as_ref().filter(|n| n.len() != positions.len()) {
+            return Err(format!("{name}: NORMAL has {} elements, POSITION {}", normals.len(), positions.len()));
+        }
+        let indices = primitive.indices.as_ref();
+        let indices = indices.map(|i| Column::indices(document, i, format!("{name}: indices"))).transpose()?;
+        let materials = document.root.materials.len();
+        let material = primitive.material.as_ref().map_or(materials, |m| m.value());
+        if primitive.material.is_some() && material >= materials {
+            return Err(format!("{name}: material index {material} is out of range, there are {materials}"));
+        }
+        let material = u16::try_from(material).map_err(|_| format!("{name}: too many materials"))?;
+        Ok(Part { positions, normals, indices, material, mode })
+    }
+
+    fn triangle_count(&self) -> u64 {
+        let corners = self.indices.as_ref().map_or(self.positions.len(), Column::len) as u64;
+        match self.mode {
+            Mode::TriangleStrip | Mode::TriangleFan => corners.saturating_sub(2),
+            _ => corners / 3,
+        }
+    }
+
+    /// Corner indices of the triangles; a remainder that makes no triangle is dropped, as glTF says.
+    pub fn triangles(&self, indices: &[u32]) -> Vec<[u32; 3]> {
+        match self.mode {
+            Mode::TriangleStrip => {
+                let turn = |(k, w): (usize, &[u32])| if k % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] };
+                indices.windows(3).enumerate().map(turn).collect()
+            }
+            Mode::TriangleFan => indices.windows(2).skip(1).map(|w| [indices[0], w[0], w[1]]).collect(),
+            _ => indices.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect(),
+        }
+    }
+}

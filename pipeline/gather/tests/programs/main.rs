@@ -1,0 +1,5 @@
+//! The programs as users start them.
+
+mod bad_input;
+mod pipeline;
+mod support;

@@ -1,0 +1,10 @@
+//! The equations of method.md against independent numbers, closed forms and quadrature.
+
+#[path = "equations/fits.rs"]
+mod fits;
+#[path = "equations/media.rs"]
+mod media;
+#[path = "equations/plane.rs"]
+mod plane;
+#[path = "equations/vectors.rs"]
+mod vectors;

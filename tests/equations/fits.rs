@@ -1,0 +1,72 @@
+//! The published fits of the interface against the integrals that they stand for.
+
+use bssrdf::{Interface, fresnel};
+use std::f64::consts::PI;
+use support::quadrature::integrate;
+
+/// `∫₀¹ f(c) dc` where f has a root's cusp at the critical angle of an interface to `eta_ratio`: split there, with the
+/// root taken out by squaring the variable.
+fn over_cosine(eta_ratio: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let critical = if eta_ratio < 1.0 { (1.0 - eta_ratio * eta_ratio).sqrt() } else { 0.0 };
+    let beyond = 1.0 - critical;
+    let above = integrate(0.0, beyond.sqrt(), 40, |u| 2.0 * u * f(critical + u * u));
+    let below = if critical > 0.0 { integrate(0.0, critical, 4, &f) } else { 0.0 };
+    above + below
+}
+
+/// `C_i(n) = ∫ (1 − T(c, 1/n)) cⁱ dc`.
+fn moment(n: f64, power: i32) -> f64 {
+    over_cosine(1.0 / n, |c| (1.0 - fresnel::transmittance(c, 1.0 / n)) * c.powi(power))
+}
+
+/// How far the fits are off: by about 10⁻⁴ at most below 1; above, most where the branches meet at 1.
+#[test]
+fn fresnel_moments_are_as_close_as_published() {
+    for (low, high, first, second) in [(0.5, 0.99, 8e-5, 1.3e-4), (1.0, 1.25, 4.1e-3, 7e-3), (1.3, 2.5, 3e-3, 6e-3)] {
+        let mut worst = [0.0f64; 2];
+        for k in 0..=50 {
+            let n = low + (high - low) * f64::from(k) / 50.0;
+            worst[0] = worst[0].max((fresnel::twice_first_moment(n) - 2.0 * moment(n, 1)).abs());
+            worst[1] = worst[1].max((fresnel::thrice_second_moment(n) - 3.0 * moment(n, 2)).abs());
+        }
+        println!("{low} to {high}: 2C1 {:.1e}, 3C2 {:.1e}", worst[0], worst[1]);
+        assert!(worst[0] < first && worst[1] < second, "{low} to {high}: {worst:?}");
+    }
+}
+
+/// The fit of Egan and Hilgeman is one of `2C₁` too, to three digits.
+#[test]
+fn diffuse_reflectance_is_the_first_moment() {
+    for (low, high, allowed) in [(0.6, 0.98, 2e-3), (1.04, 2.0, 2e-3)] {
+        let mut worst = 0.0f64;
+        for k in 0..=50 {
+            let eta = low + (high - low) * f64::from(k) / 50.0;
+            worst = worst.max((fresnel::diffuse_reflectance(eta) - 2.0 * moment(eta, 1)).abs());
+        }
+        assert!(worst < allowed, "{low} to {high}: {worst}");
+        println!("{low} to {high}: {worst:.1e}");
+    }
+}
+
+/// `∫ T21 cos θ dω = π(1 − 2C₁(1/η)) = 4π C_φ(1/η)`: what normalises the exit lobe.
+#[test]
+fn transmitted_lobe_has_the_norm_of_the_exit() {
+    for eta in [1.05, 1.3, 1.5, 2.0] {
+        let lobe = 2.0 * PI * over_cosine(eta, |c| fresnel::transmittance(c, eta) * c);
+        let (exact, fit) = (PI * (1.0 - 2.0 * moment(1.0 / eta, 1)), PI * Interface::new(eta).exit_norm);
+        assert!((lobe / exact - 1.0).abs() < 1e-10, "{eta}: {lobe} for {exact}");
+        // The fit's error of 2C₁ below 1.
+        assert!((lobe - fit).abs() < PI * 8e-5, "{eta}: {lobe} for {fit}");
+    }
+}
+
+/// (2.7): both forms of `A_C`, and `A_F` from the same moments.
+#[test]
+fn boundary_factor_has_two_forms() {
+    for eta in [0.6, 0.9, 1.0, 1.3, 1.5, 2.4] {
+        let boundary = Interface::new(eta);
+        let other = (1.0 + fresnel::thrice_second_moment(eta)) / (1.0 - fresnel::twice_first_moment(eta));
+        assert!((boundary.reflection / other - 1.0).abs() < 1e-12, "{eta}");
+        assert!(boundary.reflection > 0.0 && boundary.reflection_egan > 0.0, "{eta}");
+    }
+}

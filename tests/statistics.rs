@@ -1,0 +1,17 @@
+//! Do samplers follow their densities, and are means right? Every test names the planted errors that it was seen to
+//! catch.
+//!
+//! Seeds are fixed: a test that passed once passes always. Were they drawn anew, a correct program would fail one of
+//! the decisions once in a thousand runs (`support::FALSE_ALARM_RATE`). The feature `slow` runs the same statistics
+//! with more samples.
+
+#[path = "statistics/means.rs"]
+mod means;
+#[path = "statistics/paths.rs"]
+mod paths;
+#[path = "statistics/roulette.rs"]
+mod roulette;
+#[path = "statistics/sampling.rs"]
+mod sampling;
+#[path = "statistics/slab.rs"]
+mod slab;

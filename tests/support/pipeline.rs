@@ -1,0 +1,155 @@
+//! Both phases as functions: a scene to a cloud, a cloud to radiance at a point.
+
+use crate::meshes::World;
+use bssrdf::{
+    Medium, Model,
+    lanes::{BetterLanes, DirectionalLanes, LaneModel, StandardLanes},
+    simd,
+};
+use formats::{
+    atomic::Output,
+    cloud::{self, Cloud, Options},
+};
+use gather::{
+    estimator::{Estimator, Exhaustive, Roulette, Rule, Sum},
+    samples::{Exit, LitSamples},
+};
+use glam::DVec3;
+use sample_surface::{Choice, Plan, Sampled, Settings};
+use scene::NormalKind;
+use std::path::Path;
+
+/// How phase one samples in a test.
+#[derive(Clone, Copy, Debug)]
+pub struct Sampling {
+    pub samples: u64,
+    pub choice: Choice,
+    pub seed: u64,
+}
+
+/// Independent samples by area.
+pub fn by_area(samples: u64, seed: u64) -> Sampling {
+    Sampling { samples, choice: Choice::Area, seed }
+}
+
+/// Phase one in memory.
+pub fn sampled(world: &World, sampling: &Sampling) -> Sampled {
+    let settings = Settings {
+        samples: sampling.samples,
+        choice: sampling.choice,
+        normals: NormalKind::Geometric,
+        translucent: Vec::new(),
+        options: Options {
+            seed: sampling.seed,
+            choice: sampling.choice.name().into(),
+            pattern: "independent".into(),
+            normals: "geometric".into(),
+            metres_per_unit: 1.0,
+            light_unit: "radiometric".into(),
+            environment: [0.0; 3],
+        },
+    };
+    let plan = Plan::new(&world.scene, &settings).expect("the scene has light and a surface");
+    sample_surface::sample(&world.scene, &world.rays, &settings, &plan, |_| ()).expect("every flux is finite")
+}
+
+/// Writes what phase one made.
+pub fn write(sampled: &Sampled, path: &Path) {
+    let mut output = Output::create(path).expect("the temporary folder is writable");
+    cloud::write(&mut output, path, &sampled.samples, &sampled.meta).expect("the temporary folder is writable");
+    output.commit().expect("the temporary folder is writable");
+}
+
+/// Phase one to a file and back.
+pub fn cloud(world: &World, sampling: &Sampling) -> Cloud {
+    let folder = tempfile::tempdir().expect("the temporary folder is writable");
+    let path = folder.path().join("test.cloud");
+    write(&sampled(world, sampling), &path);
+    Cloud::open(&path).expect("the cloud was written whole")
+}
+
+/// A cloud lit into a medium, ready for sums at any point of its first material.
+pub struct Lit {
+    model: Model,
+    medium: Medium,
+    samples: LitSamples,
+    drawn: f64,
+    origin: DVec3,
+}
+
+/// A point that light leaves from.
+#[derive(Clone, Copy, Debug)]
+pub struct Point {
+    /// World position, m.
+    pub position: DVec3,
+    pub normal: DVec3,
+}
+
+impl Lit {
+    pub fn new(cloud: &Cloud, medium: &Medium, model: Model) -> Lit {
+        let meta = cloud.meta();
+        let first = &meta.materials[0];
+        Lit {
+            model,
+            medium: medium.clone(),
+            samples: LitSamples::new(cloud.samples(first.first, first.count), medium.eta),
+            drawn: meta.samples_drawn as f64,
+            origin: DVec3::from_array(meta.origin_m),
+        }
+    }
+
+    /// `L_r` at a point, W/(m² sr); `key` chooses the roulette's random numbers.
+    pub fn radiance(&self, estimator: Estimator, point: Point, key: u64) -> DVec3 {
+        let exit = Exit::new(point.position - self.origin, point.normal, key);
+        sum(self.model, &self.medium, &self.samples, &exit, estimator).radiance / self.drawn
+    }
+
+    /// The mean of `L_r` over points by the whole sum.
+    pub fn mean(&self, points: &[Point]) -> DVec3 {
+        let radiance = |p: &Point| self.radiance(Estimator::Exhaustive, *p, 0);
+        points.iter().map(radiance).sum::<DVec3>() / points.len() as f64
+    }
+}
+
+/// The sum over samples by any model and estimator, with the widest vectors there are.
+pub fn sum(model: Model, medium: &Medium, samples: &LitSamples, exit: &Exit, estimator: Estimator) -> Sum {
+    let transport = model.of(medium).transport();
+    match model {
+        Model::DirectionalDipole => sum_with::<DirectionalLanes>(medium, transport, samples, exit, estimator),
+        Model::BetterDipole => sum_with::<BetterLanes>(medium, transport, samples, exit, estimator),
+        Model::StandardDipole => sum_with::<StandardLanes>(medium, transport, samples, exit, estimator),
+    }
+}
+
+fn sum_with<M: LaneModel>(
+    medium: &Medium,
+    transport: [f64; 3],
+    samples: &LitSamples,
+    exit: &Exit,
+    estimator: Estimator,
+) -> Sum {
+    let model = &M::new(medium);
+    match estimator {
+        Estimator::Exhaustive => simd::dispatch(Exhaustive { model, samples, exit }),
+        Estimator::Roulette(rule) => {
+            simd::dispatch(Roulette { model, samples, exit, rates: rule.rates(transport) })
+        }
+    }
+}
+
+/// All three models.
+pub const MODELS: [Model; 3] = [Model::DirectionalDipole, Model::BetterDipole, Model::StandardDipole];
+
+/// All rules of the roulette.
+pub const RULES: [Rule; 3] = [Rule::Mixture, Rule::Mean, Rule::Min];
+
+/// Coefficients of one grey channel in 1/m, the same in all three.
+pub fn grey(sigma_a: f64, sigma_s: f64, asymmetry: f64, eta: f64) -> Medium {
+    medium([bssrdf::Coefficients { sigma_a, sigma_s, asymmetry }; 3], eta)
+}
+
+/// A medium that was never a file: coefficients in 1/m.
+pub fn medium(channels: [bssrdf::Coefficients; 3], eta: f64) -> Medium {
+    let interface = bssrdf::Interface::new(eta);
+    Medium { name: "test".into(), source: String::new(), channels, eta, interface }
+}

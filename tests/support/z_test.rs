@@ -1,0 +1,123 @@
+//! Is a mean right? Tests of means whose error is known only from the scatter of independent runs: the mean is that
+//! many standard errors off, and the chance of it is Student's, not Gauss's, because the error is estimated too.
+
+use crate::{chi_square::ln_gamma, significance};
+
+/// Mean of independent runs and what is known of its error.
+#[derive(Clone, Copy, Debug)]
+pub struct Estimate {
+    pub mean: f64,
+    /// Standard error of the mean.
+    pub error: f64,
+    /// Degrees of freedom that the error was estimated with.
+    pub freedom: f64,
+}
+
+impl Estimate {
+    /// The mean of independent, equally distributed runs.
+    pub fn of(runs: &[f64]) -> Estimate {
+        let n = runs.len() as f64;
+        assert!(n >= 2.0, "one run has no scatter");
+        let mean = runs.iter().sum::<f64>() / n;
+        let scatter: f64 = runs.iter().map(|x| (x - mean) * (x - mean)).sum();
+        Estimate { mean, error: (scatter / (n * (n - 1.0))).sqrt(), freedom: n - 1.0 }
+    }
+
+    /// The difference of two independent estimates (Welch 1947).
+    pub fn minus(self, other: Estimate) -> Estimate {
+        let (a, b) = (self.error * self.error, other.error * other.error);
+        let freedom = (a + b) * (a + b) / (a * a / self.freedom + b * b / other.freedom);
+        Estimate { mean: self.mean - other.mean, error: (a + b).sqrt(), freedom }
+    }
+
+    /// The sum of two independent estimates.
+    pub fn plus(self, other: Estimate) -> Estimate {
+        self.minus(other.scaled(-1.0))
+    }
+
+    /// The estimate of a multiple.
+    pub fn scaled(self, factor: f64) -> Estimate {
+        Estimate { mean: self.mean * factor, error: self.error * factor.abs(), ..self }
+    }
+
+    /// How many standard errors the mean is above `expected`.
+    pub fn deviation(self, expected: f64) -> f64 {
+        (self.mean - expected) / self.error
+    }
+
+    /// Standard error relative to the mean.
+    pub fn relative_error(self) -> f64 {
+        (self.error / self.mean).abs()
+    }
+
+    /// Chance of a mean as far from `expected`, or farther.
+    pub fn p_value(self, expected: f64) -> f64 {
+        let t = self.deviation(expected);
+        let x = self.freedom / (self.freedom + t * t);
+        incomplete_beta(0.5 * self.freedom, 0.5, x)
+    }
+}
+
+/// Fails if the mean is farther from `expected` than chance allows.
+pub fn assert_mean(what: &str, estimate: Estimate, expected: f64) {
+    let (z, p) = (estimate.deviation(expected), estimate.p_value(expected));
+    println!("{what}: {:.5e} ± {:.1e} for {expected:.5e}, z = {z:.2}", estimate.mean, estimate.error);
+    assert!(p >= significance(), "{what}: {estimate:?} is not {expected}: z = {z:.2}, p = {p:.2e}");
+}
+
+/// Fails if two independent means differ by more than chance allows; reported as their ratio.
+pub fn assert_equal(what: &str, a: Estimate, b: Estimate) {
+    let difference = a.minus(b).scaled(1.0 / b.mean);
+    assert_mean(what, Estimate { mean: 1.0 + difference.mean, ..difference }, 1.0);
+}
+
+/// The regularised incomplete beta function `I_x(a, b)` by its continued fraction (Lentz's method).
+fn incomplete_beta(a: f64, b: f64, x: f64) -> f64 {
+    if x <= 0.0 || x >= 1.0 {
+        return if x <= 0.0 { 0.0 } else { 1.0 };
+    }
+    if x > (a + 1.0) / (a + b + 2.0) {
+        return 1.0 - incomplete_beta(b, a, 1.0 - x);
+    }
+    let front = (a * x.ln() + b * (1.0 - x).ln() + ln_gamma(a + b) - ln_gamma(a) - ln_gamma(b)).exp() / a;
+    let (mut c, mut d) = (1.0, 1.0 / (1.0 - (a + b) * x / (a + 1.0)));
+    let mut fraction = d;
+    for m in 1..10_000 {
+        let m = f64::from(m);
+        let even = m * (b - m) * x / ((a + 2.0 * m - 1.0) * (a + 2.0 * m));
+        let odd = -(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0));
+        for numerator in [even, odd] {
+            d = 1.0 / (1.0 + numerator * d);
+            c = 1.0 + numerator / c;
+            fraction *= c * d;
+        }
+        if (c * d - 1.0).abs() < 1e-15 {
+            break;
+        }
+    }
+    front * fraction
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tails_have_their_textbook_values() {
+        // Two-sided quantiles of Student's distribution at 5 % and 0.1 %.
+        for (freedom, t, p) in [(1.0, 12.706_2, 0.05), (15.0, 2.131_45, 0.05), (15.0, 4.072_77, 0.001)] {
+            let estimate = Estimate { mean: t, error: 1.0, freedom };
+            assert!((estimate.p_value(0.0) / p - 1.0).abs() < 1e-4, "{freedom} {}", estimate.p_value(0.0));
+        }
+    }
+
+    #[test]
+    fn mean_and_error_of_four_runs() {
+        let estimate = Estimate::of(&[1.0, 2.0, 3.0, 6.0]);
+        assert_eq!((estimate.mean, estimate.freedom), (3.0, 3.0));
+        // Σ(x − 3)² = 14; 14/(4·3)
+        assert!((estimate.error - (14.0f64 / 12.0).sqrt()).abs() < 1e-15);
+        let doubled = estimate.plus(estimate);
+        assert!((doubled.mean - 6.0).abs() < 1e-15 && (doubled.freedom - 6.0).abs() < 1e-12);
+    }
+}
