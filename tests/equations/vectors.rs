@@ -71,8 +71,7 @@ fn float64_agrees_with_the_reference() {
         for (model, (expected, condition)) in MODELS.into_iter().zip(v.expected) {
             let values = evaluate(&*model.of(&v.medium), v.medium.eta, 0, &v.incident, &v.exitant);
             let tolerance = 1e-12 * (1.0 + condition);
-            let pairs =
-                [(values.full, expected.full), (values.gather, expected.gather), (values.bare, expected.bare)];
+            let pairs = [(values.full, expected.full), (values.gather, expected.gather), (values.bare, expected.bare)];
             for (value, expected) in pairs {
                 let error = relative(value, expected);
                 assert!(error <= tolerance, "{} {}: {value:e} for {expected:e}", v.tag, model.name());

@@ -1,14 +1,20 @@
 //! Means over independent clouds: what must not change with the choice of triangles, the number of samples, or how the
 //! light is divided.
+//!
+//! Both phases run whole. The medium has the index 1: no path is reflected, and each pixel shows the sum over the cloud
+//! at one point, and nothing else.
 
 use bssrdf::{Medium, Model};
+use formats::cloud::Cloud;
+use gather::Input;
 use glam::DVec3;
 use rayon::prelude::*;
 use sample_surface::Choice;
+use scene::Camera;
 use support::{
     EFFORT,
     meshes::{Light, Part, World, quad, rectangle, slab, world},
-    pipeline::{Lit, Point, Sampling, by_area, cloud, grey, sampled},
+    pipeline::{Sampling, by_area, cloud, grey, orthographic, sampled, settings},
     z_test::{Estimate, assert_equal, assert_mean},
 };
 
@@ -17,9 +23,9 @@ const SAMPLES: u64 = 4096 * EFFORT;
 /// m.
 const HALF_SIZE: DVec3 = DVec3::new(3e-3, 2e-3, 1e-3);
 
-/// Scatters within a third of a millimetre and absorbs within one: the far side of the slab is dark, not black.
+/// Scatters within half a millimetre and absorbs within one: the far side of the slab is dark, not black.
 fn jelly() -> Medium {
-    grey(300.0, 2000.0, 0.0, 1.3)
+    grey(300.0, 2000.0, 0.0, 1.0)
 }
 
 fn sun(irradiance: DVec3) -> Light {
@@ -35,27 +41,23 @@ fn lit_by(lights: &[Light]) -> World {
     world(&[Part::translucent(slab(HALF_SIZE, 6))], lights, DVec3::ZERO)
 }
 
-/// Points on the upper side and on those that face +X and +Y.
-fn points() -> Vec<Point> {
-    let spread = [-0.7, -0.2, 0.3, 0.8];
-    let side = |axis: usize| {
-        let at = move |u: f64, v: f64| {
-            let (mut normal, mut position) = (DVec3::ZERO, DVec3::ZERO);
-            normal[axis] = 1.0;
-            position[axis] = 1.0;
-            position[(axis + 1) % 3] = u;
-            position[(axis + 2) % 3] = v;
-            Point { position: position * HALF_SIZE, normal }
-        };
-        spread.into_iter().flat_map(move |u| spread.map(|v| at(u, v)))
-    };
-    (0..3).flat_map(side).collect()
+/// The slab from a corner: all of the upper side and two others.
+fn corner() -> Camera {
+    orthographic(DVec3::new(1.0, 1.2, 1.5), 2.5e-3)
 }
 
-/// The mean of `L_r` over the points, each channel, over clouds with seeds from `first` on.
-fn estimate(world: &World, points: &[Point], first: u64, sampling: impl Fn(u64) -> Sampling + Sync) -> [Estimate; 3] {
-    let run =
-        |seed| Lit::new(&cloud(world, &sampling(seed)), &jelly(), Model::StandardDipole).mean(points);
+/// The sum of all pixels over one cloud.
+fn image_sum(world: &World, camera: &Camera, cloud: &Cloud, model: Model) -> DVec3 {
+    let media = [jelly()];
+    let input = Input { scene: &world.scene, rays: &world.rays, cloud, media: &media, camera };
+    let rendered = gather::render(&input, &settings(model, 12, 8), |_| ());
+    assert!(rendered.counts.gathers > 40, "{:?}", rendered.counts);
+    rendered.pixels.iter().map(|p| p.beauty()).sum()
+}
+
+/// The sum of all pixels, each channel, over clouds with seeds from `first` on.
+fn estimate(world: &World, camera: &Camera, first: u64, sampling: impl Fn(u64) -> Sampling + Sync) -> [Estimate; 3] {
+    let run = |seed| image_sum(world, camera, &cloud(world, &sampling(seed)), Model::StandardDipole);
     let runs: Vec<DVec3> = (first..first + SEEDS).into_par_iter().map(run).collect();
     [0, 1, 2].map(|c| Estimate::of(&runs.iter().map(|r| r[c]).collect::<Vec<_>>()))
 }
@@ -64,9 +66,8 @@ fn estimate(world: &World, points: &[Point], first: u64, sampling: impl Fn(u64) 
 #[test]
 fn uniform_and_area_choice_have_one_mean() {
     let world = lit_by(&[sun(DVec3::ONE), lamp()]);
-    let uniform =
-        estimate(&world, &points(), 100, |seed| Sampling { samples: SAMPLES, choice: Choice::Uniform, seed });
-    let area = estimate(&world, &points(), 200, |seed| by_area(SAMPLES, seed));
+    let uniform = estimate(&world, &corner(), 100, |seed| Sampling { samples: SAMPLES, choice: Choice::Uniform, seed });
+    let area = estimate(&world, &corner(), 200, |seed| by_area(SAMPLES, seed));
     for c in 0..3 {
         assert_equal(&format!("uniform and area, channel {c}"), uniform[c], area[c]);
     }
@@ -76,8 +77,8 @@ fn uniform_and_area_choice_have_one_mean() {
 #[test]
 fn more_samples_do_not_move_the_mean() {
     let world = lit_by(&[sun(DVec3::ONE), lamp()]);
-    let few = estimate(&world, &points(), 300, |seed| by_area(SAMPLES, seed));
-    let many = estimate(&world, &points(), 400, |seed| by_area(4 * SAMPLES, seed));
+    let few = estimate(&world, &corner(), 300, |seed| by_area(SAMPLES, seed));
+    let many = estimate(&world, &corner(), 400, |seed| by_area(4 * SAMPLES, seed));
     for c in 0..3 {
         assert_equal(&format!("K and 4K, channel {c}"), few[c], many[c]);
     }
@@ -86,9 +87,9 @@ fn more_samples_do_not_move_the_mean() {
 /// Seen to catch: irradiance not divided by the probability of the light's choice.
 #[test]
 fn red_green_and_blue_light_make_white() {
-    let white = estimate(&lit_by(&[sun(DVec3::ONE)]), &points(), 500, |seed| by_area(SAMPLES, seed));
+    let white = estimate(&lit_by(&[sun(DVec3::ONE)]), &corner(), 500, |seed| by_area(SAMPLES, seed));
     let colours = [DVec3::X, DVec3::Y, DVec3::Z].map(sun);
-    let coloured = estimate(&lit_by(&colours), &points(), 600, |seed| by_area(SAMPLES, seed));
+    let coloured = estimate(&lit_by(&colours), &corner(), 600, |seed| by_area(SAMPLES, seed));
     for c in 0..3 {
         assert_equal(&format!("three colours and white, channel {c}"), coloured[c], white[c]);
     }
@@ -97,9 +98,9 @@ fn red_green_and_blue_light_make_white() {
 /// Seen to catch: irradiance not divided by the probability of the light's choice; a shadowed light taken for all.
 #[test]
 fn two_lights_add_up() {
-    let one = estimate(&lit_by(&[sun(DVec3::ONE)]), &points(), 700, |seed| by_area(SAMPLES, seed));
-    let other = estimate(&lit_by(&[lamp()]), &points(), 800, |seed| by_area(SAMPLES, seed));
-    let both = estimate(&lit_by(&[sun(DVec3::ONE), lamp()]), &points(), 900, |seed| by_area(SAMPLES, seed));
+    let one = estimate(&lit_by(&[sun(DVec3::ONE)]), &corner(), 700, |seed| by_area(SAMPLES, seed));
+    let other = estimate(&lit_by(&[lamp()]), &corner(), 800, |seed| by_area(SAMPLES, seed));
+    let both = estimate(&lit_by(&[sun(DVec3::ONE), lamp()]), &corner(), 900, |seed| by_area(SAMPLES, seed));
     for c in 0..3 {
         assert_equal(&format!("both lights, channel {c}"), both[c], one[c].plus(other[c]));
     }
@@ -115,7 +116,8 @@ fn a_far_point_light_is_a_directional_one() {
     let towards = DVec3::new(0.48, 0.6, 0.64);
     let point = Light::Point { position: towards * DISTANCE, intensity: irradiance * DISTANCE * DISTANCE };
     let [near, far] = [point, sun(irradiance)].map(|light| {
-        Lit::new(&cloud(&lit_by(&[light]), &by_area(SAMPLES, 1)), &jelly(), Model::DirectionalDipole).mean(&points())
+        let world = lit_by(&[light]);
+        image_sum(&world, &corner(), &cloud(&world, &by_area(SAMPLES, 1)), Model::DirectionalDipole)
     });
     assert!((near / far - 1.0).abs().max_element() < 1e-4, "{near} {far}");
 }
@@ -132,14 +134,15 @@ fn blocked_samples_count() {
     let above = [Light::Directional { towards: DVec3::Z, irradiance: DVec3::ONE }];
     let open = world(std::slice::from_ref(&square), &above, DVec3::ZERO);
     let covered = world(&[square, sheet], &above, DVec3::ZERO);
-    let points = |x: f64| -> Vec<Point> {
-        let at = |k: i32| DVec3::new(x + 2e-4 * f64::from(k % 6), 1.5e-3 * f64::from(k - 5), 0.0);
-        (0..12).map(|k| Point { position: at(k), normal: DVec3::Z }).collect()
+    // A window of 3 by 2 mm.
+    let window = |x: f64| {
+        let straight = orthographic(DVec3::Z, 1e-3);
+        Camera { position: straight.position + DVec3::X * x, ..straight }
     };
-    // Eight diffusion lengths from the shadow's edge: e^{−8} of the light of the other half is missing.
-    let lit = estimate(&covered, &points(6e-3), 1000, |seed| by_area(SAMPLES, seed));
-    let free = estimate(&open, &points(6e-3), 1100, |seed| by_area(SAMPLES, seed));
-    let dark = estimate(&covered, &points(-6e-3), 1000, |seed| by_area(SAMPLES, seed));
+    // Eight attenuation lengths from the shadow's edge: e^{−8} of the light of the other half is missing.
+    let lit = estimate(&covered, &window(6e-3), 1000, |seed| by_area(SAMPLES, seed));
+    let free = estimate(&open, &window(6e-3), 1100, |seed| by_area(SAMPLES, seed));
+    let dark = estimate(&covered, &window(-6e-3), 1000, |seed| by_area(SAMPLES, seed));
     assert_equal("lit side with and without the sheet", lit[0], free[0]);
     assert!(dark[0].mean < 1e-3 * lit[0].mean, "{} in the shadow, {} outside", dark[0].mean, lit[0].mean);
     stored_samples_are_half(&covered);

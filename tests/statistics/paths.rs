@@ -1,54 +1,35 @@
 //! Camera paths through `gather::render`: interfaces, the way through a medium, emission.
 
 use bssrdf::{Model, fresnel};
-use gather::{Filter, Input, Rendered, Settings, estimator::Estimator};
+use gather::{Filter, Input, Rendered, Settings};
 use glam::DVec3;
-use scene::{Camera, NormalKind, Projection};
+use scene::Camera;
 use support::{
     EFFORT,
     meshes::{Part, World, slab, sphere, world},
-    pipeline::{by_area, cloud, grey},
+    pipeline::{by_area, cloud, grey, orthographic, settings},
     z_test::{Estimate, assert_mean},
 };
 
-/// An orthographic camera that looks from `towards` at the origin.
-fn camera(towards: DVec3, half_height: f64) -> Camera {
-    let forward = -towards.normalize();
-    let right = forward.any_orthonormal_vector();
-    Camera {
-        name: "test".into(),
-        position: -10.0 * forward,
-        right,
-        up: right.cross(forward),
-        forward,
-        projection: Projection::Orthographic { half_height },
-        aspect: None,
-    }
+/// An image of a body of index 1.5 that scatters nothing; `sigma_a` in 1/m.
+fn render(world: &World, camera: &Camera, sigma_a: f64, settings: &Settings) -> Rendered {
+    let (cloud, media) = (cloud(world, &by_area(16, 0)), [grey(sigma_a, 0.0, 0.0, 1.5)]);
+    let input = Input { scene: &world.scene, rays: &world.rays, cloud: &cloud, media: &media, camera };
+    gather::render(&input, settings, |_| ())
 }
 
-/// An image of a clear body of index 1.5.
-fn render(world: &World, camera: &Camera, environment: DVec3, paths_per_pixel: u32, max_depth: u32) -> Rendered {
-    let settings = Settings {
-        width: 16,
-        height: 16,
-        paths_per_pixel,
-        filter: Filter::Box,
-        estimator: Estimator::Exhaustive,
-        model: Model::DirectionalDipole,
-        normals: NormalKind::Geometric,
-        environment,
-        max_depth,
-        seed: 1,
-    };
-    let cloud = cloud(world, &by_area(16, 0));
-    let input = Input {
-        scene: &world.scene,
-        rays: &world.rays,
-        cloud: &cloud,
-        media: &[grey(0.0, 0.0, 0.0, 1.5)],
-        camera,
-    };
-    gather::render(&input, &settings, |_| ())
+fn with_sky(environment: DVec3, paths_per_pixel: u32, max_depth: u32) -> Settings {
+    let settings = settings(Model::DirectionalDipole, 16, 16);
+    Settings { environment, paths_per_pixel, max_depth, filter: Filter::Box, ..settings }
+}
+
+/// The means of all pixels against what is expected, each channel.
+fn assert_image(what: &str, rendered: &Rendered, expected: DVec3) {
+    assert_eq!(rendered.counts.cut_by_depth, 0);
+    for c in 0..3 {
+        let values: Vec<f64> = rendered.pixels.iter().map(|p| p.beauty()[c]).collect();
+        assert_mean(&format!("{what}, channel {c}"), Estimate::of(&values), expected[c]);
+    }
 }
 
 /// Under light of the same radiance from everywhere a clear body cannot be seen: each path shows exactly that radiance
@@ -60,7 +41,8 @@ fn render(world: &World, camera: &Camera, environment: DVec3, paths_per_pixel: u
 fn a_clear_body_under_a_constant_sky_is_invisible() {
     let world = world(&[Part::translucent(sphere(1.0, 3))], &[], DVec3::ONE);
     let paths = 16 * EFFORT as u32;
-    let rendered = render(&world, &camera(DVec3::new(1.0, 2.0, 3.0), 1.2), DVec3::ONE, paths, 64);
+    let camera = orthographic(DVec3::new(1.0, 2.0, 3.0), 1.2);
+    let rendered = render(&world, &camera, 0.0, &with_sky(DVec3::ONE, paths, 64));
     let mut missing = 0.0;
     for pixel in &rendered.pixels {
         let lost = (DVec3::ONE - pixel.beauty()) * f64::from(paths);
@@ -87,13 +69,34 @@ fn emission_is_seen_through_the_interface() {
     for degrees in [0.0, 60.0, 80.0] {
         let (sine, cosine) = f64::to_radians(degrees).sin_cos();
         // A window small enough that all of it lies on one face.
-        let camera = camera(DVec3::new(sine, 0.0, cosine), 0.01);
-        let rendered = render(&world, &camera, sky, 100 * EFFORT as u32, 1000);
-        assert_eq!(rendered.counts.cut_by_depth, 0);
+        let camera = orthographic(DVec3::new(sine, 0.0, cosine), 0.01);
+        let rendered = render(&world, &camera, 0.0, &with_sky(sky, 100 * EFFORT as u32, 1000));
         let expected = fresnel::transmittance(cosine, 1.5) * emission + sky;
-        for c in 0..3 {
-            let values: Vec<f64> = rendered.pixels.iter().map(|p| p.beauty()[c]).collect();
-            assert_mean(&format!("glow at {degrees}°, channel {c}"), Estimate::of(&values), expected[c]);
-        }
+        assert_image(&format!("glow at {degrees}°"), &rendered, expected);
+    }
+}
+
+/// A pane before a glowing wall: with R at each face and the transmittance a of one way through, it shows
+/// `(1 − R)² a/(1 − R² a²)` of the wall.
+///
+/// Seen to catch: reflection inside with the probability of the outside; absorption left out, or taken for the depth
+/// instead of the length of the way.
+#[test]
+fn a_pane_transmits_what_its_faces_and_its_medium_let_through() {
+    const SIGMA_A: f64 = 0.8;
+    let emission = DVec3::new(1.0, 2.0, 4.0);
+    let mut wall = Part { emission, ..Part::opaque(slab(DVec3::new(30.0, 30.0, 1.0), 1)) };
+    wall.mesh.positions.iter_mut().for_each(|p| p.z -= 5.0);
+    let pane = Part::translucent(slab(DVec3::new(20.0, 20.0, 0.25), 1));
+    let world = world(&[pane, wall], &[], DVec3::ZERO);
+    for degrees in [0.0, 60.0, 75.0] {
+        let (sine, cosine) = f64::to_radians(degrees).sin_cos();
+        let camera = orthographic(DVec3::new(sine, 0.0, cosine), 0.01);
+        let rendered = render(&world, &camera, SIGMA_A, &with_sky(DVec3::ZERO, 100 * EFFORT as u32, 1000));
+        let through = (-SIGMA_A * 0.5 / (1.0 - (sine / 1.5).powi(2)).sqrt()).exp();
+        let enters = fresnel::transmittance(cosine, 1.5);
+        let reflected = (1.0 - enters) * through;
+        let share = enters * enters * through / (1.0 - reflected * reflected);
+        assert_image(&format!("wall through a pane at {degrees}°"), &rendered, share * emission);
     }
 }

@@ -1,14 +1,14 @@
 //! Reflectance of a plane: the whole of phase one and of the sum against the tabulated integrals.
 
 use bssrdf::{Coefficients, Medium, Model, fresnel};
-use gather::estimator::Estimator;
+use gather::{Input, Settings, estimator::Estimator};
 use glam::DVec3;
 use rayon::prelude::*;
 use sample_surface::Choice;
 use support::{
     EFFORT,
     meshes::{Light, Part, graded_disc, world},
-    pipeline::{Lit, Point, Sampling, cloud, medium},
+    pipeline::{Lit, Point, Sampling, cloud, medium, orthographic, settings},
     z_test::{Estimate, assert_mean},
 };
 
@@ -36,8 +36,7 @@ fn plane_reflectance(model: Model, degrees: f64, integrals: [f64; 3]) {
     const SEEDS: u64 = 32;
     const IRRADIANCE: f64 = 2.0;
     let (sine, cosine) = f64::to_radians(degrees).sin_cos();
-    let sun =
-        Light::Directional { towards: DVec3::new(sine, 0.0, cosine), irradiance: DVec3::splat(IRRADIANCE) };
+    let sun = Light::Directional { towards: DVec3::new(sine, 0.0, cosine), irradiance: DVec3::splat(IRRADIANCE) };
     let world = world(&[Part::translucent(graded_disc(2e-5, 60e-3, 45))], &[sun], DVec3::ZERO);
     let medium = skin();
     let centre = Point { position: DVec3::ZERO, normal: DVec3::Z };
@@ -78,4 +77,29 @@ fn better_dipole() {
 fn standard_dipole() {
     plane_reflectance(Model::StandardDipole, 0.0, STANDARD);
     plane_reflectance(Model::StandardDipole, 60.0, STANDARD);
+}
+
+/// The same through `gather::render` and the interface, of which the chosen refraction is part: `T21(θ_o) L_r`.
+///
+/// Seen to catch: T21 of the chosen refraction applied again (S for `S_gather`); a lost 1/K.
+#[test]
+fn scattered_light_is_seen_through_the_interface() {
+    let sun = Light::Directional { towards: DVec3::Z, irradiance: DVec3::ONE };
+    let world = world(&[Part::translucent(graded_disc(2e-5, 60e-3, 45))], &[sun], DVec3::ZERO);
+    let (sine, cosine) = f64::to_radians(75.0).sin_cos();
+    let camera = orthographic(DVec3::new(sine, 0.0, cosine), 1e-6);
+    let media = [skin()];
+    let run = |seed: u64| {
+        let cloud = cloud(&world, &Sampling { samples: 10_000 * EFFORT, choice: Choice::Uniform, seed });
+        let input = Input { scene: &world.scene, rays: &world.rays, cloud: &cloud, media: &media, camera: &camera };
+        let settings = Settings { paths_per_pixel: 256, seed, ..settings(Model::BetterDipole, 1, 1) };
+        gather::render(&input, &settings, |_| ()).pixels[0].beauty()
+    };
+    let runs: Vec<DVec3> = (1000..1032).into_par_iter().map(run).collect();
+    let interface = fresnel::transmittance(cosine, 1.3) * fresnel::transmittance(1.0, 1.3);
+    for (c, integral) in BETTER.into_iter().enumerate() {
+        let estimate = Estimate::of(&runs.iter().map(|r| r[c]).collect::<Vec<_>>());
+        assert_mean(&format!("seen at 75°, channel {c}"), estimate, interface * integral);
+        assert!(estimate.relative_error() < 0.01, "{estimate:?} is too rough to tell");
+    }
 }

@@ -69,7 +69,8 @@ fn encode(parts: &[Part], lights: &[Light]) -> (Value, Vec<u8>) {
         let size = if kind == "VEC3" { 12 } else { 4 };
         views.push(json!({ "buffer": 0, "byteOffset": binary.len(), "byteLength": bytes.len() }));
         let count = bytes.len() / size;
-        accessors.push(json!({ "bufferView": views.len() - 1, "componentType": component, "count": count, "type": kind }));
+        accessors
+            .push(json!({ "bufferView": views.len() - 1, "componentType": component, "count": count, "type": kind }));
         binary.extend(bytes);
         accessors.len() - 1
     };

@@ -11,12 +11,13 @@ use formats::{
     cloud::{self, Cloud, Options},
 };
 use gather::{
+    Filter,
     estimator::{Estimator, Exhaustive, Roulette, Rule, Sum},
     samples::{Exit, LitSamples},
 };
 use glam::DVec3;
 use sample_surface::{Choice, Plan, Sampled, Settings};
-use scene::NormalKind;
+use scene::{Camera, NormalKind, Projection};
 use std::path::Path;
 
 /// How phase one samples in a test.
@@ -131,9 +132,38 @@ fn sum_with<M: LaneModel>(
     let model = &M::new(medium);
     match estimator {
         Estimator::Exhaustive => simd::dispatch(Exhaustive { model, samples, exit }),
-        Estimator::Roulette(rule) => {
-            simd::dispatch(Roulette { model, samples, exit, rates: rule.rates(transport) })
-        }
+        Estimator::Roulette(rule) => simd::dispatch(Roulette { model, samples, exit, rates: rule.rates(transport) }),
+    }
+}
+
+/// A camera that looks from the direction `towards` at the origin.
+pub fn orthographic(towards: DVec3, half_height: f64) -> Camera {
+    let forward = -towards.normalize();
+    let right = forward.any_orthonormal_vector();
+    Camera {
+        name: "test".into(),
+        position: -10.0 * forward,
+        right,
+        up: right.cross(forward),
+        forward,
+        projection: Projection::Orthographic { half_height },
+        aspect: None,
+    }
+}
+
+/// One path through the centre of each pixel, the whole sum, and nothing but the cloud's light.
+pub fn settings(model: Model, width: usize, height: usize) -> gather::Settings {
+    gather::Settings {
+        width,
+        height,
+        paths_per_pixel: 1,
+        filter: Filter::Point,
+        estimator: Estimator::Exhaustive,
+        model,
+        normals: NormalKind::Geometric,
+        environment: DVec3::ZERO,
+        max_depth: 16,
+        seed: 1,
     }
 }
 

@@ -53,7 +53,8 @@ fn separation(random: &mut Random, medium: &Medium, range: [f64; 2], plane: bool
         light = -light;
     }
     let refracted = fresnel::enter(normal_in, light, medium.eta).map_or(-light, |e| e.direction);
-    let distance = 10f64.powf(random.between(range[0].log10(), range[1].log10())) / medium.channels[0].reduced_extinction();
+    let distance =
+        10f64.powf(random.between(range[0].log10(), range[1].log10())) / medium.channels[0].reduced_extinction();
     let direction = random.direction();
     let (direction, normal_out) = if plane {
         ((direction - direction.dot(normal_in) * normal_in).normalize(), normal_in)
@@ -131,7 +132,9 @@ fn check<M: LaneModel>(model: Model) {
                 at(0.999),
                 at(1.0)
             );
-            if std::env::var_os("WORST").is_some() { println!("   {:?}", errors[errors.len()-1]); }
+            if std::env::var_os("WORST").is_some() {
+                println!("   {:?}", errors[errors.len() - 1]);
+            }
         }
     }
 }

@@ -9,7 +9,9 @@ pub fn parse_count(text: &str) -> Result<u64, String> {
         Some((at, 'G')) => (&text[..at], 1e9),
         _ => (text, 1.0),
     };
-    if factor == 1.0 && let Ok(count) = text.parse::<u64>() {
+    if factor == 1.0
+        && let Ok(count) = text.parse::<u64>()
+    {
         return Ok(count);
     }
     let value = digits.parse::<f64>().map_err(|_| expected)? * factor;

@@ -52,7 +52,7 @@ impl Item {
 
 /// A bijection of 64 bits that leaves no visible structure: two rounds of multiply and xor-shift (the SplitMix64
 /// finaliser of Steele, Lea and Flood 2014, with the constants of Stafford's variant 13).
-fn mix(mut z: u64) -> u64 {
+pub(crate) fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     z ^ (z >> 31)

@@ -84,9 +84,12 @@ fn parse_stops(text: &str) -> Result<f64, String> {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ModelName {
-    DirectionalDipole,
-    BetterDipole,
-    StandardDipole,
+    #[value(name = "directional-dipole")]
+    Directional,
+    #[value(name = "better-dipole")]
+    Better,
+    #[value(name = "standard-dipole")]
+    Standard,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

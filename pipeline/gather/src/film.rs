@@ -111,10 +111,8 @@ fn channel_names() -> Vec<String> {
 
 /// The pixels as an image without attributes.
 pub fn image(pixels: &[Pixel], width: usize, height: usize) -> Image {
-    let mut channels: Vec<Channel> = channel_names()
-        .into_iter()
-        .map(|name| Channel { name, samples: Vec::with_capacity(pixels.len()) })
-        .collect();
+    let mut channels: Vec<Channel> =
+        channel_names().into_iter().map(|name| Channel { name, samples: Vec::with_capacity(pixels.len()) }).collect();
     for pixel in pixels {
         channels.iter_mut().zip(pixel.values()).for_each(|(channel, x)| channel.samples.push(x));
     }

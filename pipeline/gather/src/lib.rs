@@ -132,12 +132,7 @@ fn bodies<M: LaneModel>(input: &Input, settings: &Settings) -> Vec<Option<Body<M
     bodies
 }
 
-fn render_pixel<M: LaneModel>(
-    renderer: &Renderer<M>,
-    settings: &Settings,
-    pixel: usize,
-    counts: &mut Counts,
-) -> Pixel {
+fn render_pixel<M: LaneModel>(renderer: &Renderer<M>, settings: &Settings, pixel: usize, counts: &mut Counts) -> Pixel {
     let size = glam::DVec2::new(settings.width as f64, settings.height as f64);
     let corner = glam::DVec2::new((pixel % settings.width) as f64, (pixel / settings.width) as f64);
     let ray = |offset: glam::DVec2| {

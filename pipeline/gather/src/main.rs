@@ -183,9 +183,9 @@ fn settings(arguments: &Arguments, chosen: &Chosen, estimator: Estimator) -> Res
         ));
     }
     let model = match arguments.bssrdf {
-        ModelName::DirectionalDipole => Model::DirectionalDipole,
-        ModelName::BetterDipole => Model::BetterDipole,
-        ModelName::StandardDipole => Model::StandardDipole,
+        ModelName::Directional => Model::DirectionalDipole,
+        ModelName::Better => Model::BetterDipole,
+        ModelName::Standard => Model::StandardDipole,
     };
     Ok(Settings {
         width,
@@ -302,7 +302,8 @@ fn finish(arguments: &Arguments, facts: &Facts, rendered: &Rendered) -> Result<(
         arguments.common.say(line);
     }
     if counts.escaped_inside > 0 {
-        let line = format!("{:.3} % of the paths left a medium through a hole in its mesh", share(counts.escaped_inside));
+        let line =
+            format!("{:.3} % of the paths left a medium through a hole in its mesh", share(counts.escaped_inside));
         arguments.common.warn(line);
     }
     Ok(())
@@ -315,7 +316,11 @@ fn list_media() -> Result<(), Failure> {
         let three = |v: [f64; 3]| v.map(|x| format!("{:.4e}", x / 1000.0)).join(" ");
         let (absorbs, scatters) = (three(medium.map(|c| c.sigma_a)), three(medium.map(|c| c.sigma_s)));
         let source = medium.source.split(',').next().unwrap_or_default();
-        let year = medium.source.split_whitespace().map(|w| w.trim_end_matches(',')).find(|w| w.len() == 4 && w.parse::<u16>().is_ok());
+        let year = medium
+            .source
+            .split_whitespace()
+            .map(|w| w.trim_end_matches(','))
+            .find(|w| w.len() == 4 && w.parse::<u16>().is_ok());
         let year = year.unwrap_or_default();
         writeln!(text, "{name:<28} {:>6}  {absorbs:<32} {scatters:<32} {source} et al. {year}", medium.eta)?;
     }

@@ -49,9 +49,10 @@ pub fn assign(arguments: &[String], cloud: &Meta) -> Result<Vec<Medium>, AssignE
     if arguments.is_empty() {
         return Err(AssignError::Missing);
     }
-    let chosen = for_one.iter().zip(&cloud.materials).map(|(one, m)| {
-        one.or(for_all).ok_or_else(|| AssignError::MissingFor(m.name.clone())).and_then(read)
-    });
+    let chosen = for_one
+        .iter()
+        .zip(&cloud.materials)
+        .map(|(one, m)| one.or(for_all).ok_or_else(|| AssignError::MissingFor(m.name.clone())).and_then(read));
     chosen.collect()
 }
 

@@ -253,13 +253,7 @@ impl<M: LaneModel> Renderer<'_, M> {
     }
 
     /// Reflection inside with probability R_in, else out into the scene. Nothing is gathered from inside.
-    fn meet_from_inside(
-        &self,
-        walker: &mut Walker,
-        body: &Body<M>,
-        point: &SurfacePoint,
-        counts: &mut Counts,
-    ) -> bool {
+    fn meet_from_inside(&self, walker: &mut Walker, body: &Body<M>, point: &SurfacePoint, counts: &mut Counts) -> bool {
         let (inward, geometric) = (-point.normal, -point.geometric_normal);
         let view = -walker.direction;
         let normal = facing_normal(inward, geometric, view, counts);

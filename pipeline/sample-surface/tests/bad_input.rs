@@ -140,7 +140,8 @@ fn scenes_without_what_is_needed() {
 #[test]
 fn features_that_are_not_supported_are_named() {
     let bench = Bench::new();
-    for extension in ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_mesh_quantization", "VENDOR_thing"] {
+    for extension in ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_mesh_quantization", "VENDOR_thing"]
+    {
         let scene = bench.scene(|root| {
             root["extensionsRequired"] = json!([extension]);
             root["extensionsUsed"].as_array_mut().expect("a list").push(json!(extension));
@@ -231,12 +232,8 @@ fn the_cloud_is_the_same_for_any_number_of_threads_and_the_ply_holds_all_of_it()
     let ply = read("cloud.ply");
     let end = ply.windows(11).position(|w| w == b"end_header\n").expect("a header") + 11;
     let header = String::from_utf8_lossy(&ply[..end]).into_owned();
-    let count: usize = header
-        .lines()
-        .find_map(|l| l.strip_prefix("element vertex "))
-        .expect("a count")
-        .parse()
-        .expect("a number");
+    let count: usize =
+        header.lines().find_map(|l| l.strip_prefix("element vertex ")).expect("a count").parse().expect("a number");
     assert!(count > 1000);
     assert_eq!(ply.len() - end, count * 12 * 4);
 }

@@ -164,7 +164,8 @@ pub(super) fn decode(file: &[u8], known: &[(&'static str, Kind, u16)]) -> Result
 
 /// A table entry; none if its section is of a later minor version.
 fn decode_entry(entry: &[u8], known: &[(&'static str, Kind, u16)], length: u64) -> Result<Option<Section>, String> {
-    let is_named = |name: &str| entry[..name.len()] == *name.as_bytes() && entry[name.len()..16].iter().all(|b| *b == 0);
+    let is_named =
+        |name: &str| entry[..name.len()] == *name.as_bytes() && entry[name.len()..16].iter().all(|b| *b == 0);
     let Some(&(name, kind, components)) = known.iter().find(|(name, ..)| is_named(name)) else {
         return Ok(None);
     };
@@ -183,7 +184,7 @@ fn decode_entry(entry: &[u8], known: &[(&'static str, Kind, u16)], length: u64) 
         .filter(|least| *least <= length)
         .map(|_| plane_bytes(kind, section.elements) * u64::from(components));
     let fits = section.offset.checked_add(section.bytes).is_some_and(|end| end <= length)
-        && section.offset % ALIGN == 0
+        && section.offset.is_multiple_of(ALIGN)
         && expected == Some(section.bytes)
         && long(40)? == section.bytes
         && [short(16)?, short(18)?, short(20)?, short(22)?] == [kind as u16, components, 0, 0];

@@ -1,7 +1,7 @@
 //! Bad input of every kind: one message that names file, field and way out, exit 2, nothing written.
 
-use std::{fs, path::Path};
 use crate::support::{Bench, data};
+use std::{fs, path::Path};
 
 /// A folder with a small cloud of the slab in it.
 fn bench() -> (Bench, String) {
