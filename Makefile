@@ -34,7 +34,7 @@ else
 .DEFAULT_GOAL := gallery
 endif
 
-.PHONY: gallery own own-images build test slow lint scenes clouds images help clean clean-images
+.PHONY: gallery own own-images build test slow accuracy lint scenes clouds images help clean clean-images
 
 ## gallery: build, and render every scene, medium and view of the gallery (what `make` does)
 gallery: build
@@ -102,6 +102,10 @@ test:
 ## slow: statistical and stability tests at full sample counts
 slow:
 	$(CARGO) test --release --package pipeline-tests --features slow
+
+## accuracy: what the models are worth, against random walks: docs/accuracy.md and its pictures (minutes)
+accuracy:
+	$(CARGO) run --release --quiet --package pipeline-tests --bin accuracy -- docs
 
 ## lint: formatting, and clippy without warnings
 lint:

@@ -95,7 +95,8 @@ fn red_green_and_blue_light_make_white() {
     }
 }
 
-/// Seen to catch: irradiance not divided by the probability of the light's choice; a shadowed light taken for all.
+/// Seen to catch: irradiance not divided by the probability of the light's choice; all lights picked alike; division by
+/// the number of stored samples.
 #[test]
 fn two_lights_add_up() {
     let one = estimate(&lit_by(&[sun(DVec3::ONE)]), &corner(), 700, |seed| by_area(SAMPLES, seed));
@@ -134,11 +135,8 @@ fn blocked_samples_count() {
     let above = [Light::Directional { towards: DVec3::Z, irradiance: DVec3::ONE }];
     let open = world(std::slice::from_ref(&square), &above, DVec3::ZERO);
     let covered = world(&[square, sheet], &above, DVec3::ZERO);
-    // A window of 3 by 2 mm.
-    let window = |x: f64| {
-        let straight = orthographic(DVec3::Z, 1e-3);
-        Camera { position: straight.position + DVec3::X * x, ..straight }
-    };
+    // A window of 3 by 2 mm, seen from below the sheet.
+    let window = |x: f64| Camera { position: DVec3::new(x, 0.0, 2e-3), ..orthographic(DVec3::Z, 1e-3) };
     // Eight attenuation lengths from the shadow's edge: e^{−8} of the light of the other half is missing.
     let lit = estimate(&covered, &window(6e-3), 1000, |seed| by_area(SAMPLES, seed));
     let free = estimate(&open, &window(6e-3), 1100, |seed| by_area(SAMPLES, seed));

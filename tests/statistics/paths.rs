@@ -35,8 +35,7 @@ fn assert_image(what: &str, rendered: &Rendered, expected: DVec3) {
 /// Under light of the same radiance from everywhere a clear body cannot be seen: each path shows exactly that radiance
 /// unless the depth limit ended it, and then nothing.
 ///
-/// Seen to catch: throughput scaled by η² at one crossing; the chosen refraction weighted with T21 again; reflection
-/// inside with the reflectance of the outside.
+/// Seen to catch: throughput scaled by η⁻² at one crossing; the chosen refraction weighted with T21 again.
 #[test]
 fn a_clear_body_under_a_constant_sky_is_invisible() {
     let world = world(&[Part::translucent(sphere(1.0, 3))], &[], DVec3::ONE);
@@ -79,8 +78,7 @@ fn emission_is_seen_through_the_interface() {
 /// A pane before a glowing wall: with R at each face and the transmittance a of one way through, it shows
 /// `(1 − R)² a/(1 − R² a²)` of the wall.
 ///
-/// Seen to catch: reflection inside with the probability of the outside; absorption left out, or taken for the depth
-/// instead of the length of the way.
+/// Seen to catch: reflection inside with the probability of the outside; absorption left out.
 #[test]
 fn a_pane_transmits_what_its_faces_and_its_medium_let_through() {
     const SIGMA_A: f64 = 0.8;

@@ -44,8 +44,7 @@ fn assert_count(what: &str, count: u64, trials: f64, p: f64) {
 
 /// Acceptance frequencies from one to 10⁻⁸.
 ///
-/// Seen to catch: ξ of 24 bits compared as ξ < p (6 times too many at 10⁻⁸); the margin of the float32 proposal taken
-/// on one side only.
+/// Seen to catch: ξ of 24 bits compared as ξ < p (6 times too many at 10⁻⁸).
 #[test]
 fn samples_are_accepted_with_their_probability() {
     let samples = equal_samples(1 << 17);
@@ -78,7 +77,7 @@ fn key_of_zero(high: u32) -> u64 {
 /// Below 2⁻³² the first 32 bits of ξ are zero, once in 2³² times; given that, acceptance has the probability 2³² p. Only
 /// such keys are tried here.
 ///
-/// Seen to catch: acceptance decided by 32 bits alone (always accepted).
+/// Seen to catch: acceptance decided by 32 bits alone (always accepted), or by the same 32 bits twice.
 #[test]
 fn probabilities_below_the_first_bits_are_met() {
     let samples = equal_samples(1);
@@ -100,8 +99,7 @@ fn probabilities_below_the_first_bits_are_met() {
 /// Roulette over the whole sum, same cloud and points, one number a cloud; the mean is one for every rule, channel and
 /// model. The note's rule is tested only in channels where its variance is finite, 2σ_tr,c > σ̄ (method.md 7.1).
 ///
-/// Seen to catch: weights of 1 instead of 1/p; `more` random bits equal to the first ones; a rule's rates without the
-/// factor ⅓ of the mean.
+/// Seen to catch: weights of 1 instead of 1/p; lanes left free in the last block counted with weight 1.
 #[test]
 fn every_rule_has_the_mean_of_the_whole_sum() {
     let lights = [

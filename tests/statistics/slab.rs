@@ -1,82 +1,116 @@
 //! Reflectance of a plane: the whole of phase one and of the sum against the tabulated integrals.
 
-use bssrdf::{Coefficients, Medium, Model, fresnel};
+use bssrdf::{Medium, Model, built_in, fresnel};
 use gather::{Input, Settings, estimator::Estimator};
 use glam::DVec3;
 use rayon::prelude::*;
 use sample_surface::Choice;
+use serde_json::Value;
+use std::f64::consts::PI;
 use support::{
     EFFORT,
-    meshes::{Light, Part, graded_disc, world},
-    pipeline::{Lit, Point, Sampling, cloud, medium, orthographic, settings},
+    meshes::{Light, Part, World, graded_disc, world},
+    pipeline::{Lit, Point, Sampling, cloud, orthographic, settings},
+    quadrature::integrate,
     z_test::{Estimate, assert_mean},
 };
 
-/// skin1 in 1/m.
+/// The medium of this file; tabulated in all channels.
 fn skin() -> Medium {
-    let channel = |sigma_a, sigma_s| Coefficients { sigma_a, sigma_s, asymmetry: 0.0 };
-    medium([channel(32.0, 740.0), channel(170.0, 880.0), channel(480.0, 1010.0)], 1.3)
+    built_in("skin1").expect("a built-in medium")
 }
 
-/// `I(θ) = ∫ S_bare dA` of skin1, R, G, B: of `reference/plane_reflectance.json`, where `equations` checks them.
-const DIRECTIONAL_0: [f64; 3] = [0.21577343954968578, 0.13262733038260685, 0.09628238574668761];
-const DIRECTIONAL_60: [f64; 3] = [0.22713426527756994, 0.14854171813154468, 0.11334596641510929];
-const BETTER: [f64; 3] = [0.13729653758721413, 0.055238981666256924, 0.023811887243136126];
-const STANDARD: [f64; 3] = [0.13876130461294905, 0.07235883312011043, 0.04169728912063075];
+/// `I(θ) = ∫ S_bare dA` of [`skin`] under the column `key`; the table is in 1/sr, whatever the unit of length.
+fn tabulated(model: &str, key: &str) -> DVec3 {
+    let file: Value =
+        serde_json::from_str(include_str!("../reference/plane_reflectance.json")).expect("the reference file is JSON");
+    let entries = file["entries"].as_array().expect("a list");
+    let channel = |name: &str| {
+        let entry = entries.iter().find(|e| e["material"] == "skin1" && e["channel"] == name).expect("skin1");
+        entry[model][key].as_f64().expect("a number")
+    };
+    DVec3::new(channel("R"), channel("G"), channel("B"))
+}
 
-/// `L_r = T12(θ) E⊥ cos θ I(θ)` at the centre of a disc 16 diffusion lengths wide, for a mean of independent clouds.
-///
-/// Triangles shrink towards the centre and are chosen uniformly, so that a few thousand samples find S at every
-/// distance.
+/// A disc 16 diffusion lengths wide. Its triangles shrink towards the centre and are chosen uniformly, so that a few
+/// thousand samples find S at every distance.
+fn disc(lights: &[Light], environment: DVec3) -> World {
+    world(&[Part::translucent(graded_disc(2e-5, 60e-3, 45))], lights, environment)
+}
+
+fn sampling(samples: u64, seed: u64) -> Sampling {
+    Sampling { samples: samples * EFFORT, choice: Choice::Uniform, seed }
+}
+
+/// Independent clouds of a test, each with a range of seeds of its own.
+const SEEDS: u64 = 32;
+
+/// Fails unless the mean over clouds is as expected, and known well enough to tell.
+fn assert_radiance(what: &str, runs: &[DVec3], expected: DVec3) {
+    for c in 0..3 {
+        let estimate = Estimate::of(&runs.iter().map(|r| r[c]).collect::<Vec<_>>());
+        assert_mean(&format!("{what}, channel {c}"), estimate, expected[c]);
+        assert!(estimate.relative_error() < 0.01, "{estimate:?} is too rough to tell");
+        assert!(estimate.deviation(expected[c]).abs() < 4.0);
+    }
+}
+
+/// `L_r` at the centre by the whole sum over each cloud.
+fn radiance_at_centre(world: &World, model: Model, first_seed: u64) -> Vec<DVec3> {
+    let (medium, centre) = (skin(), Point { position: DVec3::ZERO, normal: DVec3::Z });
+    let run = |seed: u64| {
+        let cloud = cloud(world, &sampling(20_000, seed));
+        Lit::new(&cloud, &medium, model).radiance(Estimator::Exhaustive, centre, 0)
+    };
+    (first_seed..first_seed + SEEDS).into_par_iter().map(run).collect()
+}
+
+/// `L_r = T12(θ) E⊥ cos θ I(θ)`.
 ///
 /// Seen to catch: the cosine of the light left out of E; T12 left out; the uniform density without N; the density of
-/// the area rule with the uniform choice; α' left out of the standard dipole's strength; μ0 taken of the unrefracted
-/// direction.
-fn plane_reflectance(model: Model, degrees: f64, integrals: [f64; 3]) {
-    const SEEDS: u64 = 32;
+/// the area rule with the uniform choice; the square root of the triangle's point left out; α' left out of the standard
+/// dipole's strength; the unrefracted direction for ω12 (directional dipole at 60°).
+fn plane_reflectance(model: Model, degrees: f64, integral: DVec3) {
     const IRRADIANCE: f64 = 2.0;
     let (sine, cosine) = f64::to_radians(degrees).sin_cos();
     let sun = Light::Directional { towards: DVec3::new(sine, 0.0, cosine), irradiance: DVec3::splat(IRRADIANCE) };
-    let world = world(&[Part::translucent(graded_disc(2e-5, 60e-3, 45))], &[sun], DVec3::ZERO);
-    let medium = skin();
-    let centre = Point { position: DVec3::ZERO, normal: DVec3::Z };
-    let run = |seed: u64| {
-        let cloud = cloud(&world, &Sampling { samples: 20_000 * EFFORT, choice: Choice::Uniform, seed });
-        Lit::new(&cloud, &medium, model).radiance(Estimator::Exhaustive, centre, 0)
-    };
-    // Seeds of its own for every model and angle.
-    let first = SEEDS * (2 * model as u64 + u64::from(degrees > 0.0));
-    let runs: Vec<DVec3> = (first..first + SEEDS).into_par_iter().map(run).collect();
-    for (c, integral) in integrals.into_iter().enumerate() {
-        let values: Vec<f64> = runs.iter().map(|r| r[c]).collect();
-        let estimate = Estimate::of(&values);
-        let expected = fresnel::transmittance(cosine, medium.eta) * IRRADIANCE * cosine * integral;
-        assert_mean(&format!("{} {degrees}° channel {c}", model.name()), estimate, expected);
-        assert!(estimate.relative_error() < 0.01, "{estimate:?} is too rough to tell");
-        assert!(estimate.deviation(expected).abs() < 4.0);
-    }
+    let first_seed = SEEDS * (2 * model as u64 + u64::from(degrees > 0.0));
+    let runs = radiance_at_centre(&disc(&[sun], DVec3::ZERO), model, first_seed);
+    let expected = fresnel::transmittance(cosine, skin().eta) * IRRADIANCE * cosine * integral;
+    assert_radiance(&format!("{} {degrees}°", model.name()), &runs, expected);
 }
 
 #[test]
 fn directional_dipole_from_above() {
-    plane_reflectance(Model::DirectionalDipole, 0.0, DIRECTIONAL_0);
+    plane_reflectance(Model::DirectionalDipole, 0.0, tabulated("directional", "I_0deg"));
 }
 
 #[test]
 fn directional_dipole_at_60_degrees() {
-    plane_reflectance(Model::DirectionalDipole, 60.0, DIRECTIONAL_60);
+    plane_reflectance(Model::DirectionalDipole, 60.0, tabulated("directional", "I_60deg"));
 }
 
 #[test]
 fn better_dipole() {
-    plane_reflectance(Model::BetterDipole, 0.0, BETTER);
-    plane_reflectance(Model::BetterDipole, 60.0, BETTER);
+    plane_reflectance(Model::BetterDipole, 0.0, tabulated("better", "I_0deg"));
+    plane_reflectance(Model::BetterDipole, 60.0, tabulated("better", "I_0deg"));
 }
 
 #[test]
 fn standard_dipole() {
-    plane_reflectance(Model::StandardDipole, 0.0, STANDARD);
-    plane_reflectance(Model::StandardDipole, 60.0, STANDARD);
+    plane_reflectance(Model::StandardDipole, 0.0, tabulated("standard", "I_0deg"));
+    plane_reflectance(Model::StandardDipole, 60.0, tabulated("standard", "I_0deg"));
+}
+
+/// Light from all sides: `L_r = L I ∫ T12 cos θ dω`.
+///
+/// Seen to catch: directions uniform over the hemisphere (a lost cosine); the π of the density left out of E.
+#[test]
+fn a_constant_sky_lights_the_plane() {
+    const SKY: f64 = 0.5;
+    let runs = radiance_at_centre(&disc(&[], DVec3::splat(SKY)), Model::StandardDipole, 2000);
+    let enters = 2.0 * PI * integrate(0.0, 1.0, 20, |c| fresnel::transmittance(c, skin().eta) * c);
+    assert_radiance("constant sky", &runs, SKY * enters * tabulated("standard", "I_0deg"));
 }
 
 /// The same through `gather::render` and the interface, of which the chosen refraction is part: `T21(θ_o) L_r`.
@@ -84,22 +118,17 @@ fn standard_dipole() {
 /// Seen to catch: T21 of the chosen refraction applied again (S for `S_gather`); a lost 1/K.
 #[test]
 fn scattered_light_is_seen_through_the_interface() {
-    let sun = Light::Directional { towards: DVec3::Z, irradiance: DVec3::ONE };
-    let world = world(&[Part::translucent(graded_disc(2e-5, 60e-3, 45))], &[sun], DVec3::ZERO);
+    let world = disc(&[Light::Directional { towards: DVec3::Z, irradiance: DVec3::ONE }], DVec3::ZERO);
     let (sine, cosine) = f64::to_radians(75.0).sin_cos();
     let camera = orthographic(DVec3::new(sine, 0.0, cosine), 1e-6);
     let media = [skin()];
     let run = |seed: u64| {
-        let cloud = cloud(&world, &Sampling { samples: 10_000 * EFFORT, choice: Choice::Uniform, seed });
+        let cloud = cloud(&world, &sampling(10_000, seed));
         let input = Input { scene: &world.scene, rays: &world.rays, cloud: &cloud, media: &media, camera: &camera };
         let settings = Settings { paths_per_pixel: 256, seed, ..settings(Model::BetterDipole, 1, 1) };
         gather::render(&input, &settings, |_| ()).pixels[0].beauty()
     };
-    let runs: Vec<DVec3> = (1000..1032).into_par_iter().map(run).collect();
-    let interface = fresnel::transmittance(cosine, 1.3) * fresnel::transmittance(1.0, 1.3);
-    for (c, integral) in BETTER.into_iter().enumerate() {
-        let estimate = Estimate::of(&runs.iter().map(|r| r[c]).collect::<Vec<_>>());
-        assert_mean(&format!("seen at 75°, channel {c}"), estimate, interface * integral);
-        assert!(estimate.relative_error() < 0.01, "{estimate:?} is too rough to tell");
-    }
+    let runs: Vec<DVec3> = (1000..1000 + SEEDS).into_par_iter().map(run).collect();
+    let interface = fresnel::transmittance(cosine, skin().eta) * fresnel::transmittance(1.0, skin().eta);
+    assert_radiance("seen at 75°", &runs, interface * tabulated("better", "I_0deg"));
 }

@@ -50,12 +50,17 @@ pub struct World {
 
 /// Writes the parts and lights to a file and imports it; `environment` is a constant radiance, W/(m² sr).
 pub fn world(parts: &[Part], lights: &[Light], environment: DVec3) -> World {
-    let folder = tempfile::tempdir().expect("the temporary folder is writable");
     let (document, binary) = encode(parts, lights);
+    imported(&document, &binary, 1.0, environment)
+}
+
+/// A glTF document whose only buffer is `scene.bin`, through a file and the importer.
+pub fn imported(document: &Value, binary: &[u8], metres_per_unit: f64, environment: DVec3) -> World {
+    let folder = tempfile::tempdir().expect("the temporary folder is writable");
     let path = folder.path().join("scene.gltf");
     fs::write(&path, document.to_string()).expect("the temporary folder is writable");
     fs::write(folder.path().join("scene.bin"), binary).expect("the temporary folder is writable");
-    let options = ImportOptions { metres_per_unit: 1.0, light_unit: LightUnit::Radiometric };
+    let options = ImportOptions { metres_per_unit, light_unit: LightUnit::Radiometric };
     let mut scene = Scene::import(&path, &options).expect("the file is valid glTF");
     scene.add_environment(environment);
     let rays = Rays::new(&scene.mesh);

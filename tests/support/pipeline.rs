@@ -35,16 +35,21 @@ pub fn by_area(samples: u64, seed: u64) -> Sampling {
 
 /// Phase one in memory.
 pub fn sampled(world: &World, sampling: &Sampling) -> Sampled {
+    sampled_with(world, sampling, NormalKind::Geometric)
+}
+
+/// Phase one in memory, with these normals.
+pub fn sampled_with(world: &World, sampling: &Sampling, normals: NormalKind) -> Sampled {
     let settings = Settings {
         samples: sampling.samples,
         choice: sampling.choice,
-        normals: NormalKind::Geometric,
+        normals,
         translucent: Vec::new(),
         options: Options {
             seed: sampling.seed,
             choice: sampling.choice.name().into(),
             pattern: "independent".into(),
-            normals: "geometric".into(),
+            normals: if normals == NormalKind::Geometric { "geometric" } else { "shading" }.into(),
             metres_per_unit: 1.0,
             light_unit: "radiometric".into(),
             environment: [0.0; 3],
@@ -63,9 +68,14 @@ pub fn write(sampled: &Sampled, path: &Path) {
 
 /// Phase one to a file and back.
 pub fn cloud(world: &World, sampling: &Sampling) -> Cloud {
+    filed(&sampled(world, sampling))
+}
+
+/// What phase one made, to a file and back.
+pub fn filed(sampled: &Sampled) -> Cloud {
     let folder = tempfile::tempdir().expect("the temporary folder is writable");
     let path = folder.path().join("test.cloud");
-    write(&sampled(world, sampling), &path);
+    write(sampled, &path);
     Cloud::open(&path).expect("the cloud was written whole")
 }
 

@@ -11,6 +11,9 @@ use std::f64::consts::PI;
 /// Below this length a projected unit vector has no direction left (method.md 5.6).
 const NULL_DIRECTION: f64 = 1e-12;
 
+/// Below this distance, m, 1/d³ leaves the range of numbers.
+const NULL_DISTANCE: f64 = 1e-100;
+
 /// One channel; lengths in m.
 #[derive(Clone, Copy, Debug)]
 struct Channel {
@@ -56,7 +59,7 @@ impl DirectionalDipole {
                 extrapolation,
                 mirror: 2.0 * boundary.reflection * extrapolation,
                 back_lit: (3.0 * c.extinction()).powi(-2),
-                scatters: c.reduced_scattering() > 0.0,
+                scatters: c.scatters(),
             }
         });
         let strength = 1.0 / (4.0 * PI * PI * boundary.exit_norm);
@@ -110,8 +113,8 @@ impl Bssrdf for DirectionalDipole {
             c.back_lit
         };
         let distance = (r2 + depth_squared).sqrt();
-        if distance == 0.0 {
-            return 0.0; // μ0 underflowed at r = 0: the limit depends on the path, method.md section 8
+        if distance < NULL_DISTANCE {
+            return 0.0; // μ0 → 0 at r = 0: the limit depends on the path, method.md section 8
         }
         let normal = mirror_normal(s, r2.sqrt());
         let (a, b) = (normal.dot(s.refracted), normal.dot(s.normal_out));

@@ -12,6 +12,7 @@
 //! *Fresnel is said once, here:* the light's way in is `T12`, stored with each sample's flux; the way out is consumed
 //! by the choice between reflection and refraction at the exitant point, so the sum over samples uses `S_gather`.
 
+mod accuracy;
 mod better_dipole;
 mod directional_dipole;
 mod error;
@@ -22,6 +23,7 @@ mod medium;
 pub mod simd;
 mod standard_dipole;
 
+pub use accuracy::GOOD;
 pub use better_dipole::BetterDipole;
 pub use directional_dipole::DirectionalDipole;
 pub use error::MediumError;

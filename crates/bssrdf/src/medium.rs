@@ -73,15 +73,20 @@ impl Coefficients {
         (1.0 - self.asymmetry) * self.sigma_s
     }
 
+    /// False where `S = 0` because nothing scatters (method.md section 8): not once in 10⁶⁰ m, which leaves the squares
+    /// and cubes of all lengths finite.
+    pub fn scatters(&self) -> bool {
+        self.reduced_scattering() > 1e-60
+    }
+
     /// `σ_t' = σ_s' + σ_a`, 1/m.
     pub fn reduced_extinction(&self) -> f64 {
         self.reduced_scattering() + self.sigma_a
     }
 
-    /// `α' = σ_s'/σ_t'`; 0 in a vacuum.
+    /// `α' = σ_s'/σ_t'`; 0 where nothing scatters, also in a vacuum.
     pub fn reduced_albedo(&self) -> f64 {
-        let scattering = self.reduced_scattering();
-        if scattering == 0.0 { 0.0 } else { scattering / self.reduced_extinction() }
+        if self.scatters() { self.reduced_scattering() / self.reduced_extinction() } else { 0.0 }
     }
 
     /// `D = 1/(3σ_t')` of the standard and the directional dipole, m (method.md 3.2, 5.1).
@@ -177,7 +182,7 @@ impl Medium {
 
     /// True if no channel scatters: nothing leaves by subsurface scattering.
     pub fn is_clear(&self) -> bool {
-        self.channels.iter().all(|c| c.reduced_scattering() == 0.0)
+        !self.channels.iter().any(Coefficients::scatters)
     }
 }
 

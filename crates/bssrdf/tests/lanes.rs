@@ -1,12 +1,29 @@
-//! The float32 evaluation against the float64 one, over random configurations and media.
+//! The float32 evaluation against the float64 one, over random media and configurations that float32 holds exactly; and
+//! all vector widths against each other, bit for bit.
 
 use bssrdf::{
-    Bssrdf, DVec3, Medium, Model, Separation, fresnel,
-    lanes::{BetterLanes, Block, DirectionalLanes, LANES, LaneModel, StandardLanes},
+    Bssrdf, Coefficients, DVec3, Interface, Medium, Model, Separation, fresnel,
+    lanes::{BetterLanes, Block, DirectionalLanes, LANES, Lane, LaneModel, StandardLanes},
     simd::{self, Kernel},
 };
+use std::f64::consts::TAU;
 
-/// SplitMix64: test data only.
+/// Distances in reduced mean free paths, `σ_t' r`.
+const RANGES: [[f64; 2]; 4] = [[1e-3, 1.0], [1.0, 10.0], [10.0, 100.0], [100.0, 1000.0]];
+
+/// Blocks of sixteen for each range: enough that the 99.9th percentile is one of dozens of values.
+const BLOCKS: usize = 4000;
+
+/// What 999 of 1000 values keep to, relative: far below the grain of any image.
+const TOLERANCE: f64 = 1e-5;
+
+/// The same for the directional dipole on curved surfaces. There S crosses zero where the clamp of (5.10) begins, and in
+/// one configuration of a few hundred the terms of (5.9) cancel fifty times and more; against the sum of their
+/// magnitudes the error stays near 3·10⁻⁶. No order of float32 operations helps: geometry and kernel must both be
+/// float64 to do better.
+const TOLERANCE_NEAR_ZERO: f64 = 5e-5;
+
+/// SplitMix64 (Steele, Lea and Flood 2014): test data only.
 struct Random(u64);
 
 impl Random {
@@ -22,126 +39,174 @@ impl Random {
         low + (high - low) * self.uniform()
     }
 
+    fn log_between(&mut self, low: f64, high: f64) -> f64 {
+        self.between(low.ln(), high.ln()).exp()
+    }
+
     fn direction(&mut self) -> DVec3 {
         let z = self.between(-1.0, 1.0);
-        let (s, c) = self.between(0.0, std::f64::consts::TAU).sin_cos();
+        let (sine, cosine) = self.between(0.0, TAU).sin_cos();
         let radius = (1.0 - z * z).sqrt();
-        DVec3::new(radius * c, radius * s, z)
+        DVec3::new(radius * cosine, radius * sine, z)
     }
 }
 
+/// From clear to white, a tenth of the channels without absorption; 1/m.
 fn medium(random: &mut Random) -> Medium {
-    let mut three = |f: &mut dyn FnMut(&mut Random) -> f64| [f(random), f(random), f(random)].map(|x| x.to_string());
-    let sigma_s = three(&mut |r| 10f64.powf(r.between(-2.0, 2.0)));
-    let sigma_a = three(&mut |r| if r.uniform() < 0.1 { 0.0 } else { 10f64.powf(r.between(-4.0, 2.0)) });
-    let g = random.between(-0.5, 0.95);
     let eta = random.between(1.0, 2.0);
-    let json = format!(
-        r#"{{"name":"random","unit":"1/mm","sigma_s":[{}],"sigma_a":[{}],"g":{g},"eta":{eta}}}"#,
-        sigma_s.join(","),
-        sigma_a.join(",")
-    );
-    Medium::from_json(&json).expect("valid")
+    let channels = [0; 3].map(|_| Coefficients {
+        sigma_a: if random.uniform() < 0.1 { 0.0 } else { random.log_between(1e-1, 1e5) },
+        sigma_s: random.log_between(10.0, 1e5),
+        asymmetry: random.between(-0.5, 0.95),
+    });
+    Medium { name: "random".into(), source: String::new(), channels, eta, interface: Interface::new(eta) }
 }
 
-/// A separation that float32 holds exactly, at a distance of `low..high` reduced mean free paths of a channel.
-fn separation(random: &mut Random, medium: &Medium, range: [f64; 2], plane: bool) -> Separation {
-    let exact = |v: DVec3| v.as_vec3().as_dvec3();
-    let normal_in = random.direction();
-    let mut light = random.direction();
-    if light.dot(normal_in) < 0.0 {
-        light = -light;
+/// The nearest vector that float32 holds.
+fn rounded(v: DVec3) -> DVec3 {
+    v.as_vec3().as_dvec3()
+}
+
+/// Light that enters about `normal` from above and leaves at `normal_out`, `distance` m away: in the plane of both, or
+/// anywhere.
+fn separation(random: &mut Random, eta: f64, normals: [DVec3; 2], distance: f64, plane: bool) -> Separation {
+    let [normal_in, normal_out] = normals;
+    let light = random.direction();
+    let light = light * light.dot(normal_in).signum();
+    let refracted = fresnel::enter(normal_in, light, eta).map_or(-light, |entry| entry.direction);
+    let mut direction = random.direction();
+    if plane {
+        direction = direction.cross(normal_in).normalize();
     }
-    let refracted = fresnel::enter(normal_in, light, medium.eta).map_or(-light, |e| e.direction);
-    let distance =
-        10f64.powf(random.between(range[0].log10(), range[1].log10())) / medium.channels[0].reduced_extinction();
-    let direction = random.direction();
-    let (direction, normal_out) = if plane {
-        ((direction - direction.dot(normal_in) * normal_in).normalize(), normal_in)
-    } else {
-        (direction, random.direction())
-    };
     Separation {
-        offset: exact(direction * distance),
-        normal_in: exact(normal_in),
-        refracted: exact(refracted),
-        normal_out: exact(normal_out),
+        offset: rounded(direction * distance),
+        normal_in: rounded(normal_in),
+        refracted: rounded(refracted),
+        normal_out: rounded(normal_out),
     }
 }
 
-fn block_of(separations: &[Separation; LANES]) -> Block {
-    let lanes = |f: fn(&Separation) -> DVec3| [0, 1, 2].map(|c| separations.map(|s| f(&s)[c] as f32));
-    Block { offset: lanes(|s| s.offset), normal_in: lanes(|s| s.normal_in), refracted: lanes(|s| s.refracted) }
+/// Sixteen configurations with one exitant normal.
+fn separations(random: &mut Random, medium: &Medium, range: [f64; 2], plane: bool) -> [Separation; LANES] {
+    let normal_out = random.direction();
+    [0; LANES].map(|_| {
+        let normal_in = if plane { normal_out } else { random.direction() };
+        let distance = random.log_between(range[0], range[1]) / medium.channels[0].reduced_extinction();
+        separation(random, medium.eta, [normal_in, normal_out], distance, plane)
+    })
 }
 
-struct Evaluate<'a, M>(&'a M, &'a Block, [f32; 3]);
+/// One evaluation of a block.
+struct Evaluate<'a, M> {
+    model: &'a M,
+    block: Block,
+    normal_out: [f32; 3],
+}
+
+impl<'a, M> Evaluate<'a, M> {
+    fn new(model: &'a M, separations: &[Separation; LANES]) -> Self {
+        let lanes = |f: fn(&Separation) -> DVec3| [0, 1, 2].map(|c| separations.map(|s| f(&s)[c] as f32));
+        let block =
+            Block { offset: lanes(|s| s.offset), normal_in: lanes(|s| s.normal_in), refracted: lanes(|s| s.refracted) };
+        Evaluate { model, block, normal_out: separations[0].normal_out.as_vec3().to_array() }
+    }
+}
 
 impl<M: LaneModel> Kernel for Evaluate<'_, M> {
-    type Output = [[f32; LANES]; 3];
+    type Output = [Lane; 3];
+
     #[inline(always)]
-    fn run(self) -> Self::Output {
-        self.0.bare(self.1, self.2)
+    fn run(self) -> [Lane; 3] {
+        self.model.bare(&self.block, self.normal_out)
     }
 }
 
-/// Relative errors of red wherever S exceeds 10⁻¹² of its value at the sample itself, sorted; and the worst case.
-fn errors<M: LaneModel>(model: Model, range: [f64; 2], plane: bool, blocks: usize) -> Vec<(f64, Separation)> {
-    let mut random = Random(blocks as u64 ^ range[1].to_bits() ^ u64::from(plane));
+/// The exact value, where it is one to compare with: not where the depth of the source, which jumps at μ0 = 0, hangs on
+/// the rounding of n_o and ω12; nor where S is below 10⁻¹² of its value at the sample itself, or underflows.
+fn reference(model: &dyn Bssrdf, separation: &Separation) -> Option<f64> {
+    let value = model.bare(0, separation);
+    let peak = model.bare(0, &Separation { offset: DVec3::ZERO, ..*separation });
+    let decided = separation.normal_out.dot(separation.refracted).abs() > 1e-5;
+    (decided && value > 1e-12 * peak && value > 1e-30).then_some(value)
+}
+
+/// Relative errors of the red channel, sorted.
+fn errors<M: LaneModel>(model: Model, range: [f64; 2], plane: bool) -> Vec<f64> {
+    let mut random = Random(range[1].to_bits() ^ u64::from(plane));
     let mut errors = Vec::new();
-    for _ in 0..blocks {
+    for _ in 0..BLOCKS {
         let medium = medium(&mut random);
-        let (reference, fast) = (model.of(&medium), M::new(&medium));
-        let mut separations = [separation(&mut random, &medium, range, plane); LANES];
-        for s in &mut separations {
-            let normal_out = s.normal_out;
-            *s = separation(&mut random, &medium, range, plane);
-            if !plane {
-                s.normal_out = normal_out;
-            }
-        }
-        if plane {
-            // One exitant normal a block: turn all lanes' surfaces into the first one's.
-            separations = [separations[0]; LANES];
-        }
-        let normal_out = separations[0].normal_out.as_vec3().to_array();
-        let values = simd::dispatch(Evaluate(&fast, &block_of(&separations), normal_out));
-        for (i, s) in separations.iter().enumerate().take(if plane { 1 } else { LANES }) {
-            let s = &Separation { normal_out: separations[0].normal_out, ..*s };
-            let exact = reference.bare(0, s);
-            let peak = reference.bare(0, &Separation { offset: DVec3::ZERO, ..*s });
-            if exact > 1e-12 * peak && exact > 1e-30 && -s.normal_out.dot(s.refracted) > 1e-5 {
-                errors.push(((f64::from(values[0][i]) / exact - 1.0).abs(), *s));
+        let exact = model.of(&medium);
+        let separations = separations(&mut random, &medium, range, plane);
+        let fast = M::new(&medium);
+        let values = simd::dispatch(Evaluate::new(&fast, &separations));
+        for (separation, value) in separations.iter().zip(values[0]) {
+            assert!(value.is_finite() && value >= 0.0, "{separation:?}");
+            if let Some(exact) = reference(&*exact, separation) {
+                errors.push((f64::from(value) / exact - 1.0).abs());
             }
         }
     }
-    errors.sort_by(|a, b| a.0.total_cmp(&b.0));
+    errors.sort_by(f64::total_cmp);
     errors
 }
 
-fn check<M: LaneModel>(model: Model) {
+fn assert_close<M: LaneModel>(model: Model) {
     for plane in [false, true] {
-        for range in [[1e-3, 1.0], [1.0, 10.0], [10.0, 100.0], [100.0, 1000.0]] {
-            let errors = errors::<M>(model, range, plane, if plane { 20_000 } else { 2_000 });
-            let at = |share: f64| errors[((errors.len() - 1) as f64 * share) as usize].0;
+        for range in RANGES {
+            let errors = errors::<M>(model, range, plane);
+            let at = |share: f64| errors[((errors.len() - 1) as f64 * share) as usize];
+            let shape = if plane { "plane" } else { "general" };
+            let (name, most) = (model.name(), at(0.999));
             println!(
-                "{} plane {plane} {range:?}: {} values, median {:.1e}, 99 % {:.1e}, 99.9 % {:.1e}, worst {:.1e}",
-                model.name(),
+                "{name} {shape} {range:?}: {} values, median {:.1e}, 99 % {:.1e}, 99.9 % {most:.1e}, worst {:.1e}",
                 errors.len(),
                 at(0.5),
                 at(0.99),
-                at(0.999),
                 at(1.0)
             );
-            if std::env::var_os("WORST").is_some() {
-                println!("   {:?}", errors[errors.len() - 1]);
-            }
+            let crosses_zero = model == Model::DirectionalDipole && !plane;
+            let tolerance = if crosses_zero { TOLERANCE_NEAR_ZERO } else { TOLERANCE };
+            assert!(errors.len() > 10_000, "{name} {shape} {range:?}: only {} values", errors.len());
+            assert!(most < tolerance, "{name} {shape} {range:?}: {most:.1e}");
         }
     }
 }
 
 #[test]
-fn print() {
-    check::<DirectionalLanes>(Model::DirectionalDipole);
-    check::<BetterLanes>(Model::BetterDipole);
-    check::<StandardLanes>(Model::StandardDipole);
+fn directional_dipole_is_close_to_float64() {
+    assert_close::<DirectionalLanes>(Model::DirectionalDipole);
+}
+
+#[test]
+fn better_dipole_is_close_to_float64() {
+    assert_close::<BetterLanes>(Model::BetterDipole);
+}
+
+#[test]
+fn standard_dipole_is_close_to_float64() {
+    assert_close::<StandardLanes>(Model::StandardDipole);
+}
+
+fn assert_same_bits<M: LaneModel>() {
+    let mut random = Random(7);
+    for k in 0..BLOCKS {
+        let medium = medium(&mut random);
+        let mut separations = separations(&mut random, &medium, RANGES[k % 4], k % 8 < 4);
+        // The rare branches: no distance, and a distance along the normal.
+        separations[3].offset = DVec3::ZERO;
+        separations[9].offset = separations[9].normal_in;
+        let model = M::new(&medium);
+        let plain = simd::run_plain(Evaluate::new(&model, &separations));
+        let wide = simd::dispatch(Evaluate::new(&model, &separations));
+        let bits = |values: [Lane; 3]| values.map(|lane| lane.map(f32::to_bits));
+        assert_eq!(bits(plain), bits(wide), "{medium:?}");
+    }
+}
+
+#[test]
+fn all_vector_widths_give_the_same_bits() {
+    assert_same_bits::<DirectionalLanes>();
+    assert_same_bits::<BetterLanes>();
+    assert_same_bits::<StandardLanes>();
 }

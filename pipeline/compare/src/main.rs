@@ -47,7 +47,7 @@ struct Arguments {
     #[arg(long)]
     ignore_meta: bool,
     /// Write all metrics and gates as JSON
-    #[arg(long, value_name = "FILE")]
+    #[arg(short = 'o', long, visible_alias = "output", value_name = "FILE")]
     json: Option<PathBuf>,
     #[command(flatten)]
     common: cli::Common,

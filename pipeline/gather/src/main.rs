@@ -120,6 +120,10 @@ fn check_fit(
     } else if scene.light_digest != meta.lights {
         "its lights differ".into()
     } else {
+        let normals = arguments.scene_args.normals.name();
+        if normals != meta.options.normals {
+            arguments.common.warn(format_args!("--normals is {normals}, the cloud's {}", meta.options.normals));
+        }
         let (seen, lit) = (arguments.scene_args.radiance().to_array(), meta.options.environment);
         if seen != lit {
             let [r, g, b] = lit;
@@ -245,6 +249,14 @@ fn show_scale(arguments: &Arguments, scene: &Scene, cloud: &Cloud, media: &[Medi
         let scale = media::scale(&material.name, medium, transport, diagonal, spacing);
         scale.lines.iter().for_each(|line| arguments.common.say(line));
         scale.warnings.iter().for_each(|warning| arguments.common.warn(warning));
+        if let Some(errors) = settings.model.poor_reflectance(medium) {
+            let [r, g, b] = errors.map(|e| format!("{:+.0}", 100.0 * e));
+            arguments.common.say(format_args!(
+                "  {} reflects {r} {g} {b} % more than {} does (red, green, blue; docs/accuracy.md)",
+                settings.model.name(),
+                medium.name
+            ));
+        }
     }
 }
 

@@ -33,7 +33,7 @@ impl LaneModel for BetterLanes {
         let boundary = &medium.interface;
         let channels = medium.channels.map(|c| {
             let reduced = c.reduced_extinction();
-            let scatters = c.reduced_scattering() > 0.0;
+            let scatters = c.scatters();
             // Any finite values do where the strength is 0.
             let diffusion = if scatters { c.grosjean_diffusion() * reduced } else { 1.0 };
             let norm = PI * boundary.exit_norm;
@@ -74,6 +74,8 @@ impl Channel {
                 + self.virtual_depth * (1.0 + q_virtual) * e_virtual / (virtual2 * mirrored));
         // e^{−q_r}/d_r − e^{−q_v}/d_v
         let difference = e_real * (delta + real * fades) / (real * mirrored);
-        self.strength * (vector + self.fluence * difference)
+        let value = self.strength * (vector + self.fluence * difference);
+        // No number where a distance left the range of float32: S is far below it there.
+        if value > 0.0 { value } else { 0.0 }
     }
 }

@@ -54,7 +54,7 @@ impl LaneModel for DirectionalLanes {
         let boundary = &medium.interface;
         let channels = medium.channels.map(|c| {
             let reduced = c.reduced_extinction();
-            if c.reduced_scattering() == 0.0 {
+            if !c.scatters() {
                 return Channel::NOTHING;
             }
             let extrapolation = 2.131 / 3.0 / c.reduced_albedo().sqrt();
@@ -123,8 +123,8 @@ impl DirectionalLanes {
 
         let e_real = exp_negative(-q_real) * over_real2 / real;
         let difference = e_real * (omega * g_real - rho3 * stays * d_g) * c.strength;
-        // Not above zero also where d_r = 0 made it no number: S = 0 there (method.md section 8).
-        if difference > 0.0 { difference } else { 0.0 }
+        // S = 0 also where d_r is so near 0 that this is no number, or infinite (method.md section 8).
+        if difference > 0.0 && difference < f32::INFINITY { difference } else { 0.0 }
     }
 }
 

@@ -34,7 +34,7 @@ impl LaneModel for StandardLanes {
     fn new(medium: &Medium) -> Self {
         let channels = medium.channels.map(|c| {
             let reduced = c.reduced_extinction();
-            let scatters = c.reduced_scattering() > 0.0;
+            let scatters = c.scatters();
             Channel {
                 scale: reduced as f32,
                 transport: if scatters { (c.transport() / reduced) as f32 } else { 0.0 },
@@ -51,7 +51,9 @@ impl LaneModel for StandardLanes {
         self.channels.map(|c| {
             each(|i| {
                 let r2 = r2[i] * c.scale * c.scale;
-                c.strength * (source(r2, 1.0, c.transport) + source(r2, c.virtual_depth, c.transport))
+                let value = c.strength * (source(r2, 1.0, c.transport) + source(r2, c.virtual_depth, c.transport));
+                // No number where a distance left the range of float32: S is far below it there.
+                if value > 0.0 { value } else { 0.0 }
             })
         })
     }

@@ -38,6 +38,16 @@ pub struct Meta {
     pub materials: Vec<SampledMaterial>,
 }
 
+impl Meta {
+    /// True if no fact is NaN or infinite.
+    pub(super) fn is_finite(&self) -> bool {
+        let single = [self.surface_area_m2, self.diagonal_m, self.options.metres_per_unit];
+        let triples = [self.mean_flux_w, self.origin_m, self.options.environment];
+        let areas = self.materials.iter().map(|m| m.area_m2);
+        single.into_iter().chain(triples.into_iter().flatten()).chain(areas).all(f64::is_finite)
+    }
+}
+
 /// What `sample-surface` was asked for.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Options {

@@ -253,7 +253,7 @@ fn read_meta(file: &[u8], header: &Header) -> Result<Meta, String> {
         next = next.checked_add(m.count).ok_or(damaged)?;
     }
     let fits = used == bytes.len() && next == header.samples && meta.samples_drawn >= next && meta.samples_drawn > 0;
-    if fits { Ok(meta) } else { Err(damaged.into()) }
+    if fits && meta.is_finite() { Ok(meta) } else { Err(damaged.into()) }
 }
 
 #[cfg(test)]

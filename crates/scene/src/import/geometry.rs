@@ -109,15 +109,27 @@ impl Builder {
         Ok(determinant < 0.0)
     }
 
+    /// Centre of the box around all triangles.
+    fn centre(&self) -> Result<DVec3, Fault> {
+        let corners = self.triangles.iter().flat_map(|t| t.vertices.map(|i| self.positions[i as usize]));
+        let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let (low, high) = corners.fold(start, |(low, high), p| (low.min(p), high.max(p)));
+        let size = high - low;
+        let centre = low + size * 0.5;
+        // Beyond, float64 has fewer digits left than the float32 that follows.
+        if size != DVec3::ZERO && centre.length() * f64::EPSILON > size.length() * f64::from(f32::EPSILON) {
+            let way_out = "move it there and export again";
+            return Err(format!("the mesh is too far from the origin for its size, at {centre}; {way_out}"));
+        }
+        Ok(centre)
+    }
+
     /// Centres the mesh and drops triangles without area.
     fn finish(mut self) -> Result<Geometry, Fault> {
         if self.triangles.is_empty() {
             return Err("no triangles: nothing to light or to see".into());
         }
-        let corners = self.triangles.iter().flat_map(|t| t.vertices.map(|i| self.positions[i as usize]));
-        let (low, high) =
-            corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
-        let origin = low + (high - low) * 0.5;
+        let origin = self.centre()?;
         let relative = |p: &DVec3| (*p - origin).as_vec3();
         let positions: Vec<Vec3> = self.positions.iter().map(relative).collect();
         if !positions.iter().all(|p| p.is_finite()) {
@@ -130,7 +142,7 @@ impl Builder {
         let mut flags = keep.iter();
         mesh.triangles.retain(|_| *flags.next().unwrap_or(&true));
         if mesh.triangles.is_empty() {
-            return Err(format!("all {count} triangles have no area"));
+            return Err(format!("all {count} triangles have no area (scale 0?)"));
         }
         let degenerate = (count - mesh.triangles.len()) as u64;
         Ok(Geometry { mesh, origin, degenerate })

@@ -173,8 +173,8 @@ impl Rays {
     }
 
     /// Whether a triangle met within rounding of the one the ray left reaches into the half-space that the ray goes to:
-    /// one that lies in the same plane or bends away cannot be in the way. Behind the origin, its far side is the one
-    /// that is passed, too.
+    /// one that lies in the same plane or bends away cannot be in the way. At the origin itself and behind it, its far
+    /// side is the one that is passed, too: a ray that entered at an edge does not enter through both its faces.
     #[cold]
     fn is_ahead(&self, met: &Crossing, place: usize, from: u32, direction: DVec3) -> bool {
         const ROUNDING: f64 = 1e-14;
@@ -184,7 +184,7 @@ impl Rays {
         let length = normal.length();
         let other = self.corners[place].map(|v| v.as_dvec3());
         let reaches = other.iter().any(|v| normal.dot(*v - a) > ROUNDING * length * (*v - a).length());
-        reaches && (met.distance >= 0.0 || met.leaves_front() != (normal.dot((b - a).cross(c - a)) > 0.0))
+        reaches && (met.distance > -BEHIND || met.leaves_front() != (normal.dot((b - a).cross(c - a)) > 0.0))
     }
 }
 

@@ -1,0 +1,182 @@
+//! The files that a scene is made of: containers, buffers beside them, data URIs, names.
+
+#[path = "support/asset.rs"]
+mod asset;
+
+use asset::{Folder, OPTIONS, container, import_bytes, tetrahedron};
+use base64::{Engine, engine::general_purpose::STANDARD};
+use scene::Scene;
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// The tetrahedron as a .gltf whose buffers are these.
+fn gltf(buffers: Value) -> Vec<u8> {
+    let mut document = tetrahedron().json;
+    document["buffers"] = buffers;
+    document.to_string().into_bytes()
+}
+
+/// Imports `scene.gltf` from a folder, with its buffer at `uri`.
+fn import_in(folder: &Folder, uri: &str) -> Result<Scene, String> {
+    let path = folder.write("my scene.gltf", &gltf(json!([{ "uri": uri, "byteLength": tetrahedron().binary.len() }])));
+    Scene::import(&path, &OPTIONS).map_err(|e| e.to_string())
+}
+
+#[test]
+fn a_buffer_is_beside_the_scene_below_it_or_in_the_uri() {
+    let binary = tetrahedron().binary;
+    let names = [
+        ("plain.bin", "plain.bin"),
+        ("./plain.bin", "plain.bin"),
+        ("with%20space.bin", "with space.bin"),
+        ("with space.bin", "with space.bin"),
+        ("%E9%87%91%C3%A9.bin", "金é.bin"),
+        ("金é.bin", "金é.bin"),
+        ("100%.bin", "100%.bin"),
+        ("parts/deep/mesh.bin", "parts/deep/mesh.bin"),
+    ];
+    for (uri, file) in names {
+        let folder = Folder::new();
+        folder.write(file, &binary);
+        let scene = import_in(&folder, uri).unwrap_or_else(|e| panic!("{uri}: {e}"));
+        assert_eq!(scene.mesh.triangles.len(), 4, "{uri}");
+    }
+    let encoded = STANDARD.encode(&binary);
+    for data in [&encoded, encoded.trim_end_matches('=')] {
+        let uri = format!("data:application/octet-stream;base64,{data}");
+        assert!(import_in(&Folder::new(), &uri).is_ok(), "{uri}");
+    }
+}
+
+#[test]
+fn a_missing_or_short_buffer_is_named_with_the_scene() {
+    let folder = Folder::new();
+    let message = import_in(&folder, "gone%20away.bin").err().expect("the file is missing");
+    for word in ["my scene.gltf", "buffers[0].uri", "gone away.bin", "beside it"] {
+        assert!(message.contains(word), "{word}: {message}");
+    }
+    folder.write("short.bin", &tetrahedron().binary[1..]);
+    let message = import_in(&folder, "short.bin").err().expect("the file is short");
+    assert!(message.contains("truncated") && message.contains("byteLength"), "{message}");
+}
+
+#[test]
+fn nothing_outside_the_folder_is_read() {
+    let outer = Folder::new();
+    outer.write("secret.bin", &tetrahedron().binary);
+    let uri = outer.path().join("secret.bin").display().to_string();
+    let (encoded, url) = (uri.replace('/', "%2F"), format!("file://{uri}"));
+    for uri in [&uri, &encoded, &url, "../secret.bin", "a/../../secret.bin", "%2e%2e/secret.bin", "", ".", "x:///y"] {
+        let folder = Folder::new();
+        let message = import_in(&folder, uri).err().unwrap_or_else(|| panic!("`{uri}` was read"));
+        assert!(message.contains("not a file in the scene's folder"), "{uri}: {message}");
+    }
+}
+
+#[test]
+fn odd_uris_are_faults() {
+    let cases = [
+        ("data:application/octet-stream,abc", "base64"),
+        ("data:application/octet-stream;base64,*", "base64"),
+        ("data:", "base64"),
+        ("%FF%FE.bin", "UTF-8"),
+        ("a%00b.bin", "my scene.gltf"),
+        ("folder", "not a regular file"),
+    ];
+    for (uri, word) in cases {
+        let folder = Folder::new();
+        folder.write("folder/inside", b"");
+        let message = import_in(&folder, uri).err().unwrap_or_else(|| panic!("`{uri}` was read"));
+        assert!(message.contains(word), "{uri}: {message}");
+    }
+}
+
+/// A file that thousands of buffers name is still one file.
+#[test]
+fn one_file_is_read_once() {
+    let folder = Folder::new();
+    let binary = tetrahedron().binary;
+    let mut large = binary.clone();
+    large.resize(4 << 20, 0);
+    folder.write("mesh.bin", &large);
+    let buffers: Vec<Value> = (0..4000).map(|_| json!({ "uri": "./mesh.bin", "byteLength": 4 << 20 })).collect();
+    let path = folder.write("many.gltf", &gltf(json!(buffers)));
+    let start = std::time::Instant::now();
+    assert!(Scene::import(&path, &OPTIONS).is_ok());
+    assert!(start.elapsed().as_secs() < 5, "16 GiB would take longer");
+}
+
+#[test]
+fn a_byte_order_mark_is_no_fault() {
+    let mut bytes = b"\xef\xbb\xbf".to_vec();
+    bytes.extend(gltf(json!([{
+        "uri": format!("data:;base64,{}", STANDARD.encode(tetrahedron().binary)),
+        "byteLength": tetrahedron().binary.len(),
+    }])));
+    assert!(import_bytes("marked.gltf", &bytes, &OPTIONS).is_ok());
+}
+
+#[test]
+fn chunks_of_other_kinds_are_ignored() {
+    let asset = tetrahedron();
+    let mut document = asset.json.clone();
+    document["buffers"] = json!([{ "byteLength": asset.binary.len() }]);
+    let text = document.to_string().into_bytes();
+    let after = container(&[(b"JSON", &text), (b"BIN\0", &asset.binary), (b"MORE", b"anything")]);
+    assert!(import_bytes("after.glb", &after, &OPTIONS).is_ok());
+    let instead = container(&[(b"JSON", &text), (b"MORE", &asset.binary)]);
+    let message = import_bytes("instead.glb", &instead, &OPTIONS).err().expect("no buffer");
+    assert!(message.contains("no binary chunk"), "{message}");
+}
+
+/// Each of the header's length fields at its extremes.
+#[test]
+fn wrong_lengths_in_the_container_are_faults() {
+    let good = tetrahedron().glb();
+    let json_length = u32::from_le_bytes([good[12], good[13], good[14], good[15]]);
+    let binary_at = 20 + json_length as usize;
+    for at in [8, 12, binary_at] {
+        let own = u32::from_le_bytes([good[at], good[at + 1], good[at + 2], good[at + 3]]);
+        for value in [0, 1, 11, own - 4, own + 1, own + 4, 1 << 31, u32::MAX - 7, u32::MAX] {
+            let mut bytes = good.clone();
+            bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
+            let message = import_bytes("bad.glb", &bytes, &OPTIONS).err();
+            let message = message.unwrap_or_else(|| panic!("{value} at byte {at} was accepted"));
+            assert!(message.contains("bad.glb"), "{message}");
+        }
+    }
+    let folder = Folder::new();
+    for length in 0..good.len() {
+        let cut = Scene::import(&folder.write(&format!("cut-{length}.glb"), &good[..length]), &OPTIONS);
+        assert!(cut.err().is_some_and(|e| e.to_string().contains("cut-")), "{length} bytes were accepted");
+    }
+}
+
+#[test]
+fn what_is_no_gltf_at_all() {
+    let deep = [b"[".repeat(100_000), b"]".repeat(100_000)].concat();
+    let extras = [b"{\"asset\":{\"version\":\"2.0\"},\"extras\":".to_vec(), deep.clone(), b"}".to_vec()].concat();
+    let cases: [(&[u8], &str); 8] = [
+        (b"", "not a glTF"),
+        (b"v 0 0 0\nf 1 1 1\n", "not a glTF"),
+        (b"glTF", "truncated"),
+        (b"glTF\x01\0\0\0\x0c\0\0\0", "version 1"),
+        (&deep, "not a glTF"),
+        (&extras, "no.gltf"),
+        (br#"{"asset":{"version":"1.0"}}"#, "glTF 2"),
+        (br#"{"asset":{"version":"2.1","minVersion":"2.1"}}"#, "minVersion"),
+    ];
+    for (bytes, word) in cases {
+        let message = import_bytes("no.gltf", bytes, &OPTIONS).err().expect("it is none");
+        assert!(message.contains("no.gltf") && message.contains(word), "{word}: {message:.200}");
+    }
+    let folder = Folder::new();
+    let missing = folder.path().join("missing.glb");
+    let message = Scene::import(&missing, &OPTIONS).err().expect("missing").to_string();
+    assert!(message.contains("missing.glb"), "{message}");
+    // A device or a pipe might never end.
+    for path in [folder.path(), Path::new("/dev/zero")] {
+        let message = Scene::import(path, &OPTIONS).err().expect("no file").to_string();
+        assert!(!path.exists() || message.contains("not a regular file"), "{message}");
+    }
+}

@@ -1,0 +1,191 @@
+//! No ray slips between the triangles of a closed mesh, whatever its size and wherever the ray comes from.
+
+#[path = "support/meshes.rs"]
+mod meshes;
+
+use meshes::{bumpy, cube, direction, mesh, random, sphere};
+use scene::{DVec3, Mesh, Rays, Vec3};
+
+const RADII: [f64; 3] = [1e-3, 1.0, 1e3];
+
+/// 131 072 triangles each.
+fn closed_meshes(radius: f64) -> [Mesh; 2] {
+    [sphere(7, radius), bumpy(7, radius)]
+}
+
+/// Rays of `count` that meet nothing; `ray` makes origin and direction of the k-th.
+fn escapes(rays: &Rays, count: usize, ray: impl Fn(usize) -> (DVec3, DVec3)) -> usize {
+    let missed = |k: &usize| {
+        let (origin, direction) = ray(*k);
+        let closest = rays.closest(origin, direction, None).is_none();
+        let visible = rays.visible(origin, direction, f64::INFINITY, None);
+        assert_eq!(closest, visible, "the two queries disagree on the ray {origin} {direction}");
+        closest
+    };
+    (0..count).filter(missed).count()
+}
+
+/// A point well inside: the meshes' surfaces stay beyond 0.85 radii.
+fn inside(k: usize, radius: f64) -> DVec3 {
+    let item = random(k as u64);
+    direction(item, 0) * (0.8 * radius * item.uniform(2))
+}
+
+#[test]
+fn from_inside_towards_every_vertex() {
+    for radius in RADII {
+        for mesh in closed_meshes(radius) {
+            let rays = Rays::new(&mesh);
+            let towards = |k: usize| {
+                let origin = inside(k, radius);
+                (origin, (mesh.positions[k].as_dvec3() - origin).normalize())
+            };
+            assert_eq!(escapes(&rays, mesh.positions.len(), towards), 0, "radius {radius}");
+        }
+    }
+}
+
+#[test]
+fn from_inside_towards_points_of_every_edge() {
+    for radius in RADII {
+        for mesh in closed_meshes(radius) {
+            let rays = Rays::new(&mesh);
+            let towards = |k: usize| {
+                let corners = mesh.corners(k);
+                let (a, b) = (corners[k % 3], corners[(k + 1) % 3]);
+                let origin = inside(k, radius);
+                (origin, (a.lerp(b, random(k as u64).uniform(5)) - origin).normalize())
+            };
+            assert_eq!(escapes(&rays, mesh.triangles.len(), towards), 0, "radius {radius}");
+        }
+    }
+}
+
+/// Rays along an axis from a vertex's own coordinates hit vertices and edges exactly; negative zeros among the
+/// direction's components must not matter.
+#[test]
+fn from_inside_along_axes_and_at_random() {
+    for radius in RADII {
+        for mesh in closed_meshes(radius) {
+            let rays = Rays::new(&mesh);
+            let along = |k: usize| {
+                let axis = k % 3;
+                let mut origin = mesh.positions[k].as_dvec3() * 0.8;
+                let other = mesh.positions[k / 2].as_dvec3();
+                if k.is_multiple_of(2) && other.length() < 0.9 * radius {
+                    origin = other;
+                }
+                origin[axis] = 0.0;
+                let zero = if k % 4 < 2 { 0.0 } else { -0.0 };
+                let mut direction = DVec3::splat(zero);
+                direction[axis] = if k % 8 < 4 { 1.0 } else { -1.0 };
+                (origin, direction)
+            };
+            assert_eq!(escapes(&rays, mesh.positions.len(), along), 0, "axes, radius {radius}");
+            let anywhere = |k: usize| (inside(k, radius), direction(random(k as u64), 10));
+            assert_eq!(escapes(&rays, 100_000, anywhere), 0, "random, radius {radius}");
+        }
+    }
+}
+
+#[test]
+fn from_far_outside() {
+    for radius in RADII {
+        for mesh in closed_meshes(radius) {
+            let rays = Rays::new(&mesh);
+            for distance in [3.0, 100.0, 1e4, 1e7] {
+                let along_axis = |k: usize| {
+                    let mut origin = inside(k, radius);
+                    let mut direction = DVec3::ZERO;
+                    direction[k % 3] = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+                    origin[k % 3] = -direction[k % 3] * distance * radius;
+                    (origin, direction)
+                };
+                let at_vertex = |k: usize| {
+                    let origin = direction(random(k as u64), 20) * (distance * radius);
+                    (origin, (mesh.positions[k].as_dvec3() * 0.999 - origin).normalize())
+                };
+                let missed = escapes(&rays, 10_000, along_axis);
+                assert_eq!(missed, 0, "along an axis, radius {radius}, from {distance} radii");
+                let missed = escapes(&rays, 10_000, at_vertex);
+                assert_eq!(missed, 0, "at a vertex, radius {radius}, from {distance} radii");
+            }
+        }
+    }
+}
+
+/// Seen from far, a hit's distance and place are those of the sphere.
+#[test]
+fn hits_lie_on_the_surface() {
+    for radius in RADII {
+        let mesh = sphere(7, radius);
+        let rays = Rays::new(&mesh);
+        for k in 0..20_000 {
+            let origin = direction(random(k), 20) * (10.0 * radius);
+            let direction = (inside(k as usize, radius) - origin).normalize();
+            let hit = rays.closest(origin, direction, None).expect("aimed inside");
+            let on_ray = origin + direction * hit.distance;
+            let [a, b, c] = mesh.corners(hit.triangle as usize);
+            let on_triangle = a * hit.weights[0] + b * hit.weights[1] + c * hit.weights[2];
+            assert!(on_ray.distance(on_triangle) < 1e-13 * radius, "{on_ray} {on_triangle}");
+            assert!(hit.weights.iter().all(|w| (0.0..=1.0).contains(w)));
+            assert!(direction.dot(on_triangle) < 0.0, "the near side is met first");
+        }
+    }
+}
+
+/// Equal boxes and boxes that shrink geometrically make bad trees: neither may take long, or lose triangles.
+#[test]
+fn heaped_and_shrinking_triangles_are_all_found() {
+    let corner = |k: usize| if k < 3 { [DVec3::X, DVec3::Y, DVec3::Z][k] } else { DVec3::ONE };
+    let heap = mesh(&[corner(0), corner(1), corner(2)], &vec![[0, 1, 2]; 100_000]);
+    let hit = Rays::new(&heap).closest(DVec3::ZERO, DVec3::ONE.normalize(), None);
+    assert!((hit.expect("it is hit").distance - (1.0f64 / 3.0).sqrt()).abs() < 1e-15);
+
+    let points: Vec<DVec3> = (0..5000)
+        .flat_map(|k| {
+            let size = 0.995f64.powi(k);
+            let at = DVec3::new(size, 0.2 * size * (0.3 * f64::from(k)).sin(), 0.0);
+            [at, at + DVec3::X * 0.002 * size, at + DVec3::Y * 0.002 * size]
+        })
+        .collect();
+    let triangles: Vec<[u32; 3]> = (0..5000).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    let horn = mesh(&points, &triangles);
+    let rays = Rays::new(&horn);
+    for k in 0..horn.triangles.len() {
+        let [a, b, c] = horn.corners(k);
+        let origin = (a + b + c) / 3.0 + DVec3::Z * 0.1;
+        assert!(rays.closest(origin, DVec3::NEG_Z, None).is_some(), "triangle {k}");
+        let along = rays.closest(DVec3::new(2.0, origin.y, 1e-12), DVec3::new(-1.0, 0.0, -1e-12).normalize(), None);
+        assert!(along.is_none_or(|hit| hit.distance.is_finite()));
+    }
+}
+
+/// Sizes far beyond anything sensible: float32 areas of such boxes overflow or vanish.
+#[test]
+fn absurd_sizes_are_no_different() {
+    for half in [1e-30, 1e30] {
+        let rays = Rays::new(&cube(half));
+        let hit = rays.closest(DVec3::ZERO, DVec3::new(0.6, 0.0, 0.8), None).expect("from inside");
+        assert!((hit.distance / half - 1.25).abs() < 1e-6, "{}", hit.distance);
+        assert!(!rays.visible(DVec3::splat(-3.0 * half), DVec3::ONE.normalize(), f64::INFINITY, None));
+    }
+}
+
+#[test]
+fn what_is_no_ray_meets_nothing() {
+    let rays = Rays::new(&cube(1.0));
+    let nan = f64::NAN;
+    for (origin, direction) in [
+        (DVec3::ZERO, DVec3::ZERO),
+        (DVec3::ZERO, DVec3::splat(nan)),
+        (DVec3::ZERO, DVec3::new(1.0, nan, 0.0)),
+        (DVec3::new(0.0, nan, 0.0), DVec3::X),
+        (DVec3::new(f64::INFINITY, 0.0, 0.0), DVec3::NEG_X),
+    ] {
+        assert!(rays.closest(origin, direction, None).is_none(), "{origin} {direction}");
+        assert!(rays.visible(origin, direction, f64::INFINITY, None));
+    }
+    let nothing = Rays::new(&Mesh { positions: vec![Vec3::ZERO], ..Mesh::default() });
+    assert!(nothing.closest(DVec3::ZERO, DVec3::X, None).is_none());
+}

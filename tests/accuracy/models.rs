@@ -1,0 +1,54 @@
+//! What the models say of half-spaces and slabs: their plane integrals, in units of the reduced mean free path.
+
+use bssrdf::{DVec3, Medium, Model, Separation, fresnel};
+use std::f64::consts::PI;
+use support::quadrature::{Extent, integrate_graded, plane_integral};
+
+/// A grey medium of reduced albedo `albedo` and unit reduced extinction.
+pub fn medium(albedo: f64, eta: f64) -> Medium {
+    let (s, a) = (albedo, 1.0 - albedo);
+    let json =
+        format!(r#"{{"name":"grey","unit":"1/m","sigma_s":[{s},{s},{s}],"sigma_a":[{a},{a},{a}],"g":0,"eta":{eta}}}"#);
+    Medium::from_json(&json).expect("a valid medium")
+}
+
+/// `T12(θ) ∫ T21 cosθ_o dω_o`: turns `∫ S_bare dA` into a reflectance (method.md sections 2 and 12). The exit integral
+/// is the exact one, of which the models' `4π C_φ(1/η)` is a fit.
+fn interface(eta: f64, cosine: f64) -> f64 {
+    let steps = 4000;
+    let exit: f64 = (0..steps)
+        .map(|k| {
+            let c = (f64::from(k) + 0.5) / f64::from(steps);
+            2.0 * PI * fresnel::transmittance(c, eta) * c / f64::from(steps)
+        })
+        .sum();
+    fresnel::transmittance(cosine, eta) * exit
+}
+
+/// Share of the light of incidence cosine `cosine` that a model's half-space reflects after scattering.
+pub fn reflectance(model: Model, albedo: f64, eta: f64, cosine: f64) -> f64 {
+    let medium = medium(albedo, eta);
+    let model = model.of(&medium);
+    let sine = (1.0 - cosine * cosine).sqrt() / eta;
+    let reach = 40.0 / model.transport()[0].max(4e-5);
+    let extent = Extent { inner: 1e-7, outer: reach.min(1e6) };
+    interface(eta, cosine) * plane_integral(&*model, 0, sine, extent)
+}
+
+/// Share of the light of normal incidence that leaves a slab of `thickness` reduced mean free paths at the back,
+/// scattered: the samples lie on the front, the exitant point on the back with the opposite normal.
+pub fn transmission(model: Model, albedo: f64, eta: f64, thickness: f64) -> f64 {
+    let medium = medium(albedo, eta);
+    let model = model.of(&medium);
+    let ring = |radius: f64| {
+        let separation = Separation {
+            offset: DVec3::new(radius, 0.0, -thickness),
+            normal_in: DVec3::Z,
+            refracted: DVec3::NEG_Z,
+            normal_out: DVec3::NEG_Z,
+        };
+        2.0 * PI * radius * model.bare(0, &separation)
+    };
+    let outer = (thickness + 40.0 / model.transport()[0].max(1e-3)).min(1e5);
+    interface(eta, 1.0) * integrate_graded(1e-4 * thickness, outer, 200, ring)
+}

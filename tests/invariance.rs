@@ -1,0 +1,26 @@
+//! What must not change, or must change in a known way, when a scene is put differently: other units, another place,
+//! another orientation, its mirror image, other triangles for the same surface, other lights.
+//!
+//! All tests render the figure of `data/scenes`, whose glTF document they edit: 38 000 triangles, spot lights and a
+//! point light, a perspective camera, an opaque floor. Where both scenes have the same samples up to rounding, pixels
+//! are compared with each other; each tolerance has its reason beside it. Where the samples differ, means over clouds
+//! are, as in `statistics`. Every test names the planted errors that it was seen to catch.
+
+#[path = "invariance/figure.rs"]
+mod figure;
+#[path = "invariance/lights.rs"]
+mod lights;
+#[path = "invariance/mirror.rs"]
+mod mirror;
+#[path = "invariance/parts.rs"]
+mod parts;
+#[path = "invariance/picture.rs"]
+mod picture;
+#[path = "invariance/place.rs"]
+mod place;
+#[path = "invariance/scale.rs"]
+mod scale;
+#[path = "invariance/tessellation.rs"]
+mod tessellation;
+#[path = "invariance/unseen.rs"]
+mod unseen;

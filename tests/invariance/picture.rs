@@ -1,0 +1,165 @@
+//! Pictures of the figure, and how they are compared.
+
+use bssrdf::{Coefficients, Medium, Model, built_in};
+use formats::{Image, cloud::Cloud};
+use gather::{Input, Settings, estimator::Estimator};
+use glam::DVec3;
+use rayon::prelude::*;
+use sample_surface::Choice;
+use scene::NormalKind;
+use support::{
+    EFFORT,
+    meshes::World,
+    pipeline::{Sampling, filed, medium, sampled_with, settings},
+    z_test::{Estimate, assert_mean},
+};
+
+/// Width and height, pixels: about 200 of them show the figure.
+pub const SIZE: usize = 24;
+/// Clouds for a mean.
+pub const SEEDS: u64 = 24;
+
+/// The channels of what the cloud lights.
+pub const SUBSURFACE: [&str; 3] = ["subsurface.R", "subsurface.G", "subsurface.B"];
+/// The channels of what lights light.
+pub const DIFFUSE: [&str; 3] = ["diffuse.R", "diffuse.G", "diffuse.B"];
+
+/// How a picture is taken.
+#[derive(Clone)]
+pub struct Shot {
+    pub sampling: Sampling,
+    pub medium: Medium,
+    pub model: Model,
+    pub estimator: Estimator,
+    pub normals: NormalKind,
+    pub environment: DVec3,
+}
+
+impl Shot {
+    /// The whole sum over a cloud of 8000 samples, interpolated normals.
+    pub fn new(seed: u64) -> Shot {
+        Shot {
+            sampling: Sampling { samples: 8000 * EFFORT, choice: Choice::Area, seed },
+            medium: built_in("marble").expect("a built-in medium"),
+            model: Model::DirectionalDipole,
+            estimator: Estimator::Exhaustive,
+            normals: NormalKind::Shading,
+            environment: DVec3::ZERO,
+        }
+    }
+
+    /// For means: in a medium four times thinner the standard dipole spreads light over a centimetre, so that hundreds of
+    /// samples light a pixel and clouds differ little.
+    pub fn smooth(seed: u64) -> Shot {
+        Shot { model: Model::StandardDipole, ..Shot::new(seed).scaled(4.0) }
+    }
+
+    /// For meshes without normals.
+    pub fn faceted(self) -> Shot {
+        Shot { normals: NormalKind::Geometric, ..self }
+    }
+
+    pub fn choosing(self, choice: Choice) -> Shot {
+        Shot { sampling: Sampling { choice, ..self.sampling }, ..self }
+    }
+
+    /// A medium of the same look in an object that is so many times larger.
+    pub fn scaled(self, size: f64) -> Shot {
+        let channel = |c: Coefficients| Coefficients { sigma_a: c.sigma_a / size, sigma_s: c.sigma_s / size, ..c };
+        let scaled = medium(self.medium.channels.map(channel), self.medium.eta);
+        Shot { medium: scaled, ..self }
+    }
+
+    /// Both phases, seen by the scene's first camera.
+    pub fn of(&self, world: &World) -> Image {
+        self.of_cloud(world, &filed(&sampled_with(world, &self.sampling, self.normals)))
+    }
+
+    /// Phase two.
+    pub fn of_cloud(&self, world: &World, cloud: &Cloud) -> Image {
+        let media = std::slice::from_ref(&self.medium);
+        let camera = &world.scene.cameras[0];
+        let input = Input { scene: &world.scene, rays: &world.rays, cloud, media, camera };
+        let settings = Settings {
+            estimator: self.estimator,
+            normals: self.normals,
+            environment: self.environment,
+            ..settings(self.model, SIZE, SIZE)
+        };
+        let rendered = gather::render(&input, &settings, |_| ());
+        assert_eq!(rendered.non_finite_count, 0);
+        assert!(rendered.counts.gathers > 100, "{:?}", rendered.counts);
+        gather::film::image(&rendered.pixels, SIZE, SIZE)
+    }
+}
+
+/// A channel's samples.
+pub fn channel<'a>(image: &'a Image, name: &str) -> &'a [f32] {
+    image.channel(name).expect("every image has this channel")
+}
+
+/// Sum over the pixels of three channels.
+pub fn sum(image: &Image, names: [&str; 3]) -> DVec3 {
+    DVec3::from_array(names.map(|name| channel(image, name).iter().map(|x| f64::from(*x)).sum()))
+}
+
+/// Pixels that show scattered light.
+pub fn lit(image: &Image) -> usize {
+    channel(image, SUBSURFACE[1]).iter().filter(|x| **x > 0.0).count()
+}
+
+/// Fails unless `scaled` of the first image's numbers are the other's, bit for bit, in all channels of light.
+pub fn assert_multiple(what: &str, a: &Image, b: &Image, factor: f32) {
+    let light = a.channels.iter().filter(|c| !["N.", "P.", "Z", "var"].iter().any(|start| c.name.starts_with(start)));
+    for c in light {
+        let equal = c.samples.iter().zip(channel(b, &c.name)).all(|(x, y)| x * factor == *y);
+        assert!(equal, "{what}: channel {} is not {factor} times the same", c.name);
+    }
+    assert!(lit(a) > 100, "{what}: {} pixels show the figure", lit(a));
+}
+
+/// Fails unless the pixels of the scattered light agree within a relative `tolerance`, but for `exceptions` of them;
+/// `pixel` says where the first image's pixel is in the other.
+pub fn assert_close_at(
+    what: &str,
+    [a, b]: [&Image; 2],
+    tolerance: f64,
+    exceptions: usize,
+    pixel: impl Fn(usize) -> usize,
+) {
+    let difference = |k: usize| {
+        let worst = SUBSURFACE.map(|name| {
+            let [x, y] = [channel(a, name)[k], channel(b, name)[pixel(k)]].map(f64::from);
+            if x == y { 0.0 } else { (x - y).abs() / x.max(y) }
+        });
+        worst.into_iter().fold(0.0, f64::max)
+    };
+    let mut differences: Vec<f64> = (0..SIZE * SIZE).map(difference).collect();
+    differences.sort_by(f64::total_cmp);
+    let beyond = differences.iter().filter(|d| **d > tolerance).count();
+    let within = differences[SIZE * SIZE - 1 - beyond];
+    println!("{what}: {beyond} of {} pixels differ by more than {tolerance:.0e}, the others by {within:.1e}", lit(a));
+    assert!(lit(a) > 100, "{what}: {} pixels show the figure", lit(a));
+    assert!(beyond <= exceptions, "{what}: {beyond} pixels differ by more than {tolerance:e}");
+}
+
+/// [`assert_close_at`] for pixels in the same place.
+pub fn assert_close(what: &str, images: [&Image; 2], tolerance: f64, exceptions: usize) {
+    assert_close_at(what, images, tolerance, exceptions, |k| k);
+}
+
+/// Fails unless two numbers that each cloud gives, by the same random numbers, have one mean in each channel: within four
+/// standard errors of the difference, in which the noise that the two share cancels. The test is worth something only
+/// if that error is a small share of the mean, `roughest`.
+pub fn assert_paired(what: &str, first: u64, roughest: f64, pair: impl Fn(u64) -> [DVec3; 2] + Send + Sync) {
+    let runs: Vec<[DVec3; 2]> = (first..first + SEEDS).into_par_iter().map(pair).collect();
+    let mean = runs.iter().map(|[a, _]| a).sum::<DVec3>() / SEEDS as f64;
+    for c in 0..3 {
+        let differences: Vec<f64> = runs.iter().map(|[a, b]| (b[c] - a[c]) / mean[c]).collect();
+        let Estimate { mean, error, freedom } = Estimate::of(&differences);
+        let ratio = Estimate { mean: 1.0 + mean, error, freedom };
+        assert_mean(&format!("{what}, channel {c}"), ratio, 1.0);
+        assert!(ratio.deviation(1.0).abs() <= 4.0, "{what}: {ratio:?}");
+        assert!(error < roughest, "{what}: {ratio:?} is too rough to tell");
+    }
+}

@@ -1,0 +1,62 @@
+//! What neither the figure nor the camera can see changes nothing.
+
+use crate::{
+    figure::{FLOOR, Figure},
+    picture::{DIFFUSE, SIZE, SUBSURFACE, Shot, assert_close, assert_paired, channel, sum},
+};
+use glam::{DVec3, Vec3};
+use sample_surface::Choice;
+use support::{
+    meshes::{Mesh, slab},
+    pipeline::MODELS,
+};
+
+/// A box of 4 cm about a point.
+fn box_at(centre: Vec3) -> Mesh {
+    let mut mesh = slab(DVec3::splat(0.02), 2);
+    mesh.positions.iter_mut().for_each(|p| *p += centre);
+    mesh
+}
+
+/// An opaque box on the floor behind the camera, in nobody's light. In the first place it leaves the scene's bounds as
+/// they are, and the scattered light keeps its bits. In the second one it moves the centre, 0.13 m up: coordinates of
+/// the figure are then rounded to float32 at that height, by up to 8·10⁻⁹ m or 10⁻⁵ of a mean free path.
+///
+/// Seen to catch: triangles of other materials counted in the density, or chosen; shadow rays of infinite length.
+#[test]
+fn a_box_out_of_view() {
+    let without = Figure::read().world();
+    let inside = Figure::read().with_mesh(&box_at(Vec3::new(0.4, 0.03, 1.5)), FLOOR).world();
+    let above = Figure::read().with_mesh(&box_at(Vec3::new(0.4, 0.3, 1.5)), FLOOR).world();
+    assert_eq!(inside.scene.origin, without.scene.origin);
+    assert!((above.scene.origin - without.scene.origin).length() > 0.1);
+    for model in MODELS {
+        let shot = Shot { model, ..Shot::new(11).choosing(Choice::Uniform) };
+        let image = shot.of(&without);
+        let seen = shot.of(&inside);
+        for name in SUBSURFACE {
+            assert_eq!(channel(&image, name), channel(&seen, name), "{}", model.name());
+        }
+        assert_close(&format!("box above, {}", model.name()), [&image, &shot.of(&above)], 1e-4, 0);
+    }
+}
+
+/// A strong lamp below the floor: samples that face down pick it, most of the time, and find it hidden. The mean stays,
+/// and so does all light of the floor itself.
+///
+/// Seen to catch: irradiance not divided by the probability of the light's choice; hidden samples not counted among
+/// the drawn ones.
+#[test]
+fn a_light_behind_a_wall() {
+    let without = Figure::read().world();
+    let lamp = Figure::read().with_lamp(DVec3::new(0.0, -0.1, 0.05), 0.02).world();
+    assert_eq!(lamp.scene.lights.len(), without.scene.lights.len() + 1);
+    assert_paired("hidden lamp", 500, 1e-2, |seed| {
+        [&without, &lamp].map(|world| sum(&Shot::smooth(seed).of(world), SUBSURFACE))
+    });
+    let [a, b] = [&without, &lamp].map(|world| Shot::new(12).of(world));
+    for name in DIFFUSE {
+        assert_eq!(channel(&a, name), channel(&b, name));
+        assert!(channel(&a, name).iter().filter(|x| **x > 0.0).count() > SIZE, "{name} is dark");
+    }
+}

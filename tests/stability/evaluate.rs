@@ -1,0 +1,116 @@
+//! One pair of points by every model: in float64, in float32 lanes, and through every estimator.
+
+use bssrdf::{
+    Exitant, Incident, Medium, Model, Separation, evaluate,
+    lanes::{BetterLanes, Block, DirectionalLanes, LANES, LaneModel, StandardLanes},
+};
+use formats::cloud::Sample;
+use gather::{
+    estimator::Estimator,
+    samples::{Exit, LitSamples},
+};
+use glam::{DVec3, Vec3};
+use support::pipeline::{MODELS, RULES, sum};
+
+/// What one model gives, R, G, B; 1/(m² sr).
+#[derive(Clone, Copy, Debug)]
+pub struct Value {
+    pub model: Model,
+    /// In float64.
+    pub exact: DVec3,
+    /// In float32 lanes.
+    pub fast: DVec3,
+}
+
+impl Value {
+    /// Relative difference of the two; 0 where both vanish, and below what float32 can hold.
+    pub fn error(&self) -> f64 {
+        let of = |c: usize| {
+            let (exact, fast) = (self.exact[c], self.fast[c]);
+            if exact.max(fast) < 1e-30 { 0.0 } else { (fast / exact - 1.0).abs() }
+        };
+        of(0).max(of(1)).max(of(2))
+    }
+}
+
+/// Fails unless the two evaluations of every model agree.
+pub fn assert_close(values: &[Value], tolerance: f64) {
+    for value in values {
+        assert!(value.error() < tolerance, "{value:?} differ by {:.1e}", value.error());
+    }
+}
+
+/// Fails unless `value` is `expected`, each channel.
+pub fn assert_is(what: &str, value: DVec3, expected: DVec3, tolerance: f64) {
+    for c in 0..3 {
+        let error = if value[c] == expected[c] { 0.0 } else { (value[c] / expected[c] - 1.0).abs() };
+        assert!(error <= tolerance, "{what}, channel {c}: {:e} is not {:e}: {error:.1e}", value[c], expected[c]);
+    }
+}
+
+fn assert_sane(value: DVec3, what: impl std::fmt::Debug) {
+    assert!(value.is_finite() && value.min_element() >= 0.0, "{value}: {what:?}");
+}
+
+/// `S_bare` by the three models.
+pub fn bare(medium: &Medium, separation: &Separation) -> [Value; 3] {
+    MODELS.map(|model| {
+        let of = model.of(medium);
+        let exact = DVec3::from_array([0, 1, 2].map(|c| of.bare(c, separation)));
+        let fast = match model {
+            Model::DirectionalDipole => lanes::<DirectionalLanes>(medium, separation),
+            Model::BetterDipole => lanes::<BetterLanes>(medium, separation),
+            Model::StandardDipole => lanes::<StandardLanes>(medium, separation),
+        };
+        assert_sane(exact, (model, medium, separation));
+        assert_sane(fast, (model, medium, separation));
+        Value { model, exact, fast }
+    })
+}
+
+fn lanes<M: LaneModel>(medium: &Medium, s: &Separation) -> DVec3 {
+    let lanes = |v: DVec3| v.as_vec3().to_array().map(|x| [x; LANES]);
+    let block = Block { offset: lanes(s.offset), normal_in: lanes(s.normal_in), refracted: lanes(s.refracted) };
+    let values = M::new(medium).bare(&block, s.normal_out.as_vec3().to_array());
+    DVec3::from_array(values.map(|lane| f64::from(lane[0])))
+}
+
+/// `S_gather` by the three models, as a cloud of one sample gives it to the whole sum. Every rule of the roulette must
+/// give that over its probability, or nothing; at the sample itself it may not refuse it.
+pub fn gather(medium: &Medium, incident: &Incident, exitant: &Exitant) -> [Value; 3] {
+    let Incident { position, normal, direction } = *incident;
+    let sample = Sample { position: position.as_vec3(), normal, direction, flux: Vec3::ONE };
+    let samples = LitSamples::new(std::iter::once(sample), medium.eta);
+    let exit = |key: u64| Exit::new(exitant.position, exitant.normal, key);
+    MODELS.map(|model| {
+        let of = model.of(medium);
+        let value = |c| evaluate(&*of, medium.eta, c, incident, exitant).gather;
+        let exact = DVec3::from_array([0, 1, 2].map(value));
+        let fast = sum(model, medium, &samples, &exit(0), Estimator::Exhaustive).radiance;
+        assert_sane(exact, (model, medium, incident, exitant));
+        assert_sane(fast, (model, medium, incident, exitant));
+        for (rule, key) in RULES.into_iter().flat_map(|rule| (0..8).map(move |key| (rule, key))) {
+            let chosen = sum(model, medium, &samples, &exit(key), Estimator::Roulette(rule)).radiance;
+            assert_sane(chosen, (model, rule, medium, incident, exitant));
+            let weighted = chosen.cmpge(fast * (1.0 - 1e-6)).all();
+            let refused = chosen == DVec3::ZERO && exitant.position != position;
+            assert!(weighted || refused, "{model:?} {rule:?}: {chosen} of {fast}");
+        }
+        Value { model, exact, fast }
+    })
+}
+
+/// Light from `direction` onto the origin of the plane z = 0.
+pub fn onto_plane(direction: DVec3) -> Incident {
+    Incident { position: DVec3::ZERO, normal: DVec3::Z, direction: direction.normalize() }
+}
+
+/// Straight out of the plane z = 0.
+pub fn out_of_plane(x: f64) -> Exitant {
+    Exitant { position: DVec3::new(x, 0.0, 0.0), normal: DVec3::Z, direction: DVec3::Z }
+}
+
+/// Light that went straight into the plane z = 0 and leaves it `x` away.
+pub fn along_plane(x: f64) -> Separation {
+    Separation { offset: DVec3::new(x, 0.0, 0.0), normal_in: DVec3::Z, refracted: DVec3::NEG_Z, normal_out: DVec3::Z }
+}

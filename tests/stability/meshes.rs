@@ -1,0 +1,217 @@
+//! Meshes that modellers' programs make: without area, needles, twice, open, inside out.
+
+use crate::{
+    evaluate::assert_is,
+    scenes::{SKY, aimed_at, assert_invisible, channel, render},
+};
+use bssrdf::{Exitant, Incident, Model, evaluate};
+use formats::cloud::{Cloud, Sample};
+use gather::{Filter, Settings, estimator::Estimator};
+use glam::{DVec3, Vec3};
+use sample_surface::Choice;
+use scene::NormalKind;
+use support::{
+    meshes::{Light, Mesh, Part, World, quad, rectangle, slab, sphere, world},
+    pipeline::{Lit, MODELS, Point, Sampling, by_area, cloud, grey, settings},
+};
+
+fn sun() -> Light {
+    Light::Directional { towards: DVec3::new(0.36, 0.48, 0.8), irradiance: DVec3::ONE }
+}
+
+/// A square metre in the plane z = 0, or whatever `mesh` is, in the sun.
+fn sunny(mesh: Mesh) -> World {
+    world(&[Part::translucent(mesh)], &[sun()], DVec3::ZERO)
+}
+
+fn list(cloud: &Cloud) -> Vec<Sample> {
+    cloud.samples(0, cloud.len()).collect()
+}
+
+fn spread(model: Model, environment: DVec3) -> Settings {
+    Settings { paths_per_pixel: 16, filter: Filter::Box, environment, ..settings(model, 8, 8) }
+}
+
+/// They have no normal and no density: the importer leaves them out and counts them, and N with either rule of choice
+/// does not.
+#[test]
+fn zero_area_triangles_change_nothing() {
+    let clean = slab(DVec3::new(1.0, 0.5, 0.25), 2);
+    let mut dirty = clean.clone();
+    for k in 0..10 {
+        dirty.triangles.insert(4 * k as usize, [k, k, k + 1]);
+    }
+    dirty.triangles.extend([[0, 0, 0], [0, 1, 2]]); // a point, and three vertices in a row
+    let (clean, dirty) = (sunny(clean), sunny(dirty));
+    assert_eq!((clean.scene.degenerate_triangles, dirty.scene.degenerate_triangles), (0, 12));
+    for choice in [Choice::Area, Choice::Uniform] {
+        let sampling = Sampling { samples: 1000, choice, seed: 1 };
+        let (clean, dirty) = (cloud(&clean, &sampling), cloud(&dirty, &sampling));
+        assert_eq!(list(&clean), list(&dirty));
+        assert_eq!(clean.meta().surface_area_m2, dirty.meta().surface_area_m2);
+    }
+}
+
+/// Needles of 1 m by 1 µm between ordinary triangles: their area and normal keep all digits, and no ray slips through.
+#[test]
+fn slivers_of_a_millionth() {
+    let mut mesh = rectangle([-1.0, 0.0], 1.0, 0.0, 1);
+    let mut add = |part: Mesh| {
+        let first = mesh.positions.len() as u32;
+        mesh.positions.extend(part.positions);
+        mesh.triangles.extend(part.triangles.iter().map(|t| t.map(|i| i + first)));
+    };
+    (0..20).for_each(|k| add(rectangle([f64::from(k) * 1e-6, f64::from(k + 1) * 1e-6], 1.0, 0.0, 1)));
+    add(rectangle([2e-5, 1.0], 1.0, 0.0, 1));
+    let world = sunny(mesh);
+    let needle = world.scene.mesh.point(5, [0.3, 0.3, 0.4], NormalKind::Geometric);
+    assert_eq!(needle.normal, DVec3::Z);
+    for choice in [Choice::Area, Choice::Uniform] {
+        let cloud = cloud(&world, &Sampling { samples: 1000, choice, seed: 1 });
+        assert!((cloud.meta().surface_area_m2 - 4.0).abs() < 1e-6);
+        assert_eq!(cloud.len(), 1000, "a flat mesh has no shadow");
+        let settings = spread(Model::DirectionalDipole, DVec3::ZERO);
+        let camera = aimed_at(DVec3::new(1e-5, 0.0, 0.0), DVec3::new(0.3, 0.0, 1.0), 2e-5);
+        let rendered = render(&world, &cloud, &[grey(1.0, 10.0, 0.0, 1.3)], &camera, &settings);
+        assert!(channel(&rendered, &settings, "Z").iter().all(|z| *z > 0.0), "a ray slipped through");
+    }
+}
+
+/// A triangle given twice is two surfaces: each is lit, and both shine, so that the scattered light doubles; nothing
+/// shadows its own copy, and a camera path meets one of the two.
+#[test]
+fn duplicate_triangles_are_two_surfaces() {
+    let once = quad(0.5, 0.0, 3);
+    let mut twice = once.clone();
+    twice.triangles.extend(once.triangles.iter());
+    let (once, twice) = (sunny(once), sunny(twice));
+    let [one, two] = [&once, &twice].map(|world| cloud(world, &by_area(1000, 1)));
+    assert_eq!((one.len(), two.len()), (1000, 1000));
+    assert!((two.meta().surface_area_m2 / one.meta().surface_area_m2 - 2.0).abs() < 1e-12);
+    assert_is("flux", DVec3::from_array(two.meta().mean_flux_w), DVec3::splat(2.0 * 0.8), 1e-6);
+    let settings = spread(Model::StandardDipole, DVec3::ZERO);
+    let camera = aimed_at(DVec3::ZERO, DVec3::new(0.3, 0.2, 1.0), 0.2);
+    let counts = render(&twice, &two, &[grey(1.0, 10.0, 0.0, 1.3)], &camera, &settings).counts;
+    assert_eq!((counts.nested, counts.rays), (0, 2 * counts.paths));
+}
+
+/// A sheet without a back: what is refracted never comes out, is counted, and sees the sky if the medium is clear.
+#[test]
+fn open_mesh() {
+    let world = sunny(quad(1.0, 0.0, 3));
+    let cloud = cloud(&world, &by_area(1000, 1));
+    let above = aimed_at(DVec3::ZERO, DVec3::new(0.3, 0.2, 1.0), 0.2);
+    let below = aimed_at(DVec3::ZERO, DVec3::new(0.3, 0.2, -1.0), 0.2);
+    for model in MODELS {
+        let settings = spread(model, DVec3::ZERO);
+        let counts = render(&world, &cloud, &[grey(1.0, 10.0, 0.0, 1.5)], &above, &settings).counts;
+        assert_eq!(counts.escaped_inside, counts.gathers, "{counts:?}");
+        assert!(counts.gathers > counts.paths / 2);
+        assert_eq!((counts.rays, counts.cut_by_depth, counts.nested), (2 * counts.paths, 0, 0));
+        let behind = render(&world, &cloud, &[grey(1.0, 10.0, 0.0, 1.5)], &below, &settings);
+        assert_eq!(behind.counts.gathers, 0);
+        for camera in [&above, &below] {
+            assert_invisible("open and clear", &world, &[grey(0.0, 0.0, 0.0, 1.5)], camera, &settings);
+        }
+    }
+}
+
+/// All normals point inwards: the lit side faces away, the far side lies in its shadow, and no light is stored.
+#[test]
+fn inside_out_mesh() {
+    let mut mesh = sphere(1.0, 3);
+    mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    let camera = aimed_at(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0), 1.2);
+    let world = world(&[Part::translucent(mesh)], &[sun()], DVec3::ONE);
+    let cloud = cloud(&world, &by_area(1000, 1));
+    assert!(cloud.is_empty());
+    assert_eq!(cloud.meta().samples_dropped.values().sum::<u64>(), 1000);
+    let settings = spread(Model::DirectionalDipole, SKY);
+    let rendered = render(&world, &cloud, &[grey(1.0, 10.0, 0.0, 1.3)], &camera, &settings);
+    assert!(channel(&rendered, &settings, "subsurface.R").iter().all(|x| *x == 0.0));
+    assert_invisible("inside out", &world, &[grey(0.0, 0.0, 0.0, 1.0)], &camera, &settings);
+}
+
+/// Two bodies in one place: neither shadows the other, and a path that enters one leaves one, never both or none.
+#[test]
+fn two_coincident_shells() {
+    let shell = Part::translucent(sphere(1.0, 3));
+    let world = world(&[shell.clone(), shell], &[sun()], DVec3::ZERO);
+    let sampled = cloud(&world, &by_area(4000, 1));
+    assert_eq!(sampled.meta().samples_dropped["shadowed"], 0);
+    let camera = aimed_at(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0), 1.2);
+    let settings = spread(Model::BetterDipole, SKY);
+    for etas in [[1.5, 1.5], [1.0, 1.5]] {
+        let media = etas.map(|eta| grey(0.0, 0.0, 0.0, eta));
+        let counts = assert_invisible("two shells", &world, &media, &camera, &settings).counts;
+        assert_eq!((counts.escaped_inside, counts.nested), (0, 0));
+    }
+    let milky = [grey(1.0, 10.0, 0.0, 1.3), grey(1.0, 5.0, 0.0, 1.5)];
+    let counts = render(&world, &sampled, &milky, &camera, &settings).counts;
+    assert_eq!((counts.escaped_inside, counts.nested), (0, 0));
+}
+
+/// The smallest mesh: one box of the ray tree, one interval of the choice.
+#[test]
+fn one_triangle() {
+    let triangle = Mesh { positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y], triangles: vec![[0, 1, 2]] };
+    let world = sunny(triangle);
+    let cloud = cloud(&world, &by_area(100, 1));
+    assert_eq!((cloud.len(), cloud.meta().surface_area_m2), (100, 0.5));
+    for model in MODELS {
+        let settings = spread(model, DVec3::ZERO);
+        let camera = aimed_at(DVec3::new(0.25, 0.25, 0.0), DVec3::new(0.1, 0.2, 1.0), 0.1);
+        let rendered = render(&world, &cloud, &[grey(1.0, 10.0, 0.0, 1.3)], &camera, &settings);
+        assert!(rendered.counts.gathers > 0);
+        assert!(channel(&rendered, &settings, "subsurface.R").iter().all(|x| *x > 0.0));
+    }
+}
+
+/// K = 1: one lane of sixteen is a sample, or there is none; the image is `S Φ`, or black.
+#[test]
+fn one_sample() {
+    let world = sunny(slab(DVec3::new(1.0, 1.0, 0.5), 1));
+    let medium = grey(1.0, 3.0, 0.0, 1.3);
+    let point = Point { position: DVec3::new(0.1, 0.2, 0.5), normal: DVec3::Z };
+    let exitant = Exitant { position: point.position, normal: point.normal, direction: DVec3::Z };
+    let mut unlit = 0;
+    for seed in 0..20 {
+        let cloud = cloud(&world, &by_area(1, seed));
+        unlit += 1 - cloud.len();
+        for model in MODELS {
+            let of = model.of(&medium);
+            let term = |s: Sample| {
+                let position = s.position.as_dvec3() + DVec3::from_array(cloud.meta().origin_m);
+                let incident = Incident { position, normal: s.normal, direction: s.direction };
+                evaluate(&*of, medium.eta, 0, &incident, &exitant).gather * f64::from(s.flux.x)
+            };
+            let expected: f64 = cloud.samples(0, cloud.len()).map(term).sum();
+            let lit = Lit::new(&cloud, &medium, model).radiance(Estimator::Exhaustive, point, 0);
+            assert_is(&format!("{} {seed}", model.name()), lit, DVec3::splat(expected), 2e-5);
+        }
+        let settings = spread(Model::StandardDipole, DVec3::ZERO);
+        let camera = aimed_at(point.position, DVec3::new(0.1, 0.2, 1.0), 0.1);
+        let rendered = render(&world, &cloud, std::slice::from_ref(&medium), &camera, &settings);
+        assert_eq!(rendered.counts.gathers > 0, !cloud.is_empty());
+        assert_eq!(rendered.counts.evaluations, rendered.counts.gathers);
+    }
+    assert!(unlit > 0 && unlit < 20, "{unlit} of 20 in the dark");
+}
+
+/// Ten million triangles: counts and indices stay in range, the area and the light are those of a few.
+#[cfg(feature = "slow")]
+#[test]
+fn ten_million_triangles() {
+    let world = sunny(quad(0.5, 0.0, 2237));
+    assert_eq!(world.scene.mesh.triangles.len(), 2 * 2237 * 2237);
+    for choice in [Choice::Area, Choice::Uniform] {
+        let cloud = cloud(&world, &Sampling { samples: 100_000, choice, seed: 1 });
+        assert_eq!(cloud.len(), 100_000);
+        assert_is("flux", DVec3::from_array(cloud.meta().mean_flux_w), DVec3::splat(0.8), 1e-3);
+        let settings = spread(Model::DirectionalDipole, SKY);
+        let camera = aimed_at(DVec3::ZERO, DVec3::new(0.3, 0.2, 1.0), 0.4);
+        let rendered = render(&world, &cloud, &[grey(1.0, 10.0, 0.0, 1.3)], &camera, &settings);
+        assert_eq!(rendered.counts.escaped_inside, rendered.counts.gathers);
+        assert!(channel(&rendered, &settings, "Z").iter().all(|z| *z > 0.0));
+    }
+}

@@ -1,0 +1,92 @@
+//! Numbers beyond float32, the range of every file: they are found and named, and none is written.
+
+use bssrdf::Model;
+use formats::cloud::{Sample, Samples};
+use gather::{Input, Rendered, Settings, render};
+use glam::{DVec3, Vec3};
+use sample_surface::{Plan, SampleError};
+use scene::NormalKind;
+use support::{
+    meshes::{Light, Part, World, quad, world},
+    pipeline::{MODELS, by_area, cloud, filed, grey, orthographic, sampled, settings},
+};
+
+fn under_a_sun(irradiance: DVec3) -> World {
+    let sun = Light::Directional { towards: DVec3::Z, irradiance };
+    world(&[Part::translucent(quad(0.05, 0.0, 1))], &[sun], DVec3::ZERO)
+}
+
+/// The square of 10 cm fills the middle of the image; all samples carry `flux`.
+fn rendered(flux: Vec3, settings: &Settings) -> Rendered {
+    let world = under_a_sun(DVec3::ONE);
+    let mut planted = sampled(&world, &by_area(64, 0));
+    let samples: Vec<Sample> = filed(&planted).samples(0, 64).collect();
+    planted.samples = Samples::default();
+    samples.iter().for_each(|s| planted.samples.push(&Sample { flux, ..*s }));
+    let cloud = filed(&planted);
+    let (media, camera) = ([grey(0.0, 1e3, 0.0, 1.3)], orthographic(DVec3::Z, 0.1));
+    let input = Input { scene: &world.scene, rays: &world.rays, cloud: &cloud, media: &media, camera: &camera };
+    render(&input, settings, |_| ())
+}
+
+/// Finite flux, but radiance beyond float32: those pixels and no others are counted, and the first of them named.
+#[test]
+fn radiance_beyond_float32_is_counted_and_placed() {
+    for model in MODELS {
+        let settings = settings(model, 12, 12);
+        let rendered = rendered(Vec3::new(1.0, 1e38, 1.0), &settings);
+        let beyond = |(k, p): (usize, &gather::film::Pixel)| (p.beauty().y > f64::from(f32::MAX)).then_some(k);
+        let expected: Vec<usize> = rendered.pixels.iter().enumerate().filter_map(beyond).collect();
+        assert!(expected.len() > 8 && expected.len() < 40, "{expected:?}");
+        assert_eq!(rendered.non_finite_count, expected.len() as u64);
+        assert_eq!(rendered.non_finite, expected[..8]);
+        assert!(rendered.pixels.iter().all(|p| p.beauty().is_finite()), "float64 holds all of it");
+    }
+    let harmless = self::rendered(Vec3::splat(1e30), &settings(Model::StandardDipole, 12, 12));
+    assert_eq!((harmless.non_finite_count, harmless.non_finite.len()), (0, 0));
+}
+
+/// A variance is a square: it leaves float32 long before the radiance does, and goes into the same file.
+#[test]
+fn variance_beyond_float32_is_counted() {
+    let settings = Settings { paths_per_pixel: 4, filter: gather::Filter::Box, ..settings(MODELS[0], 12, 12) };
+    let rendered = rendered(Vec3::splat(1e25), &settings);
+    let beyond = rendered.pixels.iter().filter(|p| p.variance().max_element() > f64::from(f32::MAX)).count();
+    assert!(beyond > 0);
+    assert_eq!(rendered.non_finite_count, beyond as u64);
+    assert!(rendered.pixels.iter().all(|p| p.beauty().max_element() < f64::from(f32::MAX)));
+}
+
+/// Light whose flux leaves float32, or float64: phase one refuses to make a cloud, and counts the samples.
+#[test]
+fn flux_beyond_float32_makes_no_cloud() {
+    for irradiance in [DVec3::splat(1e39), DVec3::new(0.0, 0.0, 9e76)] {
+        let mut world = under_a_sun(DVec3::ONE);
+        world.scene.lights.clear();
+        let light = scene::light::DirectionalLight { direction: DVec3::Z, irradiance };
+        world.scene.lights.push(Box::new(light));
+        let settings = sample_surface::Settings {
+            samples: 100,
+            choice: sample_surface::Choice::Area,
+            normals: NormalKind::Geometric,
+            translucent: Vec::new(),
+            options: sampled(&under_a_sun(DVec3::ONE), &by_area(1, 0)).meta.options,
+        };
+        let plan = Plan::new(&world.scene, &settings).expect("the scene has light and a surface");
+        match sample_surface::sample(&world.scene, &world.rays, &settings, &plan, |_| ()) {
+            Err(SampleError::NotFinite { count }) => assert_eq!(count, 100),
+            _ => panic!("a cloud with infinite flux"),
+        }
+    }
+}
+
+/// Light whose flux is below float32: lit, but nothing to store; counted.
+#[test]
+fn flux_below_float32_is_dropped_and_counted() {
+    let mut world = under_a_sun(DVec3::ONE);
+    world.scene.lights.clear();
+    let light = scene::light::DirectionalLight { direction: DVec3::Z, irradiance: DVec3::splat(1e-60) };
+    world.scene.lights.push(Box::new(light));
+    let cloud = cloud(&world, &by_area(100, 0));
+    assert_eq!((cloud.len(), cloud.meta().samples_dropped["underflow"]), (0, 100));
+}

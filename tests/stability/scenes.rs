@@ -1,0 +1,50 @@
+//! Scenes through both phases; whatever comes of them must be fit for a file.
+
+use bssrdf::Medium;
+use formats::cloud::Cloud;
+use gather::{Input, Rendered, Settings, film};
+use glam::DVec3;
+use scene::Camera;
+use support::{
+    meshes::World,
+    pipeline::{by_area, cloud, orthographic},
+};
+
+/// What is there to see, without a light that could be sampled: powers of two, so that means of equal values are exact.
+pub const SKY: DVec3 = DVec3::new(1.0, 0.5, 4.0);
+
+/// Renders, and fails if a number of the image is not finite or radiance negative.
+pub fn render(world: &World, cloud: &Cloud, media: &[Medium], camera: &Camera, settings: &Settings) -> Rendered {
+    let input = Input { scene: &world.scene, rays: &world.rays, cloud, media, camera };
+    let rendered = gather::render(&input, settings, |_| ());
+    assert_eq!((rendered.non_finite_count, &rendered.non_finite), (0, &Vec::new()));
+    let image = film::image(&rendered.pixels, settings.width, settings.height);
+    for channel in &image.channels {
+        let signed = ["N.", "P.", "Z"].iter().any(|prefix| channel.name.starts_with(prefix));
+        assert!(channel.samples.iter().all(|x| x.is_finite() && (signed || *x >= 0.0)), "{}", channel.name);
+    }
+    rendered
+}
+
+/// A channel of the image.
+pub fn channel(rendered: &Rendered, settings: &Settings, name: &str) -> Vec<f32> {
+    let image = film::image(&rendered.pixels, settings.width, settings.height);
+    image.channel(name).expect("the film has this channel").to_vec()
+}
+
+/// Renders a body of a clear medium, under [`SKY`] from all around: every pixel must show exactly that, and no path may
+/// be lost.
+pub fn assert_invisible(what: &str, world: &World, media: &[Medium], camera: &Camera, settings: &Settings) -> Rendered {
+    let settings = Settings { environment: SKY, max_depth: 256, ..settings.clone() };
+    let rendered = render(world, &cloud(world, &by_area(16, 0)), media, camera, &settings);
+    let counts = rendered.counts;
+    assert!(rendered.pixels.iter().all(|p| p.beauty() == SKY), "{what}: {counts:?}");
+    assert_eq!((counts.cut_by_depth, counts.gathers), (0, 0), "{what}");
+    rendered
+}
+
+/// A camera whose central ray runs through `target` from the direction `towards`.
+pub fn aimed_at(target: DVec3, towards: DVec3, half_height: f64) -> Camera {
+    let camera = orthographic(towards, half_height);
+    Camera { position: camera.position + target, ..camera }
+}
