@@ -13,7 +13,7 @@ const SKY: DVec3 = DVec3::new(0.5, 0.75, 1.0);
 /// All lights, the panel and the sky twice as strong: every number of light has one bit more in its exponent, in all layers, and
 /// nothing else changes. The lights' probabilities do not, nor do the random decisions.
 ///
-/// Seen to catch: flux limited to a largest value; one of the environment's two places forgotten.
+/// Seen to catch: flux limited to a largest value; the sky's radiance limited to 1 where it is seen.
 #[test]
 fn twice_the_light_is_twice_the_image() {
     let figure = |panel: f64| {
@@ -40,7 +40,7 @@ fn twice_the_light_is_twice_the_image() {
 /// their layer adds up pixel by pixel, to the rounding of its float32.
 ///
 /// Seen to catch: irradiance not divided by the probability of the light's choice; lights picked alike whatever their
-/// importance, but divided by it.
+/// importance, but divided by its share; division by the number of stored samples.
 #[test]
 fn lights_add_up() {
     let all = Figure::read().world();

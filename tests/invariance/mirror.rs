@@ -42,8 +42,8 @@ fn mirror(cloud: &Cloud) -> Cloud {
 /// Signs change, digits do not: camera rays, hits and offsets are mirror images of each other up to the order of sums of
 /// three, and so are the codes of normals and directions.
 ///
-/// Seen to catch: the winding of mirrored meshes left as it is; a camera's right taken from its node instead of
-/// from forward and up.
+/// Seen to catch: the winding of mirrored meshes left as it is; interpolated normals not mirrored; a camera's
+/// right taken from its node instead of from forward and up.
 #[test]
 fn the_mirror_image_of_a_cloud_gives_the_mirror_image() {
     let (original, reflection) = (Figure::read().with_panel(PANEL).world(), mirrored());
@@ -59,7 +59,8 @@ fn the_mirror_image_of_a_cloud_gives_the_mirror_image() {
 
 /// Cloud by cloud, since the same numbers choose the same triangles: most of the noise cancels.
 ///
-/// Seen to catch: the winding of mirrored meshes left as it is; a spot light that shines along +Z in a mirrored scene.
+/// Seen to catch: the winding of mirrored meshes left as it is; interpolated normals, or the axes of spot lights, not
+/// mirrored.
 #[test]
 fn phase_one_has_the_same_mean_in_the_mirror() {
     let (original, reflection) = (Figure::read().with_panel(PANEL).world(), mirrored());

@@ -14,7 +14,7 @@ use support::meshes::World;
 fn portions(figure: &mut Figure, count: usize) -> Vec<Value> {
     let triangles = figure.mesh().triangles.len();
     let range = |k: usize| k * triangles / count..(k + 1) * triangles / count;
-    let portion = |k: usize| if k % 2 == 0 { indexed(figure, range(k)) } else { soup(figure, range(k)) };
+    let portion = |k: usize| if k.is_multiple_of(2) { indexed(figure, range(k)) } else { soup(figure, range(k)) };
     (0..count).map(portion).collect()
 }
 
@@ -67,7 +67,7 @@ fn primitives_of_one_mesh() {
 
 /// Nodes below a node whose scale they undo: powers of two, which change no digit.
 ///
-/// Seen to catch: a child's transform applied without its parent's; children visited in reverse order.
+/// Seen to catch: what the test above catches; a child's transform applied without its parent's; children visited in reverse order.
 #[test]
 fn nodes_of_one_material() {
     let mut figure = Figure::read();

@@ -48,8 +48,7 @@ fn powers_of_two_give_the_same_bits() {
 /// changes by that much where one sample outshines the others, less where many add up. The uniform choice picks the
 /// same triangles; the choice by area can take a neighbour where the sum of areas rounds across the number drawn.
 ///
-/// Seen to catch: irradiance that falls off with the distance instead of its square; a camera not scaled with the unit
-/// of the file.
+/// Seen to catch: the same.
 #[test]
 fn other_factors_give_the_same_image() {
     let original = figure().world();

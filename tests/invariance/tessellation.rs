@@ -84,7 +84,8 @@ fn every_triangle_split_in_four() {
     assert_same_mean("split", 1000, 5e-3, &worlds);
 }
 
-/// Seen to catch: the density of the area rule with the uniform choice; the uniform density without N.
+/// Seen to catch: the density of the area rule with the uniform choice; the uniform density without N; division by the
+/// number of stored samples; flux limited to a largest value.
 #[test]
 fn triangles_of_one_side_split_in_four() {
     assert_same_mean("half split", 1200, 2e-2, &pair(half_split));

@@ -22,7 +22,7 @@ fn box_at(centre: Vec3) -> Mesh {
 /// they are, and the scattered light keeps its bits. In the second one it moves the centre, 0.13 m up: coordinates of
 /// the figure are then rounded to float32 at that height, by up to 8·10⁻⁹ m or 10⁻⁵ of a mean free path.
 ///
-/// Seen to catch: triangles of other materials counted in the density, or chosen; shadow rays of infinite length.
+/// Seen to catch: triangles of all materials chosen from, and those of opaque ones dropped afterwards.
 #[test]
 fn a_box_out_of_view() {
     let without = Figure::read().world();
@@ -44,8 +44,8 @@ fn a_box_out_of_view() {
 /// A strong lamp below the floor: samples that face down pick it, most of the time, and find it hidden. The mean stays,
 /// and so does all light of the floor itself.
 ///
-/// Seen to catch: irradiance not divided by the probability of the light's choice; hidden samples not counted among
-/// the drawn ones.
+/// Seen to catch: irradiance not divided by the probability of the light's choice; lights picked alike, but divided by
+/// their share of importance; division by the number of stored samples.
 #[test]
 fn a_light_behind_a_wall() {
     let without = Figure::read().world();

@@ -1,19 +1,19 @@
 //! Cameras in odd places, and rays that meet edges and vertices. The body is clear and the sky the same all around: every
 //! path must show exactly the sky, or it was lost at an interface.
 
-use crate::scenes::{SKY, aimed_at, assert_invisible, channel, render};
+use crate::scenes::{Clear, SKY, aimed_at, assert_invisible, channel, render};
 use bssrdf::{Model, fresnel};
 use gather::{Filter, Settings};
 use glam::DVec3;
 use scene::Camera;
 use support::{
-    meshes::{Part, World, quad, slab, sphere, world},
+    meshes::{Mesh, Part, quad, slab, sphere, world},
     pipeline::{by_area, cloud, grey, settings},
     random::Random,
 };
 
-fn body(mesh: support::meshes::Mesh) -> World {
-    world(&[Part::translucent(mesh)], &[], DVec3::ONE)
+fn body(mesh: Mesh) -> Clear {
+    Clear::new(world(&[Part::translucent(mesh)], &[], DVec3::ONE))
 }
 
 fn one_pixel() -> Settings {
@@ -24,16 +24,15 @@ fn one_pixel() -> Settings {
 /// centre for no total reflection.
 #[test]
 fn camera_inside_a_clear_medium() {
-    let world = body(sphere(1.0, 3));
+    let body = body(sphere(1.0, 3));
     let settings = Settings { paths_per_pixel: 16, filter: Filter::Box, ..settings(Model::DirectionalDipole, 16, 16) };
     for eta in [1.0, 1.0 + 1e-7, 1.5] {
         for towards in [DVec3::X, DVec3::new(1.0, 2.0, -3.0)] {
             let projection = scene::Projection::Perspective { tangent: 1.0 };
             let camera =
                 Camera { position: DVec3::new(0.1, 0.2, 0.1), projection, ..aimed_at(DVec3::ZERO, towards, 1.0) };
-            let medium = [grey(0.0, 0.0, 0.0, eta)];
-            let rendered = assert_invisible("inside", &world, &medium, &camera, &settings);
-            assert_eq!((rendered.counts.escaped_inside, rendered.counts.nested), (0, 0));
+            let counts = assert_invisible("inside", &body, &[eta], &camera, &settings);
+            assert_eq!((counts.escaped_inside, counts.nested), (0, 0));
         }
     }
 }
@@ -41,11 +40,12 @@ fn camera_inside_a_clear_medium() {
 /// The same through an absorbing medium of index 1: `e^{−σ_a s}` from the centre, by roulette, each path all or nothing.
 #[test]
 fn camera_inside_an_absorbing_medium() {
-    let world = body(sphere(1.0, 4));
+    let body = body(sphere(1.0, 4));
     let settings = Settings { paths_per_pixel: 256, environment: SKY, ..settings(Model::BetterDipole, 8, 8) };
     let projection = scene::Projection::Perspective { tangent: 1.0 };
     let camera = Camera { position: DVec3::ZERO, projection, ..aimed_at(DVec3::ZERO, DVec3::X, 1.0) };
-    let rendered = render(&world, &cloud(&world, &by_area(16, 0)), &[grey(0.5, 0.0, 0.0, 1.0)], &camera, &settings);
+    let cloud = cloud(&body.world, &by_area(16, 0));
+    let rendered = render(&body.world, &cloud, &[grey(0.5, 0.0, 0.0, 1.0)], &camera, &settings);
     let mean = rendered.pixels.iter().map(|p| p.beauty().x).sum::<f64>() / 64.0;
     // Five standard errors of 16 384 paths.
     assert!((mean - (-0.5f64).exp()).abs() < 5.0 * 0.5 / 128.0, "{mean}");
@@ -55,7 +55,7 @@ fn camera_inside_an_absorbing_medium() {
 /// Rays along every edge of a box, exactly and with rounding: two faces are seen edge-on, and the others met at a corner.
 #[test]
 fn camera_ray_along_an_edge() {
-    let world = body(slab(DVec3::ONE, 1));
+    let body = body(slab(DVec3::ONE, 1));
     for axis in 0..3 {
         for (u, v) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
             for along in [1.0, -1.0] {
@@ -65,8 +65,8 @@ fn camera_ray_along_an_edge() {
                     (target[(axis + 1) % 3], target[(axis + 2) % 3]) = (u, v);
                     let camera = aimed_at(target, towards, 1.0);
                     let what = format!("along {axis} at {u} {v}, {tilt}");
-                    let rendered = assert_invisible(&what, &world, &[grey(0.0, 0.0, 0.0, 1.5)], &camera, &one_pixel());
-                    assert_eq!(rendered.counts.escaped_inside, 0, "{what}");
+                    let counts = assert_invisible(&what, &body, &[1.5], &camera, &one_pixel());
+                    assert_eq!(counts.escaped_inside, 0, "{what}");
                 }
             }
         }
@@ -78,15 +78,15 @@ fn camera_ray_along_an_edge() {
 #[test]
 fn camera_ray_through_a_vertex() {
     let mut random = Random(3);
-    for world in [body(slab(DVec3::ONE, 1)), body(sphere(1.0, 2))] {
-        for position in world.scene.mesh.positions.iter().map(|p| p.as_dvec3()) {
+    for body in [body(slab(DVec3::ONE, 1)), body(sphere(1.0, 2))] {
+        for position in body.world.scene.mesh.positions.iter().map(|p| p.as_dvec3()) {
             for into_the_body in [true, true, true, false, false, false] {
                 let inside = 0.5 * random.direction();
                 let towards = if into_the_body { position - inside } else { random.direction() };
                 let camera = aimed_at(position, towards, 1.0);
                 let what = format!("through {position} along {}", camera.forward);
-                let rendered = assert_invisible(&what, &world, &[grey(0.0, 0.0, 0.0, 1.5)], &camera, &one_pixel());
-                assert!(rendered.counts.escaped_inside == 0 || !into_the_body, "{what}");
+                let counts = assert_invisible(&what, &body, &[1.5], &camera, &one_pixel());
+                assert!(counts.escaped_inside == 0 || !into_the_body, "{what}");
             }
         }
     }
@@ -95,11 +95,12 @@ fn camera_ray_through_a_vertex() {
 /// cos θ = 10⁻⁷: the ray is mirrored, all but for 3·10⁻⁷, and what it met has a finite place.
 #[test]
 fn grazing_view() {
-    let world = body(quad(0.5, 0.0, 4));
+    let body = body(quad(0.5, 0.0, 4));
     let settings = Settings { environment: SKY, ..settings(Model::DirectionalDipole, 1, 1) };
     for cosine in [1e-7, 1e-6, 1e-3] {
         let camera = aimed_at(DVec3::ZERO, DVec3::new(1.0, 0.0, cosine), 1.0);
-        let rendered = assert_invisible("grazing", &world, &[grey(0.0, 0.0, 0.0, 1.3)], &camera, &settings);
+        assert_invisible("grazing", &body, &[1.3], &camera, &settings);
+        let rendered = body.render(&[1.3], &camera, &settings);
         assert_eq!(channel(&rendered, &settings, "specular.R"), [1.0]);
         assert!((channel(&rendered, &settings, "Z")[0] - 10.0).abs() < 1e-5);
         assert!(fresnel::transmittance(cosine, 1.3) < 10.0 * cosine);
@@ -110,12 +111,12 @@ fn grazing_view() {
 /// index of 1.2 no way through a box is trapped by total reflection.
 #[test]
 fn camera_on_the_surface_and_far_away() {
-    let world = body(slab(DVec3::ONE, 1));
+    let body = body(slab(DVec3::ONE, 1));
     let mut random = Random(4);
     for position in [DVec3::new(0.2, 0.3, 1.0), DVec3::ONE, DVec3::new(1.0, 1.0, 0.0), DVec3::splat(1e12)] {
         for _ in 0..40 {
             let camera = Camera { position, ..aimed_at(DVec3::ZERO, random.direction(), 1.0) };
-            assert_invisible("on the surface", &world, &[grey(0.0, 0.0, 0.0, 1.2)], &camera, &one_pixel());
+            assert_invisible("on the surface", &body, &[1.2], &camera, &one_pixel());
         }
     }
 }
@@ -123,10 +124,10 @@ fn camera_on_the_surface_and_far_away() {
 /// The depth limit cuts every path that meets the body, counts it, and shows nothing in its place.
 #[test]
 fn depth_of_one() {
-    let world = body(sphere(1.0, 3));
+    let body = body(sphere(1.0, 3));
     let settings = Settings { environment: SKY, max_depth: 1, ..settings(Model::DirectionalDipole, 8, 8) };
     let camera = aimed_at(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0), 0.5);
-    let rendered = render(&world, &cloud(&world, &by_area(16, 0)), &[grey(0.0, 0.0, 0.0, 1.5)], &camera, &settings);
+    let rendered = body.render(&[1.5], &camera, &settings);
     assert_eq!((rendered.counts.cut_by_depth, rendered.counts.rays), (64, 64));
     assert!(rendered.pixels.iter().all(|p| p.beauty() == DVec3::ZERO));
 }

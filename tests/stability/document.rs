@@ -3,7 +3,7 @@
 
 use scene::{ImportOptions, LightUnit, Scene, SceneError};
 use serde_json::{Value, json};
-use std::{fs, path::Path};
+use std::{fs, path::PathBuf};
 
 /// Positions, normals and indices of one triangle.
 pub fn binary() -> Vec<u8> {
@@ -58,10 +58,28 @@ pub fn document() -> Value {
     })
 }
 
-/// Writes both into a folder and imports them.
-pub fn import(folder: &Path, text: &str, binary: &[u8]) -> Result<Scene, SceneError> {
-    let path = folder.join("scene.gltf");
-    fs::write(&path, text).expect("the temporary folder is writable");
-    fs::write(folder.join("scene.bin"), binary).expect("the temporary folder is writable");
-    Scene::import(&path, &ImportOptions { metres_per_unit: 1.0, light_unit: LightUnit::Radiometric })
+/// A folder for the two files.
+pub struct Folder(tempfile::TempDir);
+
+impl Folder {
+    pub fn new(binary: &[u8]) -> Folder {
+        let folder = Folder(tempfile::tempdir().expect("the temporary folder is writable"));
+        folder.put("scene.bin", binary);
+        folder
+    }
+
+    pub fn put(&self, name: &str, content: &[u8]) {
+        fs::write(self.path(name), content).expect("the temporary folder is writable");
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// Imports a document together with the binary that lies there.
+    pub fn import(&self, document: &str) -> Result<Scene, SceneError> {
+        self.put("scene.gltf", document.as_bytes());
+        let options = ImportOptions { metres_per_unit: 1.0, light_unit: LightUnit::Radiometric };
+        Scene::import(&self.path("scene.gltf"), &options)
+    }
 }

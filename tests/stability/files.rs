@@ -1,7 +1,7 @@
 //! NaN and infinity in every input file: an error that names the file or the field, never a panic, and never a number
 //! that is not finite in what was read.
 
-use crate::document::{binary, document, import};
+use crate::document::{Folder, binary, document};
 use bssrdf::{Medium, MediumFile};
 use compare::compare;
 use formats::{
@@ -9,10 +9,9 @@ use formats::{
     cloud::{Cloud, Meta, Sample, Samples},
 };
 use glam::{DVec3, Vec3};
-use sample_surface::Sampled;
 use scene::{Scene, View};
 use serde_json::{Value, json};
-use std::{fs, path::Path};
+use std::path::Path;
 use support::{
     meshes::{Light, Part, quad, world},
     pipeline::{by_area, sampled, write},
@@ -61,9 +60,8 @@ fn assert_finite(scene: &Scene, what: &str) {
 /// Each number of a glTF file in turn: by name, beyond float64, and beyond the float32 that the parser rounds to.
 #[test]
 fn gltf_json() {
-    let folder = tempfile::tempdir().expect("the temporary folder is writable");
-    let document = document();
-    let good = import(folder.path(), &document.to_string(), &binary()).expect("the file is valid");
+    let (folder, document) = (Folder::new(&binary()), document());
+    let good = folder.import(&document.to_string()).expect("the file is valid");
     assert_eq!((good.cameras.len(), good.lights.len()), (2, 4));
     assert_finite(&good, "as it is");
     let mut paths = Vec::new();
@@ -71,11 +69,10 @@ fn gltf_json() {
     assert!(paths.len() > 90);
     for path in &paths {
         for number in NO_NUMBERS {
-            let result = import(folder.path(), &replaced(&document, path, number), &binary());
-            assert!(result.is_err(), "{path} is {number}");
+            assert!(folder.import(&replaced(&document, path, number)).is_err(), "{path} is {number}");
         }
         for number in ["1e39", "-1e39", "1e200", "-1e308", "1e308", "1e-320"] {
-            if let Ok(scene) = import(folder.path(), &replaced(&document, path, number), &binary()) {
+            if let Ok(scene) = folder.import(&replaced(&document, path, number)) {
                 assert_finite(&scene, &format!("{path} is {number}"));
             }
         }
@@ -85,18 +82,18 @@ fn gltf_json() {
 /// Each float of the binary in turn; indices have no such values, and are checked against their count.
 #[test]
 fn gltf_binary() {
-    let folder = tempfile::tempdir().expect("the temporary folder is writable");
+    let import = |at: usize, number: f32| {
+        let mut binary = binary();
+        binary[at..at + 4].copy_from_slice(&number.to_le_bytes());
+        Folder::new(&binary).import(&document().to_string())
+    };
     for at in (0..72).step_by(4) {
         for number in [f32::NAN, -f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-            let mut binary = binary();
-            binary[at..at + 4].copy_from_slice(&number.to_le_bytes());
-            let error = import(folder.path(), &document().to_string(), &binary).err().expect("refused").to_string();
+            let error = import(at, number).err().expect("refused").to_string();
             assert!(error.contains("scene.gltf") && error.contains("not finite"), "{error}");
         }
         for number in [f32::MAX, f32::MIN, 1e30, f32::MIN_POSITIVE, 1e-45] {
-            let mut binary = binary();
-            binary[at..at + 4].copy_from_slice(&number.to_le_bytes());
-            if let Ok(scene) = import(folder.path(), &document().to_string(), &binary) {
+            if let Ok(scene) = import(at, number) {
                 assert_finite(&scene, &format!("{number} at {at}"));
             }
         }
@@ -105,12 +102,11 @@ fn gltf_binary() {
 
 #[test]
 fn view() {
-    let folder = tempfile::tempdir().expect("the temporary folder is writable");
-    let path = folder.path().join("view.json");
+    let folder = Folder::new(&[]);
     let view = json!({ "eye": [0, 0, 3], "target": [0, 0, 0], "up": [0, 1, 0], "yfov": 30, "width": 4, "height": 3 });
     let read = |text: &str| {
-        fs::write(&path, text).expect("the temporary folder is writable");
-        View::read(&path).map(|(_, camera)| camera)
+        folder.put("view.json", text.as_bytes());
+        View::read(&folder.path("view.json")).map(|(_, camera)| camera)
     };
     read(&view.to_string()).expect("the view is valid");
     let mut paths = Vec::new();
@@ -158,15 +154,15 @@ fn verdict(path: &Path, sample: Sample, change: impl Fn(&mut Meta)) -> Result<()
     cloud.samples = Samples::default();
     cloud.samples.push(&sample);
     change(&mut cloud.meta);
-    write(&Sampled { ..cloud }, path);
+    write(&cloud, path);
     Cloud::open(path)?.verify(path)
 }
 
 /// Every float of a sample and of the facts about a cloud.
 #[test]
 fn cloud() {
-    let folder = tempfile::tempdir().expect("the temporary folder is writable");
-    let path = folder.path().join("test.cloud");
+    let folder = Folder::new(&[]);
+    let path = folder.path("test.cloud");
     let good = Sample { position: Vec3::ZERO, normal: DVec3::Z, direction: DVec3::Z, flux: Vec3::ONE };
     verdict(&path, good, |_| ()).expect("the cloud is valid");
     let facts: [fn(&mut Meta, f64); 7] = [

@@ -2,12 +2,12 @@
 
 use bssrdf::Medium;
 use formats::cloud::Cloud;
-use gather::{Input, Rendered, Settings, film};
+use gather::{Input, Rendered, Settings, film, path::Counts};
 use glam::DVec3;
 use scene::Camera;
 use support::{
     meshes::World,
-    pipeline::{by_area, cloud, orthographic},
+    pipeline::{by_area, cloud, grey, orthographic},
 };
 
 /// What is there to see, without a light that could be sampled: powers of two, so that means of equal values are exact.
@@ -32,15 +32,34 @@ pub fn channel(rendered: &Rendered, settings: &Settings, name: &str) -> Vec<f32>
     image.channel(name).expect("the film has this channel").to_vec()
 }
 
-/// Renders a body of a clear medium, under [`SKY`] from all around: every pixel must show exactly that, and no path may
-/// be lost.
-pub fn assert_invisible(what: &str, world: &World, media: &[Medium], camera: &Camera, settings: &Settings) -> Rendered {
+/// A scene with any cloud of it: none of its light comes out of a clear medium.
+pub struct Clear {
+    pub world: World,
+    cloud: Cloud,
+}
+
+impl Clear {
+    pub fn new(world: World) -> Clear {
+        let cloud = cloud(&world, &by_area(16, 0));
+        Clear { world, cloud }
+    }
+
+    /// Renders with clear media of these indices.
+    pub fn render(&self, etas: &[f64], camera: &Camera, settings: &Settings) -> Rendered {
+        let media: Vec<Medium> = etas.iter().map(|eta| grey(0.0, 0.0, 0.0, *eta)).collect();
+        render(&self.world, &self.cloud, &media, camera, settings)
+    }
+}
+
+/// Renders bodies of clear media under [`SKY`] from all around: every pixel must show exactly that, and no path may be
+/// lost.
+pub fn assert_invisible(what: &str, clear: &Clear, etas: &[f64], camera: &Camera, settings: &Settings) -> Counts {
     let settings = Settings { environment: SKY, max_depth: 256, ..settings.clone() };
-    let rendered = render(world, &cloud(world, &by_area(16, 0)), media, camera, &settings);
+    let rendered = clear.render(etas, camera, &settings);
     let counts = rendered.counts;
     assert!(rendered.pixels.iter().all(|p| p.beauty() == SKY), "{what}: {counts:?}");
     assert_eq!((counts.cut_by_depth, counts.gathers), (0, 0), "{what}");
-    rendered
+    counts
 }
 
 /// A camera whose central ray runs through `target` from the direction `towards`.

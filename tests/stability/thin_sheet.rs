@@ -11,23 +11,19 @@ use support::{
     pipeline::{Lit, MODELS, Point, by_area, cloud, grey},
 };
 
-/// `φ` and `−D∇φ` of one source at `at` that shines along `along`, weighted for a boundary with normal `out`: what (5.9)
-/// is short for.
+/// `C_φ φ + C_E n_o·(−D∇φ)` of the field `φ` of one source, seen `at` from it, that shines `along` and has its depth
+/// beside the surface: what (5.9) is short for. The gradient is a central difference: nothing shared with the formula
+/// under test.
 fn source(c: &Coefficients, medium: &Medium, [at, along, out]: [DVec3; 3], depth_squared: f64) -> f64 {
-    let (d_coefficient, transport) = (c.diffusion(), c.transport());
-    let d = (at.length_squared() + depth_squared).sqrt();
-    let q = transport * d;
-    let phi =
-        (-q).exp() / (4.0 * PI * d_coefficient * d) * (1.0 + 3.0 * d_coefficient * (1.0 + q) / (d * d) * at.dot(along));
-    // ∇φ for fixed depth, by central differences: nothing shared with the formula under test.
+    let (diffusion, transport) = (c.diffusion(), c.transport());
     let field = |x: DVec3| {
         let d = (x.length_squared() + depth_squared).sqrt();
         let q = transport * d;
-        (-q).exp() / (4.0 * PI * d_coefficient * d) * (1.0 + 3.0 * d_coefficient * (1.0 + q) / (d * d) * x.dot(along))
+        (-q).exp() / (diffusion * d) * (1.0 + 3.0 * diffusion * (1.0 + q) / (d * d) * x.dot(along))
     };
-    let step = 1e-5 * d;
+    let step = 1e-5 * (at.length_squared() + depth_squared).sqrt();
     let slope = (field(at + out * step) - field(at - out * step)) / (2.0 * step);
-    4.0 * PI * d_coefficient * (medium.interface.c_phi / d_coefficient * phi - medium.interface.c_e * slope)
+    medium.interface.c_phi * field(at) - medium.interface.c_e * diffusion * slope
 }
 
 /// Straight light through sheets from a thousandth of a mean free path to ten, beside and opposite the entry.

@@ -3,7 +3,7 @@
 #[path = "support/meshes.rs"]
 mod meshes;
 
-use meshes::{bumpy, cube, direction, random};
+use meshes::{bumpy, cube, direction, mesh, random};
 use scene::{DVec3, Hit, Mesh, Rays};
 
 /// The nearest triangle in front of `origin` by solving for distance and weights (Cramer's rule), nothing shared with
@@ -62,6 +62,53 @@ fn coarse_triangles_too() {
         let (from, direction) = (direction(item, 0) * 0.9, direction(item, 2));
         assert_same(&mesh, rays.closest(from, direction, None), from, direction);
     }
+}
+
+/// Large triangles through each other: the boxes do not tell which is first.
+#[test]
+fn a_tangle_of_triangles() {
+    let points: Vec<DVec3> = (0..3000).map(|k| direction(random(k), 0) * random(k).uniform(4).cbrt()).collect();
+    let triangles: Vec<[u32; 3]> = (0..1000).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    let tangle = mesh(&points, &triangles);
+    let rays = Rays::new(&tangle);
+    for k in 0..4000 {
+        let item = random(k);
+        let (from, direction) = (direction(item, 10) * (0.5 * item.uniform(12)), direction(item, 13));
+        let hit = rays.closest(from, direction, None);
+        match brute_force(&tangle, from, direction) {
+            Some((distance, _)) => {
+                assert_same(&tangle, hit, from, direction);
+                assert!(!rays.visible(from, direction, distance * (1.0 + 1e-6) + 1e-8, None));
+                assert!(rays.visible(from, direction, distance * (1.0 - 1e-6), None));
+            }
+            None => assert!(hit.is_none() && rays.visible(from, direction, f64::INFINITY, None)),
+        }
+    }
+}
+
+/// Sheets so near to each other and to the ray's start that their boxes are one.
+#[test]
+fn layers_much_thinner_than_the_boxes() {
+    for spacing in [1e-8, 1e-6] {
+        let layer = |k: u32| [[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]].map(|[x, y]| DVec3::new(x, y, height(k, spacing)));
+        let points: Vec<DVec3> = (0..64).flat_map(layer).collect();
+        let triangles: Vec<[u32; 3]> = (0..64).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+        let rays = Rays::new(&mesh(&points, &triangles));
+        for below in 0..63 {
+            let origin = DVec3::new(0.0, 0.0, (f64::from(below) - 31.5) * spacing);
+            let hit = rays.closest(origin, DVec3::Z, None).expect("there is a layer above");
+            let next = (0..64).find(|k| height(*k, 1.0) == f64::from(below) - 31.0);
+            assert_eq!(Some(hit.triangle), next, "spacing {spacing}, from below layer {below}");
+            assert!((hit.distance / spacing - 0.5).abs() < 1e-6);
+            assert!(rays.visible(origin, DVec3::Z, 0.4 * spacing, None));
+            assert!(!rays.visible(origin, DVec3::Z, 0.9 * spacing, None));
+        }
+    }
+}
+
+/// Height of the k-th layer, in an order that no tree follows.
+fn height(k: u32, spacing: f64) -> f64 {
+    (f64::from(k * 29 % 64) - 32.0) * spacing
 }
 
 #[test]

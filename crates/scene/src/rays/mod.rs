@@ -19,12 +19,9 @@ use triangle::{Crossing, TriangleTest};
 /// share of it.
 const DIAGONAL: f64 = 1024.0;
 
-/// A hit nearer than this share of the diagonal may be the surface that the ray left. Rounding puts the crossing of a
-/// triangle in the same plane anywhere up to 1e-16 over the cosine: a ray at cosine 1e-9 is the flattest that counts.
-const SKIN: f64 = 1e-7 * DIAGONAL;
-
-/// A neighbour of the triangle that the ray left can be met this far behind the origin, which is rounded, too.
-const BEHIND: f64 = -1e-14 * DIAGONAL;
+/// A hit nearer than this share of the diagonal may be the surface that the ray left: rounding puts the crossing of a
+/// triangle in the same plane anywhere up to 1e-16 over the cosine, and 1e-10 is a flat ray indeed.
+const SKIN: f64 = 1e-6 * DIAGONAL;
 
 /// The way to a light ends this share of the diagonal before the light's own surface.
 const CLEARANCE: f64 = 1e-9 * DIAGONAL;
@@ -166,25 +163,21 @@ impl Rays {
         let Some(from) = start.from else {
             return met.distance >= 0.0;
         };
-        if met.distance > SKIN {
-            return self.triangles[place] != from;
-        }
-        met.distance >= BEHIND && self.triangles[place] != from && self.is_ahead(met, place, from, start.direction)
+        let in_front = met.distance >= 0.0 && self.triangles[place] != from;
+        in_front && (met.distance > SKIN || self.is_ahead(place, from, start.direction))
     }
 
-    /// Whether a triangle met within rounding of the one the ray left reaches into the half-space that the ray goes to:
-    /// one that lies in the same plane or bends away cannot be in the way. At the origin itself and behind it, its far
-    /// side is the one that is passed, too: a ray that entered at an edge does not enter through both its faces.
+    /// Whether a triangle reaches into the half-space that a ray goes to from the one that it left: if it lies in the
+    /// same plane or bends away, it cannot be in the way, wherever rounding says that it is met.
     #[cold]
-    fn is_ahead(&self, met: &Crossing, place: usize, from: u32, direction: DVec3) -> bool {
+    fn is_ahead(&self, place: usize, from: u32, direction: DVec3) -> bool {
         const ROUNDING: f64 = 1e-14;
         let [a, b, c] = self.corners[self.places[from as usize] as usize].map(|v| v.as_dvec3());
         let normal = (b - a).cross(c - a);
         let normal = if normal.dot(direction) < 0.0 { -normal } else { normal };
-        let length = normal.length();
-        let other = self.corners[place].map(|v| v.as_dvec3());
-        let reaches = other.iter().any(|v| normal.dot(*v - a) > ROUNDING * length * (*v - a).length());
-        reaches && (met.distance > -BEHIND || met.leaves_front() != (normal.dot((b - a).cross(c - a)) > 0.0))
+        let threshold = ROUNDING * normal.length();
+        let offsets = self.corners[place].map(|v| v.as_dvec3() - a);
+        offsets.iter().any(|offset| normal.dot(*offset) > threshold * offset.length())
     }
 }
 

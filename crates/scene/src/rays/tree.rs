@@ -149,3 +149,20 @@ fn padded_box(k: usize, corners: &[Vec3; 3], diagonal: f32) -> Aabb {
     let [a, b, c] = corners.map(Vec3A::from);
     Aabb::new(a.min(b).min(c) - pad(0), a.max(b).max(c) + pad(3))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// No mesh tried so far makes a walk this deep.
+    #[test]
+    fn pending_nodes_come_back_last_first_however_many_there_are() {
+        let mut pending = Pending::default();
+        let group = |k: usize| UVec2::new(k as u32, 1 << 31);
+        for count in [1, Pending::NEAR, Pending::NEAR + 1, 10 * Pending::NEAR] {
+            (0..count).for_each(|k| pending.push(group(k)));
+            (0..count).rev().for_each(|k| assert_eq!(pending.pop(), Some(group(k))));
+            assert_eq!(pending.pop(), None);
+        }
+    }
+}

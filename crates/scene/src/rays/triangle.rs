@@ -16,8 +16,6 @@ pub(super) struct Crossing {
     pub distance: f64,
     /// Twice the areas opposite the corners, as seen along the axis; all of one sign.
     areas: [f64; 3],
-    /// Of the axis: the ray's direction along it.
-    forward: bool,
 }
 
 impl<const AXIS: usize> TriangleTest<AXIS> {
@@ -54,7 +52,7 @@ impl<const AXIS: usize> TriangleTest<AXIS> {
             return None; // seen edge-on
         }
         let distance = self.shear[2] * ((u * a[2] + v * b[2] + w * c[2]) / sum);
-        Some(Crossing { distance, areas: [u, v, w], forward: self.shear[2] > 0.0 })
+        Some(Crossing { distance, areas: [u, v, w] })
     }
 }
 
@@ -63,10 +61,5 @@ impl Crossing {
     pub fn weights(&self) -> [f64; 3] {
         let sum = self.areas.iter().sum::<f64>();
         self.areas.map(|area| area / sum)
-    }
-
-    /// True if the ray leaves through the triangle's front: its direction and the normal point to the same side.
-    pub fn leaves_front(&self) -> bool {
-        (self.areas.iter().sum::<f64>() < 0.0) == self.forward
     }
 }
