@@ -36,10 +36,10 @@ pub struct Shot {
 }
 
 impl Shot {
-    /// The whole sum over a cloud of 8000 samples, interpolated normals.
+    /// For pixels: the whole sum over a cloud of 8000 samples, interpolated normals.
     pub fn new(seed: u64) -> Shot {
         Shot {
-            sampling: Sampling { samples: 8000 * EFFORT, choice: Choice::Area, seed },
+            sampling: Sampling { samples: 8000, choice: Choice::Area, seed },
             medium: built_in("marble").expect("a built-in medium"),
             model: Model::DirectionalDipole,
             estimator: Estimator::Exhaustive,
@@ -51,7 +51,9 @@ impl Shot {
     /// For means: in a medium four times thinner the standard dipole spreads light over a centimetre, so that hundreds of
     /// samples light a pixel and clouds differ little.
     pub fn smooth(seed: u64) -> Shot {
-        Shot { model: Model::StandardDipole, ..Shot::new(seed).scaled(4.0) }
+        let shot = Shot::new(seed).scaled(4.0);
+        let sampling = Sampling { samples: 8000 * EFFORT, ..shot.sampling };
+        Shot { sampling, model: Model::StandardDipole, ..shot }
     }
 
     /// For meshes without normals.

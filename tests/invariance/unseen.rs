@@ -20,7 +20,9 @@ fn box_at(centre: Vec3) -> Mesh {
 
 /// An opaque box on the floor behind the camera, in nobody's light. In the first place it leaves the scene's bounds as
 /// they are, and the scattered light keeps its bits. In the second one it moves the centre, 0.13 m up: coordinates of
-/// the figure are then rounded to float32 at that height, by up to 8·10⁻⁹ m or 10⁻⁵ of a mean free path.
+/// the figure are then rounded to float32 at that height, by up to 8·10⁻⁹ m: 10⁻⁵ of a mean free path, and areas of
+/// triangles 0.4 mm across change by 4·10⁻⁵, and their samples' flux. The uniform choice keeps the triangles; a sample or
+/// two may be shadowed that was lit before.
 ///
 /// Seen to catch: triangles of all materials chosen from, and those of opaque ones dropped afterwards.
 #[test]
@@ -37,7 +39,7 @@ fn a_box_out_of_view() {
         for name in SUBSURFACE {
             assert_eq!(channel(&image, name), channel(&seen, name), "{}", model.name());
         }
-        assert_close(&format!("box above, {}", model.name()), [&image, &shot.of(&above)], 1e-4, 0);
+        assert_close(&format!("box above, {}", model.name()), [&image, &shot.of(&above)], 1e-4, 3);
     }
 }
 

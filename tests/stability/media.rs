@@ -60,6 +60,7 @@ fn no_scattering() {
 fn vacuum() {
     let vacuum = grey(0.0, 0.0, 0.0, 1.3);
     assert!(vacuum.is_clear());
+    assert!(MODELS.iter().all(|model| model.of(&vacuum).transport() == [0.0; 3]));
     for separation in separations(1.0) {
         for value in bare(&vacuum, &separation) {
             assert_eq!((value.exact, value.fast), (DVec3::ZERO, DVec3::ZERO));

@@ -51,6 +51,7 @@ fn assert_radiance(what: &str, runs: &[DVec3], expected: DVec3) {
         let estimate = Estimate::of(&runs.iter().map(|r| r[c]).collect::<Vec<_>>());
         assert_mean(&format!("{what}, channel {c}"), estimate, expected[c]);
         assert!(estimate.relative_error() < 0.01, "{estimate:?} is too rough to tell");
+        // Stricter than all tests' common level; it holds for these seeds.
         assert!(estimate.deviation(expected[c]).abs() < 4.0);
     }
 }

@@ -1,14 +1,19 @@
 //! The directional dipole on blocks; see `directional_dipole.rs` for the model.
 //!
 //! The difference of the real and the virtual source is expanded in the difference of their distances (method.md 9.1 to
-//! 9.5): far away the two cancel like (h/r)², and float32 has no digits for that.
+//! 9.5): far away the two cancel like (h/r)², and float32 has no digits for that. Where `S` passes through zero the terms
+//! cancel in any form; those few values are taken from the float64 model.
 
-use super::{Block, Lane, LaneModel, dot, dot_one, each, exp::decay, exp_negative};
-use crate::Medium;
+use super::{Block, LANES, Lane, LaneModel, dot, dot_one, each, exp::decay, exp_negative};
+use crate::{Bssrdf, DirectionalDipole, Medium, Separation};
+use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 
 /// Below this a projected unit vector has no direction left (method.md 5.6).
 const NULL_DIRECTION: f32 = 1e-6;
+
+/// A value this many times smaller than its terms has lost too many of float32's digits.
+const CANCELLATION: f32 = 64.0;
 
 /// One channel, lengths in units of 1/σ_t'; `D` is 1/3 then.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +37,8 @@ pub struct DirectionalLanes {
     channels: [Channel; 3],
     c_phi: f32,
     c_e: f32,
+    /// The float64 model.
+    reference: DirectionalDipole,
 }
 
 /// What the three channels share; lengths in m.
@@ -67,20 +74,53 @@ impl LaneModel for DirectionalLanes {
                 strength: (reduced * reduced / (4.0 * PI * PI * boundary.exit_norm)) as f32,
             }
         });
-        DirectionalLanes { channels, c_phi: boundary.c_phi as f32, c_e: boundary.c_e as f32 }
+        let reference = DirectionalDipole::new(medium);
+        DirectionalLanes { channels, c_phi: boundary.c_phi as f32, c_e: boundary.c_e as f32, reference }
     }
 
     #[inline(always)]
     fn bare(&self, block: &Block, normal_out: [f32; 3]) -> [Lane; 3] {
         let shared = Shared::new(block, normal_out);
-        self.channels.map(|c| each(|i| self.channel(&c, &shared, i)))
+        let mut values = [[0.0; LANES]; 3];
+        for (channel, (c, values)) in self.channels.iter().zip(&mut values).enumerate() {
+            let mut cancels = [0u32; LANES];
+            for i in 0..LANES {
+                let (value, terms) = self.channel(c, &shared, i);
+                // The clamp of (5.10).
+                values[i] = if value > 0.0 { value } else { 0.0 };
+                // No number, or infinite, where d_r is too near 0 for float32.
+                let good = value.abs() * CANCELLATION >= terms && value.abs() < f32::INFINITY;
+                cancels[i] = u32::from(!good) << i;
+            }
+            let mut left = cancels.iter().fold(0, |mask, lane| mask | lane);
+            while left != 0 {
+                let lane = left.trailing_zeros() as usize;
+                left &= left - 1;
+                values[lane] = self.exactly(block, normal_out, channel, lane);
+            }
+        }
+        values
     }
 }
 
 impl DirectionalLanes {
-    /// `S_bare` of one channel and lane (method.md 5.10 by 9.5).
+    /// One value by the float64 model.
+    #[cold]
+    fn exactly(&self, block: &Block, normal_out: [f32; 3], channel: usize, lane: usize) -> f32 {
+        let vector = |v: &[Lane; 3]| DVec3::from_array([0, 1, 2].map(|c| f64::from(v[c][lane])));
+        let separation = Separation {
+            offset: vector(&block.offset),
+            normal_in: vector(&block.normal_in),
+            refracted: vector(&block.refracted),
+            normal_out: Vec3::from_array(normal_out).as_dvec3(),
+        };
+        self.reference.bare(channel, &separation) as f32
+    }
+
+    /// `S_bare` of one channel and lane before its clamp (method.md 5.10 by 9.5), and the sum of the magnitudes of its
+    /// terms.
     #[inline(always)]
-    fn channel(&self, c: &Channel, s: &Shared, i: usize) -> f32 {
+    fn channel(&self, c: &Channel, s: &Shared, i: usize) -> (f32, f32) {
         let r2 = s.r2[i] * c.scale * c.scale;
         let (x, n, across) = (s.x[i] * c.scale, s.n[i] * c.scale, s.across[i] * c.scale);
         let (a, b, mu0) = (s.a[i], s.b[i], s.mu0[i]);
@@ -113,6 +153,8 @@ impl DirectionalLanes {
         let kappa = (3.0 * one_q + q_real * q_real) * over_real2;
         let pole = one_q + kappa * x;
         let g_real = self.c_phi * 3.0 * (real2 + one_q * x) - self.c_e * (-mu0 * one_q - pole * n);
+        let g_terms =
+            self.c_phi * 3.0 * (real2 + (one_q * x).abs()) + self.c_e * ((mu0 * one_q).abs() + (pole * n).abs());
 
         let (x_virtual, n_virtual) = (x + dx, n + dn);
         let d_kappa = (q_delta * (3.0 + q_real + q_virtual) - kappa * delta2) * over_virtual2;
@@ -121,10 +163,12 @@ impl DirectionalLanes {
         let d_vector = q_delta * (dw - mu0) + one_q * dw - (d_pole * n_virtual + pole * dn);
         let d_g = self.c_phi * d_fluence - self.c_e * d_vector;
 
-        let e_real = exp_negative(-q_real) * over_real2 / real;
-        let difference = e_real * (omega * g_real - rho3 * stays * d_g) * c.strength;
-        // S = 0 also where d_r is so near 0 that this is no number, or infinite (method.md section 8).
-        if difference > 0.0 && difference < f32::INFINITY { difference } else { 0.0 }
+        let d_terms = self.c_phi * 3.0 * (delta2.abs() + (q_delta * x_virtual).abs() + (one_q * dx).abs())
+            + self.c_e * ((one_q * dw).abs() + (d_pole * n_virtual).abs() + (pole * dn).abs());
+
+        let e_real = exp_negative(-q_real) * over_real2 / real * c.strength;
+        let difference = e_real * (omega * g_real - rho3 * stays * d_g);
+        (difference, e_real * (omega.abs() * g_terms + rho3 * stays * d_terms))
     }
 }
 
@@ -166,7 +210,7 @@ impl Shared {
             a: each(|i| a[i] / length[i]),
             b: each(|i| b[i] / length[i]),
         };
-        for i in 0..super::LANES {
+        for i in 0..LANES {
             if length[i] <= NULL_DIRECTION {
                 (shared.a[i], shared.b[i]) = other_mirror(unit.map(|c| c[i]), refracted.map(|c| c[i]), normal_out);
             }
