@@ -101,6 +101,7 @@ test:
 
 ## slow: statistical and stability tests at full sample counts
 slow:
+	$(CARGO) test --release --package bssrdf --test lanes -- --nocapture
 	$(CARGO) test --release --package pipeline-tests --features slow
 
 ## accuracy: what the models are worth, against random walks: docs/accuracy.md and its pictures (minutes)
