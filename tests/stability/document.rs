@@ -26,10 +26,11 @@ pub fn document() -> Value {
         "nodes": [
             { "mesh": 0, "translation": [0.0, 0.0, 0.0], "rotation": [0.0, 0.0, 0.0, 1.0], "scale": [1.0, 1.0, 1.0] },
             { "extensions": light(0), "rotation": [0.0, 0.0, 0.0, 1.0] },
-            { "extensions": light(1), "translation": [0.0, 0.0, 1.0] },
+            { "extensions": light(1), "translation": [0.0, 0.0, 3.0] },
             { "extensions": light(2), "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 1] },
             { "camera": 0, "translation": [0.0, 0.0, 3.0] },
             { "camera": 1, "translation": [0.0, 0.0, 3.0] },
+            { "children": [2, 4], "scale": [1.0, 1.0, 1.0], "translation": [0.0, 0.0, 0.0] },
         ],
         "cameras": [
             { "type": "perspective", "perspective": { "yfov": 0.5, "aspectRatio": 1.5, "znear": 0.1 } },

@@ -64,6 +64,9 @@ fn gltf_json() {
     let good = folder.import(&document.to_string()).expect("the file is valid");
     assert_eq!((good.cameras.len(), good.lights.len()), (2, 4));
     assert_finite(&good, "as it is");
+    // Finite numbers whose product is not.
+    let error = folder.import(&replaced(&document, "/nodes/6/scale/2", "1e308")).err().expect("refused").to_string();
+    assert!(error.contains("scene.gltf") && error.contains("transform is not finite"), "{error}");
     let mut paths = Vec::new();
     numbers(&document, "", &mut paths);
     assert!(paths.len() > 90);

@@ -87,7 +87,7 @@ fn grazing_sun() {
     render_all(&world, &cloud);
 }
 
-/// A glowing plate that lies on the body, or 10⁻⁶ above it, or beside it in its plane.
+/// A glowing plate that lies on the body, or 10⁻⁶ above it; or beside it in its plane, turned away, or below.
 #[test]
 fn area_light_on_the_surface() {
     let body = Part::translucent(quad(0.5, 0.0, 2));
@@ -100,10 +100,16 @@ fn area_light_on_the_surface() {
         assert_eq!(cloud.is_empty(), height == 0.0, "{height}");
         render_all(&world, &cloud);
     }
-    let world = world(&[body, glowing(rectangle([0.5, 1.0], 0.5, 0.0, 2))], &[], DVec3::ZERO);
-    let cloud = cloud(&world, &by_area(2000, 1));
-    assert!(cloud.is_empty(), "lit from within its own plane");
-    render_all(&world, &cloud);
+    for (where_from, dark) in [
+        ("within its own plane", rectangle([0.5, 1.0], 0.5, 0.0, 2)),
+        ("the back of a plate", quad(0.3, 1e-3, 2)),
+        ("below", quad(0.3, -1e-3, 2)),
+    ] {
+        let world = world(&[body.clone(), glowing(dark)], &[], DVec3::ZERO);
+        let cloud = cloud(&world, &by_area(2000, 1));
+        assert!(cloud.is_empty(), "lit from {where_from}");
+        render_all(&world, &cloud);
+    }
 }
 
 /// A cone without a soft edge, `cos_inner = cos_outer`: its falloff has a width all the same.

@@ -28,6 +28,9 @@ use scene::{
 /// Pixels that one task renders.
 const TILE: usize = 64;
 
+/// Share of the scene's diagonal that a ray skips when it passes a surface straight.
+const CLEARANCE: f64 = 1e-9;
+
 /// Over what part of a pixel its paths are spread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Filter {
@@ -93,6 +96,7 @@ fn render_with<M: LaneModel>(input: &Input, settings: &Settings, progress: impl 
         estimator: settings.estimator,
         samples_drawn: input.cloud.meta().samples_drawn as f64,
         max_depth: settings.max_depth,
+        clearance: CLEARANCE * input.scene.mesh.diagonal(),
         paths: Stream::new(settings.seed, Purpose::CameraPath),
         roulette: Stream::new(settings.seed, Purpose::Roulette),
     };

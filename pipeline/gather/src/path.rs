@@ -37,6 +37,8 @@ pub struct Renderer<'a, M> {
     /// `K`, the unlit samples included.
     pub samples_drawn: f64,
     pub max_depth: u32,
+    /// How far beyond a surface a ray goes on that passes it straight, m.
+    pub clearance: f64,
     pub paths: Stream,
     pub roulette: Stream,
 }
@@ -160,9 +162,10 @@ impl<M: LaneModel> Renderer<'_, M> {
                 false
             }
             Some(_) if front && walker.inside.is_some() => {
+                // Straight on, a little beyond: two triangles that meet in the ray would send it to and fro.
                 counts.nested += 1;
-                walker.origin = point.position;
-                walker.from = Some(point.triangle);
+                walker.origin = point.position + walker.direction * self.clearance;
+                walker.from = None;
                 true
             }
             Some(body) if front => self.meet_from_outside(walker, body, &point, counts),

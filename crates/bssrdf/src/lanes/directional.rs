@@ -104,7 +104,7 @@ impl LaneModel for DirectionalLanes {
 }
 
 impl DirectionalLanes {
-    /// One value by the float64 model.
+    /// One value by the float64 model; 0, as for `d_r = 0`, in the pole beside it that float32 cannot hold.
     #[cold]
     fn exactly(&self, block: &Block, normal_out: [f32; 3], channel: usize, lane: usize) -> f32 {
         let vector = |v: &[Lane; 3]| DVec3::from_array([0, 1, 2].map(|c| f64::from(v[c][lane])));
@@ -114,7 +114,8 @@ impl DirectionalLanes {
             refracted: vector(&block.refracted),
             normal_out: Vec3::from_array(normal_out).as_dvec3(),
         };
-        self.reference.bare(channel, &separation) as f32
+        let value = self.reference.bare(channel, &separation) as f32;
+        if value < f32::INFINITY { value } else { 0.0 }
     }
 
     /// `S_bare` of one channel and lane before its clamp (method.md 5.10 by 9.5), and the sum of the magnitudes of its

@@ -21,7 +21,7 @@ const LEAST_PADDING: f32 = 16.0 * f32::EPSILON;
 /// Boxes grow by at most this share. How much differs from box to box, at random: the builder joins each box with the
 /// best of its neighbours, and among equal boxes (a mesh on top of itself) all prefer the same one, which makes the
 /// build quadratic and the tree a list.
-pub(super) const PADDING: f32 = 3.0 * LEAST_PADDING;
+pub(super) const PADDING: f32 = 2.0 * LEAST_PADDING;
 
 /// The tree passes over boxes that end nearer than this, in the units of the scaled mesh. Every box ends farther
 /// beyond its triangle than that.
