@@ -40,13 +40,13 @@ Made by `make accuracy`; do not edit. Everything here is about the published mod
 without bias, so an image converges to what its model says, right or wrong. The reference is a random walk in the medium
 behind the same smooth boundary, which knows no diffusion.
 
-**Read this before you choose.** All figures are reflectances of a half-space.
+**Read this before you choose.** All figures are reflectances of a half-space under normal incidence.
 
 * The *directional dipole* alone shows where the light comes from, and is too bright everywhere: by a quarter at high
   albedo, twice below 0.8, and by orders of magnitude where most light is absorbed.
 * The *better dipole* is within 5 per cent above a reduced albedo of 0.98 and too dark below 0.95, the more so the more is
   absorbed.
-* The *standard dipole* is within 14 per cent for index 1.3 at any albedo; for 1.5 it is 10 per cent too dark at high albedo
+* The *standard dipole* is within 11 per cent for index 1.3 at any albedo; for 1.5 it is 10 per cent too dark at high albedo
   and up to half too bright at low.
 * None of them knows how thick an object is: slabs thinner than two reduced mean free paths let far too much light through,
   thick ones too little, and the dark side of a round thing is too dark.
