@@ -13,8 +13,20 @@ pub fn binary() -> Vec<u8> {
     floats.chain([0u32, 1, 2].into_iter().flat_map(u32::to_le_bytes)).collect()
 }
 
-pub fn document() -> Value {
+fn nodes() -> Value {
     let light = |index: usize| json!({ "KHR_lights_punctual": { "light": index } });
+    json!([
+        { "mesh": 0, "translation": [0.0, 0.0, 0.0], "rotation": [0.0, 0.0, 0.0, 1.0], "scale": [1.0, 1.0, 1.0] },
+        { "extensions": light(0), "rotation": [0.0, 0.0, 0.0, 1.0] },
+        { "extensions": light(1), "translation": [0.0, 0.0, 3.0] },
+        { "extensions": light(2), "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 1] },
+        { "camera": 0, "translation": [0.0, 0.0, 3.0] },
+        { "camera": 1, "translation": [0.0, 0.0, 3.0] },
+        { "children": [2, 4], "scale": [1.0, 1.0, 1.0], "translation": [0.0, 0.0, 0.0] },
+    ])
+}
+
+pub fn document() -> Value {
     json!({
         "asset": { "version": "2.0" },
         "extensionsUsed": ["KHR_lights_punctual", "KHR_materials_volume", "KHR_materials_emissive_strength"],
@@ -23,15 +35,7 @@ pub fn document() -> Value {
             { "type": "point", "intensity": 1.0, "range": 10.0 },
             { "type": "spot", "intensity": 1.0, "spot": { "innerConeAngle": 0.1, "outerConeAngle": 0.2 } },
         ] } },
-        "nodes": [
-            { "mesh": 0, "translation": [0.0, 0.0, 0.0], "rotation": [0.0, 0.0, 0.0, 1.0], "scale": [1.0, 1.0, 1.0] },
-            { "extensions": light(0), "rotation": [0.0, 0.0, 0.0, 1.0] },
-            { "extensions": light(1), "translation": [0.0, 0.0, 3.0] },
-            { "extensions": light(2), "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 1] },
-            { "camera": 0, "translation": [0.0, 0.0, 3.0] },
-            { "camera": 1, "translation": [0.0, 0.0, 3.0] },
-            { "children": [2, 4], "scale": [1.0, 1.0, 1.0], "translation": [0.0, 0.0, 0.0] },
-        ],
+        "nodes": nodes(),
         "cameras": [
             { "type": "perspective", "perspective": { "yfov": 0.5, "aspectRatio": 1.5, "znear": 0.1 } },
             { "type": "orthographic", "orthographic": { "xmag": 1.5, "ymag": 1.0, "znear": 0.1, "zfar": 9.0 } },

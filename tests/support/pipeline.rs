@@ -152,6 +152,7 @@ pub fn orthographic(towards: DVec3, half_height: f64) -> Camera {
     let right = forward.any_orthonormal_vector();
     Camera {
         name: "test".into(),
+        node: "test".into(),
         position: -10.0 * forward,
         right,
         up: right.cross(forward),

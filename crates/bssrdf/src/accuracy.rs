@@ -55,7 +55,7 @@ impl Model {
     /// The errors of the three channels if any that scatters is off by more than [`GOOD`].
     pub fn poor_reflectance(self, medium: &Medium) -> Option<[f64; 3]> {
         let errors = medium.map(|c| self.reflectance_error(c, medium.eta));
-        let poor = |(c, e): (&Coefficients, &f64)| c.reduced_scattering() > 0.0 && e.abs() > GOOD;
+        let poor = |(c, e): (&Coefficients, &f64)| c.scatters() && e.abs() > GOOD;
         medium.channels.iter().zip(&errors).any(poor).then_some(errors)
     }
 }

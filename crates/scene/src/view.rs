@@ -17,7 +17,10 @@ pub enum Projection {
 /// A camera in world space (m, not yet relative to the scene's origin).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
+    /// The camera's own name, or else its node's: exporters number the nodes when names collide.
     pub name: String,
+    /// Name of the node that carries it.
+    pub node: String,
     pub position: DVec3,
     pub right: DVec3,
     pub up: DVec3,
@@ -68,7 +71,7 @@ impl Camera {
 
     /// The camera of a node: its scale does not matter.
     pub(crate) fn of_node(
-        name: String,
+        names: (String, String),
         transform: &DMat4,
         projection: Projection,
         aspect: Option<f64>,
@@ -77,7 +80,16 @@ impl Camera {
         let forward = axis(-DVec3::Z)?;
         let right = forward.cross(axis(DVec3::Y)?).try_normalize()?;
         let position = transform.transform_point3(DVec3::ZERO);
-        Some(Camera { name, position, right, up: right.cross(forward), forward, projection, aspect })
+        Some(Camera {
+            name: names.0,
+            node: names.1,
+            position,
+            right,
+            up: right.cross(forward),
+            forward,
+            projection,
+            aspect,
+        })
     }
 }
 
@@ -128,7 +140,16 @@ impl View {
             (Some(w), Some(h)) if w > 0 && h > 0 => Some(f64::from(w) / f64::from(h)),
             _ => None,
         };
-        Ok(Camera { name, position: eye, right, up: right.cross(forward), forward, projection, aspect })
+        Ok(Camera {
+            node: name.clone(),
+            name,
+            position: eye,
+            right,
+            up: right.cross(forward),
+            forward,
+            projection,
+            aspect,
+        })
     }
 }
 

@@ -117,6 +117,9 @@ fn check_fit(
         format!("--light-unit is {unit}, the cloud's {}", meta.options.light_unit)
     } else if scene.geometry_digest() != meta.geometry {
         "its mesh or materials differ".into()
+    } else if meta.materials.iter().any(|m| scene.materials.get(m.index as usize).is_none_or(|own| own.name != m.name))
+    {
+        "its materials differ".into()
     } else if scene.light_digest != meta.lights {
         "its lights differ".into()
     } else {
@@ -162,6 +165,7 @@ fn camera(arguments: &Arguments, scene: &Scene, scene_path: &Path) -> Result<Cho
         Some(wanted) => cameras
             .iter()
             .find(|c| c.name == *wanted)
+            .or_else(|| cameras.iter().find(|c| c.node == *wanted))
             .or_else(|| wanted.parse::<usize>().ok().and_then(|index| cameras.get(index))),
     };
     let camera = found.cloned().ok_or_else(|| {

@@ -34,7 +34,8 @@ fn of_node(placed: &Placed, camera: &json::Camera, metres_per_unit: f64) -> Resu
     if let Some(a) = aspect.filter(|a| !(*a > 0.0 && a.is_finite())) {
         return Err(format!("its aspect ratio {a} must be positive"));
     }
-    Camera::of_node(placed.name.clone(), &placed.transform, projection, aspect)
+    let name = camera.name.clone().unwrap_or_else(|| placed.name.clone());
+    Camera::of_node((name, placed.name.clone()), &placed.transform, projection, aspect)
         .ok_or_else(|| "its node's matrix has no direction (scale 0?)".into())
 }
 
