@@ -1,7 +1,5 @@
 //! Closed meshes whose shape is known.
 
-#![allow(dead_code)] // each test file uses some of them
-
 use scene::{
     DVec3, Mesh, Triangle, Vec3,
     random::{Item, Purpose, Stream},

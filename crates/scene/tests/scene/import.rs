@@ -1,9 +1,6 @@
 //! Geometry of glTF files: every layout that glTF allows gives the triangles that it means.
 
-#[path = "support/asset.rs"]
-mod asset;
-
-use asset::{Asset, OPTIONS, TETRAHEDRON, UNSIGNED_BYTE, UNSIGNED_INT, tetrahedron};
+use crate::asset::{Asset, OPTIONS, TETRAHEDRON, UNSIGNED_BYTE, UNSIGNED_INT, tetrahedron};
 use scene::{DVec3, ImportOptions, Mesh, NormalKind, Scene};
 use serde_json::{Value, json};
 
@@ -71,7 +68,7 @@ fn indices_of_every_width() {
     let expected = corners(&import(&tetrahedron()));
     for (component, width) in [(UNSIGNED_BYTE, 1), (UNSIGNED_INT, 4)] {
         let mut asset = tetrahedron();
-        let bytes = asset::TETRAHEDRON_SIDES.iter().flat_map(|i| u32::from(*i).to_le_bytes()[..width].to_vec());
+        let bytes = crate::asset::TETRAHEDRON_SIDES.iter().flat_map(|i| u32::from(*i).to_le_bytes()[..width].to_vec());
         let bytes: Vec<u8> = bytes.collect();
         let indices = asset.accessor(&bytes, "SCALAR", component, 12);
         asset.set("/meshes/0/primitives/0/indices", json!(indices));

@@ -1,9 +1,6 @@
 //! Rays that start on the surface: no shadow of the triangle itself or its neighbours, none lost either.
 
-#[path = "support/meshes.rs"]
-mod meshes;
-
-use meshes::{cube, direction, mesh, random, sphere};
+use crate::meshes::{cube, direction, mesh, random, sphere};
 use scene::{DVec3, Mesh, NormalKind, Rays, SurfacePoint, warp};
 
 /// Convex, closed: a fine sphere, one of 32 triangles, and a cube, whose sides are two triangles in one plane.

@@ -1,9 +1,6 @@
 //! The files that a scene is made of: containers, buffers beside them, data URIs, names.
 
-#[path = "support/asset.rs"]
-mod asset;
-
-use asset::{Folder, OPTIONS, container, import_bytes, tetrahedron};
+use crate::asset::{Folder, OPTIONS, container, import_bytes, tetrahedron};
 use base64::{Engine, engine::general_purpose::STANDARD};
 use scene::Scene;
 use serde_json::{Value, json};

@@ -1,7 +1,5 @@
 //! Tiny glTF files, written field by field.
 
-#![allow(dead_code)] // each test file uses some of them
-
 use scene::{ImportOptions, LightUnit, Scene};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};

@@ -1,9 +1,6 @@
 //! Every fault of a glTF file is an error that names the file, the place and, where there is one, the way out.
 
-#[path = "support/asset.rs"]
-mod asset;
-
-use asset::{Asset, FLOAT, Folder, OPTIONS, UNSIGNED_SHORT, container, fault, import_bytes, tetrahedron};
+use crate::asset::{Asset, FLOAT, Folder, OPTIONS, UNSIGNED_SHORT, container, fault, import_bytes, tetrahedron};
 use scene::Scene;
 use serde_json::{Value, json};
 

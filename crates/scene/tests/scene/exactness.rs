@@ -1,9 +1,6 @@
 //! The tree finds what a loop over all triangles finds, and is the same for any number of threads.
 
-#[path = "support/meshes.rs"]
-mod meshes;
-
-use meshes::{bumpy, cube, direction, mesh, random};
+use crate::meshes::{bumpy, cube, direction, mesh, random};
 use scene::{DVec3, Hit, Mesh, Rays};
 
 /// The nearest triangle in front of `origin` by solving for distance and weights (Cramer's rule), nothing shared with

@@ -1,9 +1,6 @@
 //! No ray slips between the triangles of a closed mesh, whatever its size and wherever the ray comes from.
 
-#[path = "support/meshes.rs"]
-mod meshes;
-
-use meshes::{bumpy, cube, direction, mesh, random, sphere};
+use crate::meshes::{bumpy, cube, direction, mesh, random, sphere};
 use scene::{DVec3, Mesh, Rays, Vec3};
 use std::sync::LazyLock;
 

@@ -1,9 +1,6 @@
 //! Damaged files, three thousand at random but the same in every run: each is read or refused, none panics.
 
-#[path = "support/asset.rs"]
-mod asset;
-
-use asset::{Asset, Folder, OPTIONS, container, tetrahedron};
+use crate::asset::{Asset, Folder, OPTIONS, container, tetrahedron};
 use scene::{
     DVec3, NormalKind, Rays, Scene,
     random::{Item, Purpose, Stream},

@@ -1,9 +1,6 @@
 //! Irradiance by each kind of light against values known on paper, and the choice among lights.
 
-#[path = "support/meshes.rs"]
-mod meshes;
-
-use meshes::{direction, mesh, random};
+use crate::meshes::{direction, mesh, random};
 use scene::{
     DVec3, Mesh, Rays, SurfacePoint,
     light::{

@@ -1,9 +1,6 @@
 //! Lights, cameras and materials of glTF files.
 
-#[path = "support/asset.rs"]
-mod asset;
-
-use asset::{Asset, OPTIONS, tetrahedron};
+use crate::asset::{Asset, OPTIONS, tetrahedron};
 use scene::{DVec3, ImportOptions, LightUnit, NormalKind, Projection, Scene, SurfacePoint};
 use serde_json::{Value, json};
 
