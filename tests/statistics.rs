@@ -9,6 +9,8 @@
 mod means;
 #[path = "statistics/paths.rs"]
 mod paths;
+#[path = "statistics/reflectance.rs"]
+mod reflectance;
 #[path = "statistics/roulette.rs"]
 mod roulette;
 #[path = "statistics/sampling.rs"]

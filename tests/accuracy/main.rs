@@ -1,10 +1,8 @@
 //! `accuracy FOLDER`: what the models are worth, against random walks. Writes `accuracy.md` and its pictures.
 
-mod models;
 mod picture;
 mod sphere;
 mod tables;
-mod walk;
 
 use std::{error::Error, fs, path::Path};
 

@@ -1,6 +1,6 @@
 //! A sphere under parallel light, seen from afar: brute-force scattering beside the models.
 
-use crate::walk::{free_path, scatter};
+use support::walk::{free_path, scatter};
 use bssrdf::{DVec3, Medium, fresnel};
 use gather::estimator::{Estimator, Rule};
 use glam::DVec2;

@@ -1,13 +1,13 @@
 //! The tables of `docs/accuracy.md`.
 
-use crate::{
-    models::{reflectance, transmission},
-    picture::{MEDIUM, Ratios},
-    walk::{Balance, Matter, chandrasekhar, slab},
-};
+use crate::picture::{MEDIUM, Ratios};
 use bssrdf::fresnel;
 use std::fmt::{Error, Write};
-use support::pipeline::MODELS;
+use support::{
+    half_space::{reflectance, transmission},
+    pipeline::MODELS,
+    walk::{Balance, Matter, chandrasekhar, slab},
+};
 
 /// Walks of each table entry.
 const WALKS: u64 = 1_000_000;

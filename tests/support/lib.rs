@@ -2,10 +2,12 @@
 //! functions from a scene to a number.
 
 pub mod chi_square;
+pub mod half_space;
 pub mod meshes;
 pub mod pipeline;
 pub mod quadrature;
 pub mod random;
+pub mod walk;
 pub mod z_test;
 
 /// How many times more samples and seeds the statistics use than in the fast run.

@@ -6,7 +6,7 @@ use bssrdf::fresnel;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
-use support::random::Random;
+use crate::random::Random;
 
 /// A medium in units of its mean free path.
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,7 @@
 
 use bssrdf::{DVec3, Medium, Model, Separation, fresnel};
 use std::f64::consts::PI;
-use support::quadrature::{Extent, integrate_graded, plane_integral};
+use crate::quadrature::{Extent, integrate_graded, plane_integral};
 
 /// A grey medium of reduced albedo `albedo` and unit reduced extinction.
 pub fn medium(albedo: f64, eta: f64) -> Medium {
