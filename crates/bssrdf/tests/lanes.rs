@@ -3,8 +3,8 @@
 
 use bssrdf::{
     Bssrdf, Coefficients, DVec3, Interface, Medium, Model, Separation, fresnel,
-    lanes::{BetterLanes, Block, DirectionalLanes, LANES, Lane, LaneModel, StandardLanes},
-    simd::{self, Kernel},
+    lanes::{BetterLanes, Block, DirectionalLanes, Entered, Entry, LANES, Lane, LaneModel, StandardLanes},
+    simd::{self, Kernel, Level},
 };
 use std::f64::consts::TAU;
 
@@ -186,6 +186,15 @@ fn standard_dipole_is_close_to_float64() {
     assert_close::<StandardLanes>(Model::StandardDipole);
 }
 
+fn bits(values: [Lane; 3]) -> [[u32; LANES]; 3] {
+    values.map(|lane| lane.map(f32::to_bits))
+}
+
+/// Every body that this processor can run: on one with AVX-512 that is AVX2 as well.
+fn bodies() -> impl Iterator<Item = Level> {
+    Level::ALL.into_iter().filter(|level| level.is_available())
+}
+
 fn assert_same_bits<M: LaneModel>() {
     let mut random = Random(7);
     for k in 0..BLOCKS {
@@ -195,10 +204,12 @@ fn assert_same_bits<M: LaneModel>() {
         separations[3].offset = DVec3::ZERO;
         separations[9].offset = separations[9].normal_in;
         let model = M::new(&medium);
-        let plain = simd::run_plain(Evaluate::new(&model, &separations));
-        let wide = simd::dispatch(Evaluate::new(&model, &separations));
-        let bits = |values: [Lane; 3]| values.map(|lane| lane.map(f32::to_bits));
-        assert_eq!(bits(plain), bits(wide), "{medium:?}");
+        let plain = bits(simd::run_plain(Evaluate::new(&model, &separations)));
+        for level in bodies() {
+            let wide = simd::run_as(level, Evaluate::new(&model, &separations));
+            assert_eq!(plain, bits(wide), "{level:?} {medium:?}");
+        }
+        assert_eq!(plain, bits(simd::dispatch(Evaluate::new(&model, &separations))), "{medium:?}");
     }
 }
 
@@ -207,4 +218,58 @@ fn all_vector_widths_give_the_same_bits() {
     assert_same_bits::<DirectionalLanes>();
     assert_same_bits::<BetterLanes>();
     assert_same_bits::<StandardLanes>();
+}
+
+/// Sixteen samples enter.
+struct Enter {
+    entry: Entry,
+    codes: [[u32; LANES]; 2],
+}
+
+impl Kernel for &Enter {
+    type Output = Entered;
+
+    #[inline(always)]
+    fn run(self) -> Entered {
+        self.entry.enter(&self.codes[0], &self.codes[1])
+    }
+}
+
+#[test]
+fn all_vector_widths_let_the_same_light_enter() {
+    let mut random = Random(8);
+    for _ in 0..BLOCKS {
+        let codes = [0; 2].map(|_| [0; LANES].map(|_| random.between(0.0, 4_294_967_296.0) as u32));
+        let enter = Enter { entry: Entry::new(random.between(0.41, 2.5)), codes };
+        let bits =
+            |entered: Entered| (bits(entered.normal), bits(entered.refracted), entered.transmittance.map(f32::to_bits));
+        let plain = bits(simd::run_plain(&enter));
+        for level in bodies() {
+            assert_eq!(plain, bits(simd::run_as(level, &enter)), "{level:?}");
+        }
+    }
+}
+
+/// Where float32 hands over to float64: along the normal, at the sample itself, and so close that squares leave the range
+/// of float32.
+#[test]
+fn hard_places_have_the_float64_value() {
+    let mut random = Random(9);
+    for k in 0..2000 {
+        let medium = medium(&mut random);
+        let mut all = separations(&mut random, &medium, RANGES[k % 4], false);
+        let length = 1.0 / medium.channels[0].reduced_extinction();
+        for (i, separation) in all.iter_mut().enumerate() {
+            let along = [0.0, 1.0, -1.0, 1e-6, 1e-12, 1e-18, 1e-30][i % 7] * length;
+            separation.offset = rounded(separation.normal_in * along);
+        }
+        let model = DirectionalLanes::new(&medium);
+        let exact = Model::DirectionalDipole.of(&medium);
+        let values = simd::dispatch(Evaluate::new(&model, &all));
+        for (separation, value) in all.iter().zip(values[0]) {
+            if let Some(exact) = reference(&*exact, separation) {
+                assert!((f64::from(value) / exact - 1.0).abs() < 1e-6, "{exact:e} {value:e} {medium:?} {separation:?}");
+            }
+        }
+    }
 }

@@ -3,16 +3,23 @@
 //! The difference of the two fluences is taken from the difference of their distances, so that it does not cancel far
 //! away (method.md section 9).
 
-use super::{Block, Lane, LaneModel, dot, each, exp::decay, exp_negative};
+use super::{
+    Block, LANES, Lane, LaneModel,
+    dipole::Distances,
+    each,
+    exp::{decay2, exp2_negative},
+};
 use crate::Medium;
-use std::f64::consts::PI;
+use std::f64::consts::{LOG2_E, PI};
 
 /// One channel, lengths in units of 1/σ_t'.
 #[derive(Clone, Copy, Debug)]
 struct Channel {
-    /// `σ_t'`, 1/m.
-    scale: f32,
+    /// `σ_t'²`, 1/m².
+    scale2: f32,
+    /// `σ_tr`, and `−σ_tr log₂ e`.
     transport: f32,
+    fall: f32,
     virtual_depth: f32,
     /// `C_φ/D`.
     fluence: f32,
@@ -36,10 +43,12 @@ impl LaneModel for BetterLanes {
             let scatters = c.scatters();
             // Any finite values do where the strength is 0.
             let diffusion = if scatters { c.grosjean_diffusion() * reduced } else { 1.0 };
+            let transport = if scatters { c.grosjean_transport() / reduced } else { 0.0 };
             let norm = PI * boundary.exit_norm;
             Channel {
-                scale: reduced as f32,
-                transport: if scatters { (c.grosjean_transport() / reduced) as f32 } else { 0.0 },
+                scale2: (reduced * reduced) as f32,
+                transport: transport as f32,
+                fall: (-transport * LOG2_E) as f32,
                 virtual_depth: (1.0 + 4.0 * boundary.reflection * diffusion) as f32,
                 fluence: (boundary.c_phi / diffusion) as f32,
                 vector: boundary.c_e as f32,
@@ -51,30 +60,33 @@ impl LaneModel for BetterLanes {
 
     #[inline(always)]
     fn bare(&self, block: &Block, _normal_out: [f32; 3]) -> [Lane; 3] {
-        let r2 = dot(&block.offset, &block.offset);
-        self.channels.map(|c| each(|i| c.bare(r2[i])))
+        let [x, y, z] = &block.offset;
+        let r2 = each(|i| x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
+        let mut values = [[0.0; LANES]; 3];
+        for (c, values) in self.channels.into_iter().zip(&mut values) {
+            *values = each(|i| c.bare(r2[i]));
+        }
+        values
     }
 }
 
 impl Channel {
     #[inline(always)]
     fn bare(&self, r2: f32) -> f32 {
-        let r2 = r2 * self.scale * self.scale;
-        let real2 = r2 + 1.0;
-        let virtual2 = r2 + self.virtual_depth * self.virtual_depth;
-        let (real, mirrored) = (real2.sqrt(), virtual2.sqrt());
-        // δ = d_v − d_r (9.1)
-        let delta = (self.virtual_depth * self.virtual_depth - 1.0) / (real + mirrored);
-        let (q_real, q_virtual) = (self.transport * real, self.transport * mirrored);
-        let e_real = exp_negative(-q_real);
-        let (stays, fades) = decay(self.transport * delta);
-        let e_virtual = e_real * stays;
-        let vector = self.vector
-            * ((1.0 + q_real) * e_real / (real2 * real)
-                + self.virtual_depth * (1.0 + q_virtual) * e_virtual / (virtual2 * mirrored));
-        // e^{−q_r}/d_r − e^{−q_v}/d_v
-        let difference = e_real * (delta + real * fades) / (real * mirrored);
-        let value = self.strength * (vector + self.fluence * difference);
+        let r2 = r2 * self.scale2;
+        let depth2 = self.virtual_depth * self.virtual_depth;
+        let d = Distances::new(r2 + 1.0, r2 + depth2, depth2 - 1.0);
+        let q_real = self.transport * d.real;
+        let q_virtual = q_real + self.transport * d.delta;
+        let (stays, fades) = decay2(self.fall * d.delta);
+        let over_real2 = d.over_real * d.over_real;
+        let over_virtual2 = d.over_virtual * d.over_virtual;
+        let real = (1.0 + q_real) * over_real2 * d.over_real;
+        let mirrored = self.virtual_depth * (1.0 + q_virtual) * over_virtual2 * d.over_virtual * stays;
+        // e^{q_r} (e^{−q_r}/d_r − e^{−q_v}/d_v)
+        let difference = (d.delta * d.over_real + fades) * d.over_virtual;
+        let sources = self.vector * (real + mirrored) + self.fluence * difference;
+        let value = self.strength * exp2_negative(self.fall * d.real) * sources;
         // No number where a distance left the range of float32: S is far below it there.
         if value > 0.0 { value } else { 0.0 }
     }

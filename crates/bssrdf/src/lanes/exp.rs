@@ -1,45 +1,64 @@
 //! The exponential in float32: no library call, so that it vectorises and is the same everywhere.
 
-/// Adding this rounds a float32 below 2²² to an integer, whose bits are then the low ones of the sum.
-const ROUND: f32 = 12_582_912.0;
+use std::f32::consts::LOG2_E;
 
-/// Below this the result is taken as zero: it would be subnormal.
-const UNDERFLOW: f32 = -87.0;
+/// Adding this rounds a float32 below 2²² to an integer, whose bits are then the low ones of the sum: with the exponent's
+/// bias of 127 already in them, for a shift to the left makes a power of two.
+const ROUND: f32 = 12_582_912.0 + 127.0;
 
-/// `eˣ` for `x ≤ 1`, within 2 units in the last place; 0 below −87.
+/// At this exponent the power of two is 0, and so is the result: it would be subnormal.
+const UNDERFLOW: f32 = -127.0;
+
+/// `eˣ` for `x ≤ 1`, within 2 units in the last place; 0 below −87.7, subnormal in the last third before.
 #[inline(always)]
 pub fn exp_negative(x: f32) -> f32 {
-    let clamped = if x > UNDERFLOW { x } else { UNDERFLOW };
-    let shifted = clamped * std::f32::consts::LOG2_E + ROUND;
+    let clamped = if x > UNDERFLOW / LOG2_E { x } else { UNDERFLOW / LOG2_E };
+    let shifted = clamped * LOG2_E + ROUND;
     let n = shifted - ROUND;
     // ln 2 in two parts: the first has few digits, so that n times it is exact.
     let f = (clamped - n * 0.693_359_4) + n * 2.121_944_4e-4;
-    // Minimax polynomial of (eᶠ − 1 − f)/f² on |f| ≤ ½ ln 2, as in Cephes' expf (Moshier).
-    let p = 1.987_569_1e-4f32;
-    let p = p * f + 1.398_199_9e-3;
-    let p = p * f + 8.333_452e-3;
-    let p = p * f + 4.166_579_6e-2;
-    let p = p * f + 1.666_666_5e-1;
-    let p = p * f + 0.5;
-    let mantissa = (p * f * f + f) + 1.0;
-    let exponent = shifted.to_bits().wrapping_sub(ROUND.to_bits()).wrapping_add(127) << 23;
-    let value = mantissa * f32::from_bits(exponent);
-    if x > UNDERFLOW { value } else { 0.0 }
+    let power = power_of_two(shifted);
+    power + power * power_less_one(f * LOG2_E)
 }
 
-/// `e^{−x}` and `1 − e^{−x}` for `x ≥ −1`, each without cancellation.
+/// `2ˣ` for `x ≤ 1`; 0 below −126.5. Where `x` itself is rounded, this is no less exact than `eˣ`, and cheaper.
 #[inline(always)]
-pub(super) fn decay(x: f32) -> (f32, f32) {
-    // Taylor series up to x⁷; the remainder is below 10⁻⁸ of the result for |x| < ½.
-    let s = 1.0 / 5040.0;
-    let s = s * -x + 1.0 / 720.0;
-    let s = s * -x + 1.0 / 120.0;
-    let s = s * -x + 1.0 / 24.0;
-    let s = s * -x + 1.0 / 6.0;
-    let s = s * -x + 0.5;
-    let series = x * (s * -x + 1.0);
-    let rest = exp_negative(-x);
-    (rest, if x.abs() < 0.5 { series } else { 1.0 - rest })
+pub(super) fn exp2_negative(x: f32) -> f32 {
+    let (power, less_one) = split(x);
+    power + power * less_one
+}
+
+/// `2ˣ` and `1 − 2ˣ` for `x ≤ 2`, each without cancellation.
+#[inline(always)]
+pub(super) fn decay2(x: f32) -> (f32, f32) {
+    let (power, less_one) = split(x);
+    let rest = power * less_one;
+    (power + rest, (1.0 - power) - rest)
+}
+
+/// A power of two, and `2ᶠ − 1` for what is left of `x`.
+#[inline(always)]
+fn split(x: f32) -> (f32, f32) {
+    let clamped = if x > UNDERFLOW { x } else { UNDERFLOW };
+    let shifted = clamped + ROUND;
+    (power_of_two(shifted), power_less_one(clamped - (shifted - ROUND)))
+}
+
+/// `2ⁿ` of `n + ROUND`.
+#[inline(always)]
+fn power_of_two(shifted: f32) -> f32 {
+    f32::from_bits(shifted.to_bits() << 23)
+}
+
+/// `2ᶠ − 1` for `|f| ≤ ½`: minimax of its relative error, 1.2·10⁻⁸.
+#[inline(always)]
+fn power_less_one(f: f32) -> f32 {
+    // Pairs first, so that few results wait for one another.
+    let squared = f * f;
+    let low = 2.402_265e-1 * f + 6.931_472e-1;
+    let middle = 9.618_238e-3 * f + 5.550_357_4e-2;
+    let high = 1.540_351_8e-4 * f + 1.339_073_5e-3;
+    ((high * squared + middle) * squared + low) * f
 }
 
 #[cfg(test)]
@@ -52,8 +71,13 @@ mod tests {
             let x = -87.0 * (k as f32 / 2_000_000.0);
             let exact = f64::from(x).exp();
             assert!((f64::from(exp_negative(x)) / exact - 1.0).abs() < 2.5e-7, "{x}");
-            let exact = -(-f64::from(-x)).exp_m1();
-            let error = f64::from(decay(-x).1) / exact - 1.0;
+            let x = x * 1.4;
+            let exact = f64::from(x).exp2();
+            assert!((f64::from(exp2_negative(x)) / exact - 1.0).abs() < 2.5e-7, "{x}");
+            let exact = -(f64::from(x) * std::f64::consts::LN_2).exp_m1();
+            let (stays, fades) = decay2(x);
+            assert_eq!(stays, exp2_negative(x));
+            let error = f64::from(fades) / exact - 1.0;
             assert!(x == 0.0 || error.abs() < 3e-7, "{x} {error}");
         }
     }
@@ -64,6 +88,11 @@ mod tests {
         assert_eq!(exp_negative(-1000.0), 0.0);
         assert_eq!(exp_negative(f32::NEG_INFINITY), 0.0);
         assert!((exp_negative(1.0) - std::f32::consts::E).abs() < 1e-6);
-        assert_eq!(decay(0.0), (1.0, 0.0));
+        assert_eq!(exp2_negative(-1000.0), 0.0);
+        assert_eq!(exp2_negative(f32::NEG_INFINITY), 0.0);
+        assert_eq!([1.0, 0.0, -1.0, -126.0].map(exp2_negative), [2.0, 1.0, 0.5, f32::MIN_POSITIVE]);
+        assert_eq!(decay2(0.0), (1.0, 0.0));
+        assert_eq!(decay2(1.0), (2.0, -1.0));
+        assert_eq!(decay2(f32::NEG_INFINITY), (0.0, 1.0));
     }
 }

@@ -4,12 +4,15 @@
 //! `α'`, `η` and `σ_t'/σ_t` (method.md section 8). The float64 models of this crate are the reference.
 
 mod better;
+mod dipole;
 mod directional;
+mod entry;
 mod exp;
 mod standard;
 
 pub use better::BetterLanes;
 pub use directional::DirectionalLanes;
+pub use entry::{Entered, Entry};
 pub use exp::exp_negative;
 pub use standard::StandardLanes;
 
@@ -52,14 +55,14 @@ fn each(f: impl Fn(usize) -> f32) -> Lane {
     lane
 }
 
-/// The dot product of two lane vectors.
+/// `a·b`.
 #[inline(always)]
-fn dot(a: &[Lane; 3], b: &[Lane; 3]) -> Lane {
-    each(|i| a[0][i] * b[0][i] + a[1][i] * b[1][i] + a[2][i] * b[2][i])
+fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The dot product of a lane vector with one vector.
+/// `a × b`.
 #[inline(always)]
-fn dot_one(a: &[Lane; 3], b: [f32; 3]) -> Lane {
-    each(|i| a[0][i] * b[0] + a[1][i] * b[1] + a[2][i] * b[2])
+fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

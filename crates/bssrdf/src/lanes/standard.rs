@@ -1,15 +1,17 @@
 //! The standard dipole on blocks; see `standard_dipole.rs` for the model.
 
-use super::{Block, Lane, LaneModel, dot, each, exp_negative};
+use super::{Block, LANES, Lane, LaneModel, each, exp::exp2_negative};
 use crate::Medium;
-use std::f64::consts::PI;
+use std::f64::consts::{LOG2_E, PI};
 
 /// One channel, lengths in units of 1/σ_t'.
 #[derive(Clone, Copy, Debug)]
 struct Channel {
-    /// `σ_t'`, 1/m.
-    scale: f32,
+    /// `σ_t'²`, 1/m².
+    scale2: f32,
+    /// `σ_tr`, and `−σ_tr log₂ e`.
     transport: f32,
+    fall: f32,
     virtual_depth: f32,
     /// `α' σ_t'²/(4π²)`, 1/m²; 0 where nothing scatters.
     strength: f32,
@@ -21,23 +23,15 @@ pub struct StandardLanes {
     channels: [Channel; 3],
 }
 
-/// `z (1 + q) e^{−q}/d³`.
-#[inline(always)]
-fn source(r2: f32, depth: f32, transport: f32) -> f32 {
-    let d2 = r2 + depth * depth;
-    let d = d2.sqrt();
-    let q = transport * d;
-    depth * (1.0 + q) * exp_negative(-q) / (d2 * d)
-}
-
 impl LaneModel for StandardLanes {
     fn new(medium: &Medium) -> Self {
         let channels = medium.channels.map(|c| {
             let reduced = c.reduced_extinction();
-            let scatters = c.scatters();
+            let transport = if c.scatters() { c.transport() / reduced } else { 0.0 };
             Channel {
-                scale: reduced as f32,
-                transport: if scatters { (c.transport() / reduced) as f32 } else { 0.0 },
+                scale2: (reduced * reduced) as f32,
+                transport: transport as f32,
+                fall: (-transport * LOG2_E) as f32,
                 virtual_depth: (1.0 + 4.0 / 3.0 * medium.interface.reflection_egan) as f32,
                 strength: (c.reduced_albedo() * reduced * reduced / (4.0 * PI * PI)) as f32,
             }
@@ -47,14 +41,35 @@ impl LaneModel for StandardLanes {
 
     #[inline(always)]
     fn bare(&self, block: &Block, _normal_out: [f32; 3]) -> [Lane; 3] {
-        let r2 = dot(&block.offset, &block.offset);
-        self.channels.map(|c| {
-            each(|i| {
-                let r2 = r2[i] * c.scale * c.scale;
-                let value = c.strength * (source(r2, 1.0, c.transport) + source(r2, c.virtual_depth, c.transport));
-                // No number where a distance left the range of float32: S is far below it there.
-                if value > 0.0 { value } else { 0.0 }
-            })
-        })
+        let [x, y, z] = &block.offset;
+        let r2 = each(|i| x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
+        let mut values = [[0.0; LANES]; 3];
+        for (c, values) in self.channels.into_iter().zip(&mut values) {
+            *values = each(|i| c.bare(r2[i]));
+        }
+        values
+    }
+}
+
+impl Channel {
+    #[inline(always)]
+    fn bare(&self, r2: f32) -> f32 {
+        let r2 = r2 * self.scale2;
+        let (real2, virtual2) = (r2 + 1.0, r2 + self.virtual_depth * self.virtual_depth);
+        let (real, mirrored) = (real2.sqrt(), virtual2.sqrt());
+        // One division for both 1/d.
+        let inverse = 1.0 / (real * mirrored);
+        let (over_real, over_virtual) = (inverse * mirrored, inverse * real);
+        let real = self.source(real) * (over_real * over_real * over_real);
+        let mirrored = self.source(mirrored) * (over_virtual * over_virtual * over_virtual);
+        let value = self.strength * (real + self.virtual_depth * mirrored);
+        // No number where a distance left the range of float32: S is far below it there.
+        if value > 0.0 { value } else { 0.0 }
+    }
+
+    /// `(1 + q) e^{−q}`.
+    #[inline(always)]
+    fn source(&self, distance: f32) -> f32 {
+        (1.0 + self.transport * distance) * exp2_negative(self.fall * distance)
     }
 }
