@@ -34,7 +34,7 @@ else
 .DEFAULT_GOAL := gallery
 endif
 
-.PHONY: gallery own own-images build test slow accuracy lint scenes clouds images help clean clean-images
+.PHONY: gallery own own-images build test slow accuracy curve curve-full bench lint scenes clouds images help clean clean-images
 
 ## gallery: build, and render every scene, medium and view of the gallery (what `make` does)
 gallery: build
@@ -107,6 +107,23 @@ slow:
 ## accuracy: what the models are worth, against random walks: docs/accuracy.md and its pictures (minutes)
 accuracy:
 	$(CARGO) run --release --quiet --package pipeline-tests --bin accuracy -- docs
+
+# Where `make curve` finds bunny.glb and dragon.glb, and peers/ in the folder above; without them it takes a scene of data/.
+MESHES ?= data/scenes
+CURVE  := $(CARGO) run --release --quiet --package pipeline-tests --bin curve -- --meshes $(MESHES) --programs $(BIN) --output docs
+
+## curve: time against error: docs/speed.md with its plots and raw data (minutes; MESHES=folder of bunny.glb, dragon.glb)
+curve: build
+	$(CURVE)
+
+## curve-full: the same with larger clouds and more runs (hours)
+curve-full: build
+	$(CURVE) --full
+
+## bench: the kernels, the trees and the rays by themselves
+bench:
+	$(CARGO) bench --package bssrdf --bench kernels
+	$(CARGO) bench --package scene --bench rays
 
 ## lint: formatting, and clippy without warnings
 lint:

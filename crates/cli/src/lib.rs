@@ -2,12 +2,14 @@
 
 mod count;
 mod failure;
+mod medium;
 mod progress;
 mod rgb;
 mod scene_args;
 
 pub use count::parse_count;
 pub use failure::{Failure, run};
+pub use medium::{ReadMediumError, read_medium};
 pub use progress::Progress;
 pub use rgb::parse_rgb;
 pub use scene_args::{LightUnit, Normals, SceneArgs};

@@ -13,7 +13,7 @@ pub fn write_ply(path: &Path, cloud: &Cloud) -> Result<(), Error> {
     let head = format!("ply\nformat binary_little_endian 1.0\nelement vertex {count}\n{properties}end_header\n");
     output.write_all(head.as_bytes()).map_err(fail)?;
     let origin = glam::DVec3::from_array(cloud.meta().origin_m);
-    for sample in cloud.samples(0, count) {
+    for sample in cloud.meta().materials.iter().flat_map(|m| cloud.samples(m)) {
         let world = (sample.position.as_dvec3() + origin).as_vec3();
         for v in [world, sample.normal.as_vec3(), sample.direction.as_vec3(), sample.flux] {
             for x in v.to_array() {

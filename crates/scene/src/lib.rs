@@ -9,6 +9,7 @@ pub mod light;
 mod mesh;
 pub mod random;
 mod rays;
+pub mod sequence;
 mod view;
 pub mod warp;
 

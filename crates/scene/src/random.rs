@@ -5,14 +5,35 @@
 
 /// What a stream is for: streams of different purposes are independent.
 #[derive(Clone, Copy, Debug)]
-#[repr(u64)]
 pub enum Purpose {
     /// Surface samples of phase one.
-    Surface = 1,
+    Surface,
     /// Camera paths of phase two.
-    CameraPath = 2,
-    /// Acceptance of samples by the roulette of phase two.
-    Roulette = 3,
+    CameraPath,
+    /// Acceptance and choice of samples in the sums of phase two.
+    Gather,
+    /// Where paths pass through their pixel.
+    Pixel,
+    /// Points that phase two measures its own error at.
+    Calibration,
+    /// Scrambles of the sequences of phase one.
+    Scramble,
+    /// What one of those sequences leaves open.
+    Remainder(u64),
+}
+
+impl Purpose {
+    fn number(self) -> u64 {
+        match self {
+            Purpose::Surface => 1,
+            Purpose::CameraPath => 2,
+            Purpose::Gather => 3,
+            Purpose::Scramble => 4,
+            Purpose::Pixel => 5,
+            Purpose::Calibration => 6,
+            Purpose::Remainder(k) => 7 + k,
+        }
+    }
 }
 
 /// All numbers of one purpose under one seed.
@@ -29,7 +50,7 @@ pub struct Item {
 
 impl Stream {
     pub fn new(seed: u64, purpose: Purpose) -> Stream {
-        Stream { key: mix(mix(seed) ^ (purpose as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15)) }
+        Stream { key: mix(mix(seed) ^ purpose.number().wrapping_mul(0x9E37_79B9_7F4A_7C15)) }
     }
 
     /// The numbers of item `index`.

@@ -1,27 +1,21 @@
-//! The lit samples of one material as the estimators read them: blocks of sixteen, entry refraction done.
+//! The lit samples of one material and half as the estimators read them: tiles as they lie in the file.
 
 use bssrdf::{
-    fresnel,
-    lanes::{Block, LANES, Lane},
+    lanes::{Block, Entry, LANES, Lane},
+    simd,
 };
-use formats::cloud::Sample;
-use scene::DVec3;
+use formats::cloud::{Cloud, Group, Node, Record, TILE, Tile};
+use glam::DVec3;
 
-/// What the sum needs of sixteen samples besides their positions.
-#[derive(Clone, Debug)]
-struct Rest {
-    normal: [Lane; 3],
-    refracted: [Lane; 3],
-    /// `T12 Φ`, W.
-    flux: [Lane; 3],
-}
+const _: () = assert!(LANES == TILE, "a tile is evaluated as one block");
 
-/// Samples that carry light into one medium. The last block is filled up with samples that carry none.
-#[derive(Clone, Debug, Default)]
-pub struct LitSamples {
-    positions: Vec<[Lane; 3]>,
-    rest: Vec<Rest>,
+/// Samples that carry light into one medium.
+#[derive(Clone, Copy, Debug)]
+pub struct LitSamples<'a> {
+    tiles: &'a [Tile],
+    nodes: &'a [Node],
     len: usize,
+    entry: Entry,
 }
 
 /// The exitant point that a sum is for.
@@ -47,46 +41,24 @@ impl Exit {
     /// `x_o − x_i`, m.
     #[inline(always)]
     pub fn offset(&self, position: [f32; 3]) -> [f32; 3] {
-        [0, 1, 2].map(|c| (self.high[c] - position[c]) + self.low[c])
+        let mut offset = [0.0; 3];
+        for c in 0..3 {
+            offset[c] = (self.high[c] - position[c]) + self.low[c];
+        }
+        offset
     }
 }
 
-impl LitSamples {
-    /// Refracts every sample into a medium of relative index `eta`; what is reflected wholly is left out.
-    pub fn new(samples: impl Iterator<Item = Sample>, eta: f64) -> LitSamples {
-        let mut lit = LitSamples::default();
-        let mut last = None;
-        for sample in samples {
-            let Some(entry) = fresnel::enter(sample.normal, sample.direction, eta) else {
-                continue;
-            };
-            let flux = sample.flux.as_dvec3() * entry.transmittance;
-            lit.push(sample.position.to_array(), sample.normal, entry.direction, flux);
-            last = Some((sample.position.to_array(), sample.normal, entry.direction));
-        }
-        let len = lit.len;
-        while let Some((position, normal, refracted)) = last.filter(|_| lit.len % LANES != 0) {
-            lit.push(position, normal, refracted, DVec3::ZERO);
-        }
-        lit.len = len;
-        lit
+impl<'a> LitSamples<'a> {
+    /// The samples of one group of a cloud, entering a medium of relative index `eta`.
+    pub fn new(cloud: &'a Cloud, group: &Group, eta: f64) -> LitSamples<'a> {
+        let (tiles, nodes) = cloud.group(group);
+        LitSamples::of(tiles, nodes, group.samples as usize, eta)
     }
 
-    fn push(&mut self, position: [f32; 3], normal: DVec3, refracted: DVec3, flux: DVec3) {
-        let lane = self.len % LANES;
-        if lane == 0 {
-            let zero = [[0.0; LANES]; 3];
-            self.positions.push(zero);
-            self.rest.push(Rest { normal: zero, refracted: zero, flux: zero });
-        }
-        let block = self.len / LANES;
-        for c in 0..3 {
-            self.positions[block][c][lane] = position[c];
-            self.rest[block].normal[c][lane] = normal[c] as f32;
-            self.rest[block].refracted[c][lane] = refracted[c] as f32;
-            self.rest[block].flux[c][lane] = flux[c] as f32;
-        }
-        self.len += 1;
+    /// `len` samples in tiles with the tree over them.
+    pub fn of(tiles: &'a [Tile], nodes: &'a [Node], len: usize, eta: f64) -> LitSamples<'a> {
+        LitSamples { tiles, nodes, len, entry: Entry::new(eta) }
     }
 
     /// Samples, fillers not counted.
@@ -98,40 +70,90 @@ impl LitSamples {
         self.len == 0
     }
 
-    /// Positions of all blocks, m.
     #[inline(always)]
-    pub fn positions(&self) -> &[[Lane; 3]] {
-        &self.positions
+    pub fn tiles(&self) -> &'a [Tile] {
+        self.tiles
     }
 
-    /// One whole block as seen from `exit`, with its flux.
+    /// The positions of one tile, m.
     #[inline(always)]
-    pub fn block(&self, index: usize, exit: &Exit) -> (Block, [Lane; 3]) {
-        let (positions, rest) = (&self.positions[index], &self.rest[index]);
-        let mut offset = [[0.0; LANES]; 3];
+    pub fn positions(&self, index: usize) -> [Lane; 3] {
+        let tile = &self.tiles[index];
+        let mut positions = [[0.0; LANES]; 3];
         for c in 0..3 {
             for i in 0..LANES {
-                offset[c][i] = (exit.high[c] - positions[c][i]) + exit.low[c];
+                positions[c][i] = tile[i].position[c];
             }
         }
-        (Block { offset, normal_in: rest.normal, refracted: rest.refracted }, rest.flux)
+        positions
     }
 
-    /// Any sixteen samples as seen from `exit`, with their flux.
+    /// The tree over the tiles, see [`Node`].
+    #[inline(always)]
+    pub fn nodes(&self) -> &'a [Node] {
+        self.nodes
+    }
+
+    /// One whole tile as seen from `exit`, with its flux `T12 Φ`, W.
+    #[inline(always)]
+    pub fn block(&self, index: usize, exit: &Exit) -> (Block, [Lane; 3]) {
+        let mut words = Words::default();
+        let tile = &self.tiles[index];
+        for i in 0..LANES {
+            words.put(i, &tile[i]);
+        }
+        self.enter(&words, exit)
+    }
+
+    /// Any sixteen samples as seen from `exit`, with their flux `T12 Φ`, W.
     #[inline(always)]
     pub fn pick(&self, indices: &[u32; LANES], exit: &Exit) -> (Block, [Lane; 3]) {
-        let zero = [[0.0; LANES]; 3];
-        let (mut block, mut flux) = (Block { offset: zero, normal_in: zero, refracted: zero }, zero);
-        for (i, index) in indices.iter().enumerate() {
-            let (b, lane) = (*index as usize / LANES, *index as usize % LANES);
-            let (positions, rest) = (&self.positions[b], &self.rest[b]);
-            for c in 0..3 {
-                block.offset[c][i] = (exit.high[c] - positions[c][lane]) + exit.low[c];
-                block.normal_in[c][i] = rest.normal[c][lane];
-                block.refracted[c][i] = rest.refracted[c][lane];
-                flux[c][i] = rest.flux[c][lane];
+        let records = self.tiles.as_flattened();
+        let mut words = Words::default();
+        for i in 0..LANES {
+            words.put(i, &records[indices[i] as usize]);
+        }
+        self.enter(&words, exit)
+    }
+
+    /// Asks for the memory of a sample that will be picked soon.
+    #[inline(always)]
+    pub fn prefetch(&self, index: u32) {
+        simd::prefetch(&self.tiles.as_flattened()[index as usize]);
+    }
+
+    #[inline(always)]
+    fn enter(&self, words: &Words, exit: &Exit) -> (Block, [Lane; 3]) {
+        let entered = self.entry.enter(&words.normal, &words.direction);
+        let (mut offset, mut flux) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
+        for c in 0..3 {
+            for i in 0..LANES {
+                offset[c][i] = (exit.high[c] - words.position[c][i]) + exit.low[c];
+                flux[c][i] = words.flux[c][i] * entered.transmittance[i];
             }
         }
-        (block, flux)
+        (Block { offset, normal_in: entered.normal, refracted: entered.refracted }, flux)
+    }
+}
+
+/// Sixteen records, component by component.
+#[derive(Clone, Copy, Default)]
+#[repr(align(64))]
+struct Words {
+    position: [Lane; 3],
+    normal: [u32; LANES],
+    direction: [u32; LANES],
+    flux: [Lane; 3],
+}
+
+impl Words {
+    #[inline(always)]
+    fn put(&mut self, lane: usize, record: &Record) {
+        for c in 0..3 {
+            self.position[c][lane] = record.position[c];
+            self.flux[c][lane] = record.flux[c];
+        }
+        self.normal[lane] = record.normal;
+        self.direction[lane] = record.direction;
     }
 }

@@ -35,18 +35,21 @@ pub struct Arguments {
     /// How light scatters from point to point
     #[arg(long, value_name = "MODEL", default_value = "directional-dipole")]
     pub bssrdf: ModelName,
-    /// Sum over the cloud: hierarchical (cut, not built yet), by the note's roulette, or all samples
-    #[arg(long, value_name = "HOW", default_value = "roulette")]
+    /// Sum over the cloud: hierarchical (cut), by the note's roulette, or all samples
+    #[arg(long, value_name = "HOW", default_value = "cut")]
     pub estimator: EstimatorName,
-    /// Target relative error of one gather, of `--estimator cut` only
-    #[arg(long, value_name = "X")]
+    /// Relative error that the cut may add to a pixel's scattered light [default: 0.01]
+    #[arg(long, value_name = "X", value_parser = parse_accuracy)]
     pub accuracy: Option<f64>,
     /// Acceptance rule of the roulette; mean is the note's, and unbounded in variance for coloured media
     #[arg(long, value_name = "RULE", default_value = "mixture")]
     pub roulette: RuleName,
-    /// Camera paths a pixel
-    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=1_048_576))]
-    pub spp: u32,
+    /// Camera paths a pixel; with --target-error, the most [default: 16; with --target-error 4096]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_048_576))]
+    pub spp: Option<u32>,
+    /// Add paths until the image's estimated relative error is this, the cloud's part included
+    #[arg(long, value_name = "X", value_parser = parse_accuracy)]
+    pub target_error: Option<f64>,
     /// Spread the paths over the pixel (box), or send all through its centre (point)
     #[arg(long, value_name = "FILTER", default_value = "box")]
     pub filter: FilterName,
@@ -75,6 +78,11 @@ pub struct Arguments {
     pub list_media: bool,
     #[command(flatten)]
     pub common: Common,
+}
+
+fn parse_accuracy(text: &str) -> Result<f64, String> {
+    let accuracy = text.parse().ok().filter(|x: &f64| (1e-6..=1.0).contains(x));
+    accuracy.ok_or_else(|| "expected a number between 0.000001 and 1".into())
 }
 
 fn parse_stops(text: &str) -> Result<f64, String> {

@@ -1,5 +1,6 @@
 //! Pixels: layers, mean and variance, and the channels of the image.
 
+use crate::path::PathLight;
 use formats::{Channel, Image};
 use scene::DVec3;
 
@@ -29,27 +30,70 @@ pub type Layers = [DVec3; 5];
 pub struct PixelSum {
     layers: Layers,
     count: f64,
-    mean: DVec3,
-    /// Σ (x − mean)².
-    deviation: DVec3,
+    /// Even and odd paths, each as their half of the cloud has them.
+    halves: [DVec3; 2],
+    /// Sums of squares of the same.
+    squares: [DVec3; 2],
+    counts: [f64; 2],
 }
 
 impl PixelSum {
-    /// Adds a path (Welford's update: no difference of large squares).
-    pub fn add(&mut self, path: &Layers) {
-        let total: DVec3 = path.iter().sum();
-        self.layers.iter_mut().zip(path).for_each(|(sum, x)| *sum += x);
+    /// Adds a path. A path alone in its pixel counts for both halves.
+    pub fn add(&mut self, index: u32, alone: bool, path: &PathLight) {
+        self.layers.iter_mut().zip(&path.layers).for_each(|(sum, x)| *sum += x);
         self.count += 1.0;
-        let before = total - self.mean;
-        self.mean += before / self.count;
-        self.deviation += before * (total - self.mean);
+        for half in 0..2 {
+            if alone || index as usize % 2 == half {
+                self.halves[half] += path.halves[half];
+                self.squares[half] += path.halves[half] * path.halves[half];
+                self.counts[half] += 1.0;
+            }
+        }
     }
 
-    /// The finished pixel.
+    /// Variance of the pixel by what its halves differ by, and by what the paths of each half do: the second has the
+    /// paths' part of the first as its mean if they are independent, and more if they are well spread.
+    fn variances(&self) -> [DVec3; 2] {
+        let [even, odd] = [0, 1].map(|half| self.halves[half] / self.counts[half]);
+        let within = [0, 1].map(|half| {
+            let (n, mean) = (self.counts[half], self.halves[half] / self.counts[half]);
+            (self.squares[half] / n - mean * mean).max(DVec3::ZERO) / (n - 1.0).max(1.0)
+        });
+        [(even - odd) * (even - odd) / 4.0, (within[0] + within[1]) / 4.0]
+    }
+
+    /// The finished pixel. The halves are independent and have one mean, so a quarter of the square of their difference
+    /// has the variance of their mean as its mean.
     pub fn pixel(&self, guide: Guide) -> Pixel {
         let layers = self.layers.map(|sum| sum / self.count);
-        let variance = if self.count > 1.0 { self.deviation / (self.count * (self.count - 1.0)) } else { DVec3::ZERO };
-        Pixel { layers, variance, guide }
+        Pixel { layers, variance: self.variances()[0], guide }
+    }
+}
+
+/// Relative standard errors of an image: root mean squares of the pixels' over the root mean square of their values.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Errors {
+    /// All of it.
+    pub total: f64,
+    /// What more paths cannot remove, at least.
+    pub cloud: f64,
+}
+
+impl Errors {
+    /// 0 of a black image.
+    pub fn of(sums: &[PixelSum]) -> Errors {
+        let (mut power, mut total, mut paths) = (0.0, 0.0, 0.0);
+        for sum in sums {
+            let value: DVec3 = sum.layers.iter().sum::<DVec3>() / sum.count;
+            let [between, within] = sum.variances();
+            power += value.length_squared();
+            total += between.element_sum();
+            paths += within.element_sum();
+        }
+        if power == 0.0 {
+            return Errors::default();
+        }
+        Errors { total: (total / power).sqrt(), cloud: ((total - paths).max(0.0) / power).sqrt() }
     }
 }
 
@@ -120,12 +164,21 @@ pub fn image(pixels: &[Pixel], width: usize, height: usize) -> Image {
 }
 
 /// The relative standard error of the image: the root mean square of the pixels' standard errors over the root mean
-/// square of their values, all channels; none for a black image or one path a pixel. It covers the camera paths and the
-/// roulette, not the cloud, whose error all pixels share.
-pub fn relative_error(pixels: &[Pixel], paths_per_pixel: u32) -> Option<f64> {
+/// square of their values, all channels; none for a black image.
+pub fn relative_error(pixels: &[Pixel]) -> Option<f64> {
     let variance: f64 = pixels.iter().map(|p| p.variance.element_sum()).sum();
     let power: f64 = pixels.iter().map(|p| p.beauty().length_squared()).sum();
-    (power > 0.0 && paths_per_pixel > 1).then(|| (variance / power).sqrt())
+    (power > 0.0).then(|| (variance / power).sqrt())
+}
+
+/// What [`relative_error`] and the variance of an image cover.
+pub fn covers(paths_per_pixel: u32, samples_drawn: u64) -> &'static str {
+    match (paths_per_pixel, samples_drawn) {
+        (1, 1) => "nothing: one path a pixel, one sample",
+        (1, _) => "cloud and gather, not the one path a pixel",
+        (_, 1) => "camera paths, not the one sample",
+        _ => "cloud, gather and camera paths",
+    }
 }
 
 #[cfg(test)]
@@ -135,15 +188,22 @@ mod tests {
     #[test]
     fn mean_and_variance_of_four_paths() {
         let mut sum = PixelSum::default();
-        for x in [1.0, 2.0, 3.0, 6.0] {
-            let mut layers = [DVec3::ZERO; 5];
-            layers[Layer::Subsurface as usize] = DVec3::splat(x);
-            sum.add(&layers);
+        for (index, x) in [1.0, 2.0, 3.0, 6.0].into_iter().enumerate() {
+            let mut path = PathLight { halves: [DVec3::splat(x), DVec3::splat(-x)], ..PathLight::default() };
+            path.layers[Layer::Subsurface as usize] = DVec3::splat(x);
+            sum.add(index as u32, false, &path);
         }
         let pixel = sum.pixel(Guide::default());
         assert_eq!(pixel.beauty(), DVec3::splat(3.0));
-        // Σ(x − 3)² = 14; 14/(4·3)
-        assert!((pixel.variance() - DVec3::splat(14.0 / 12.0)).length() < 1e-15);
+        // Even paths have the mean 2, odd ones, by their half, −4.
+        assert_eq!(pixel.variance(), DVec3::splat(9.0));
+    }
+
+    #[test]
+    fn one_path_knows_the_clouds_error() {
+        let mut sum = PixelSum::default();
+        sum.add(0, true, &PathLight { halves: [DVec3::splat(2.0), DVec3::splat(3.0)], ..PathLight::default() });
+        assert_eq!(sum.pixel(Guide::default()).variance(), DVec3::splat(0.25));
     }
 
     #[test]

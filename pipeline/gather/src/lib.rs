@@ -3,33 +3,25 @@
 //! Never samples a light for a translucent surface: their light is the cloud's. Parallel over pixels, never within a
 //! sum, so the image is the same for any number of threads.
 
-pub mod estimator;
+mod calibration;
 pub mod film;
 pub mod media;
+mod passes;
 pub mod path;
 pub mod preview;
-pub mod samples;
+
+pub use sums::{estimator, samples};
 
 use bssrdf::{
     Medium, Model,
-    lanes::{BetterLanes, DirectionalLanes, LaneModel, StandardLanes},
+    lanes::{BetterLanes, DirectionalLanes, StandardLanes},
 };
-use estimator::{Estimator, Rule};
-use film::{Pixel, PixelSum};
+use estimator::Estimator;
+use film::{Errors, Pixel};
 use formats::cloud::Cloud;
-use path::{Body, Counts, Renderer};
-use rayon::prelude::*;
-use samples::LitSamples;
-use scene::{
-    Camera, DVec3, NormalKind, Rays, Scene,
-    random::{Purpose, Stream},
-};
-
-/// Pixels that one task renders.
-const TILE: usize = 64;
-
-/// Share of the scene's diagonal that a ray skips when it passes a surface straight.
-const CLEARANCE: f64 = 1e-9;
+use passes::Passes;
+use path::Counts;
+use scene::{Camera, DVec3, NormalKind, Rays, Scene};
 
 /// Over what part of a pixel its paths are spread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,93 +62,37 @@ pub struct Input<'a> {
 pub struct Rendered {
     /// Rows from top to bottom.
     pub pixels: Vec<Pixel>,
+    pub paths_per_pixel: u32,
     pub counts: Counts,
     /// Indices of pixels with a number that is not finite; the first few.
     pub non_finite: Vec<usize>,
     pub non_finite_count: u64,
 }
 
-/// Renders an image; `progress` is told how many pixels were done.
-pub fn render(input: &Input, settings: &Settings, progress: impl Fn(u64) + Sync) -> Rendered {
+/// An image on its way: paths are added to all pixels in passes.
+pub trait Session {
+    /// Adds so many paths to every pixel; `progress` is told how many pixels were done.
+    fn pass(&mut self, paths: u32, progress: &(dyn Fn(u64) + Sync));
+
+    /// The image's errors so far.
+    fn errors(&self) -> Errors;
+
+    /// The image.
+    fn finish(self: Box<Self>) -> Rendered;
+}
+
+/// Prepares an image. Its cut is as accurate as `settings.paths_per_pixel` paths need.
+pub fn start<'a>(input: &Input<'a>, settings: &Settings) -> Box<dyn Session + 'a> {
     match settings.model {
-        Model::DirectionalDipole => render_with::<DirectionalLanes>(input, settings, progress),
-        Model::BetterDipole => render_with::<BetterLanes>(input, settings, progress),
-        Model::StandardDipole => render_with::<StandardLanes>(input, settings, progress),
+        Model::DirectionalDipole => Box::new(Passes::<DirectionalLanes>::new(input, settings)),
+        Model::BetterDipole => Box::new(Passes::<BetterLanes>::new(input, settings)),
+        Model::StandardDipole => Box::new(Passes::<StandardLanes>::new(input, settings)),
     }
 }
 
-fn render_with<M: LaneModel>(input: &Input, settings: &Settings, progress: impl Fn(u64) + Sync) -> Rendered {
-    let renderer = Renderer {
-        scene: input.scene,
-        rays: input.rays,
-        camera: input.camera,
-        bodies: bodies::<M>(input, settings),
-        environment: settings.environment,
-        normals: settings.normals,
-        estimator: settings.estimator,
-        samples_drawn: input.cloud.meta().samples_drawn as f64,
-        max_depth: settings.max_depth,
-        clearance: CLEARANCE * input.scene.mesh.diagonal(),
-        paths: Stream::new(settings.seed, Purpose::CameraPath),
-        roulette: Stream::new(settings.seed, Purpose::Roulette),
-    };
-    let count = settings.width * settings.height;
-    let tile = |first: usize| {
-        let mut counts = Counts::default();
-        let pixels: Vec<Pixel> =
-            (first..(first + TILE).min(count)).map(|p| render_pixel(&renderer, settings, p, &mut counts)).collect();
-        progress(pixels.len() as u64);
-        (pixels, counts)
-    };
-    let tiles: Vec<_> = (0..count.div_ceil(TILE)).into_par_iter().map(|t| tile(t * TILE)).collect();
-    let mut counts = Counts::default();
-    tiles.iter().for_each(|(_, c)| counts.add(c));
-    let pixels: Vec<Pixel> = tiles.into_iter().flat_map(|(pixels, _)| pixels).collect();
-    let bad = || pixels.iter().enumerate().filter(|(_, p)| !p.is_finite()).map(|(k, _)| k);
-    let (non_finite, non_finite_count) = (bad().take(8).collect(), bad().count() as u64);
-    Rendered { pixels, counts, non_finite, non_finite_count }
-}
-
-fn bodies<M: LaneModel>(input: &Input, settings: &Settings) -> Vec<Option<Body<M>>> {
-    let mut bodies: Vec<Option<Body<M>>> = input.scene.materials.iter().map(|_| None).collect();
-    for (sampled, medium) in input.cloud.meta().materials.iter().zip(input.media) {
-        let transport = settings.model.of(medium).transport();
-        let rule = match settings.estimator {
-            Estimator::Roulette(rule) => rule,
-            Estimator::Exhaustive => Rule::Mixture,
-        };
-        bodies[sampled.index as usize] = Some(Body {
-            model: M::new(medium),
-            unscattered: settings.model.unscattered_extinction(medium),
-            rates: rule.rates(transport),
-            samples: LitSamples::new(input.cloud.samples(sampled.first, sampled.count), medium.eta),
-            medium: medium.clone(),
-        });
-    }
-    bodies
-}
-
-fn render_pixel<M: LaneModel>(renderer: &Renderer<M>, settings: &Settings, pixel: usize, counts: &mut Counts) -> Pixel {
-    let size = glam::DVec2::new(settings.width as f64, settings.height as f64);
-    let corner = glam::DVec2::new((pixel % settings.width) as f64, (pixel / settings.width) as f64);
-    let ray = |offset: glam::DVec2| {
-        let (origin, direction) = renderer.camera.ray(corner + offset, size);
-        (origin - renderer.scene.origin, direction)
-    };
-    let centre = glam::DVec2::splat(0.5);
-    let mut sum = PixelSum::default();
-    for path in 0..settings.paths_per_pixel {
-        let index = pixel as u64 * u64::from(settings.paths_per_pixel) + u64::from(path);
-        let offset = match settings.filter {
-            Filter::Point => centre,
-            Filter::Box => {
-                let random = renderer.paths.item(index);
-                glam::DVec2::new(random.uniform(0), random.uniform(1))
-            }
-        };
-        let (origin, direction) = ray(offset);
-        sum.add(&renderer.trace(index, origin, direction, counts));
-    }
-    let (origin, direction) = ray(centre);
-    sum.pixel(renderer.guide(origin, direction))
+/// Renders an image of `settings.paths_per_pixel` paths; `progress` is told how many pixels were done.
+pub fn render(input: &Input, settings: &Settings, progress: impl Fn(u64) + Sync) -> Rendered {
+    let mut session = start(input, settings);
+    session.pass(settings.paths_per_pixel, &progress);
+    session.finish()
 }

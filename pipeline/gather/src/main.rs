@@ -6,7 +6,7 @@ mod report;
 use arguments::{Arguments, EstimatorName, FilterName, ModelName, RuleName};
 use bssrdf::{Medium, Model, built_in, built_in_names};
 use clap::Parser;
-use cli::{Failure, Progress};
+use cli::{Common, Failure, Progress};
 use formats::{
     atomic::{self, Output},
     cloud::Cloud,
@@ -14,7 +14,7 @@ use formats::{
 use gather::{
     Filter, Input, Rendered, Settings,
     estimator::{Estimator, Rule},
-    film, media, preview, render,
+    film, media, preview, render, start,
 };
 use report::{Facts, Seconds};
 use scene::{Camera, Rays, Scene, View};
@@ -47,22 +47,35 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     check_fit(&cloud, cloud_path, &scene, scene_path, arguments)?;
     let camera = camera(arguments, &scene, scene_path)?;
     let settings = settings(arguments, &camera, estimator)?;
-    check_memory(&cloud, &settings)?;
+    check_memory(&settings)?;
     let media = media::assign(&arguments.medium, cloud.meta())?;
     show_scale(arguments, &scene, &cloud, &media, &settings);
     let output_path = arguments.output.as_deref().ok_or_else(|| Failure::usage("--output: give IMAGE.exr"))?;
     let mut output = Output::create(output_path)?;
-    cloud.verify(cloud_path)?;
+    let at_once = cloud.bytes() < VERIFIED_FIRST;
+    if at_once {
+        cloud.verify(cloud_path)?;
+    }
     let mut seconds = Seconds(vec![("open", start.elapsed().as_secs_f64())]);
     let step = Instant::now();
     let rays = common.in_pool(|| Rays::new(&scene.mesh))?;
     seconds.0.push(("ray_tree", step.elapsed().as_secs_f64()));
 
     let input = Input { scene: &scene, rays: &rays, cloud: &cloud, media: &media, camera: &camera.camera };
-    let progress = Progress::start(common, "gathering", (settings.width * settings.height) as u64, "pixels");
-    let rendered = common.in_pool(|| render(&input, &settings, |n| progress.add(n)))?;
-    seconds.0.push(("render", progress.finish()));
+    let step = Instant::now();
+    let rendered = std::thread::scope(|scope| {
+        let verified = (!at_once).then(|| scope.spawn(|| cloud.verify(cloud_path)));
+        let rendered = common.in_pool(|| match arguments.target_error {
+            None => render_all(&input, &settings, common),
+            Some(target) => render_to(target, &input, &settings, common),
+        })?;
+        let panicked = || Err(formats::Error::invalid(cloud_path, "its check came to no end"));
+        verified.map_or(Ok(()), |check| check.join().unwrap_or_else(|_| panicked()))?;
+        Ok::<Rendered, Failure>(rendered)
+    })?;
+    seconds.0.push(("render", step.elapsed().as_secs_f64()));
 
+    let settings = Settings { paths_per_pixel: rendered.paths_per_pixel, ..settings };
     let facts = Facts { settings: &settings, cloud: cloud.meta(), media: &media, camera: &camera.camera };
     let step = Instant::now();
     if rendered.non_finite_count == 0 {
@@ -78,6 +91,67 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     finish(arguments, &facts, &rendered)
 }
 
+fn render_all(input: &Input, settings: &Settings, common: &Common) -> Rendered {
+    let progress = Progress::start(common, "gathering", (settings.width * settings.height) as u64, "pixels");
+    let rendered = render(input, settings, |n| progress.add(n));
+    progress.finish();
+    rendered
+}
+
+/// Doubles the paths until the error is the target, or the cloud's own error is most of it, or there are enough.
+fn render_to(target: f64, input: &Input, settings: &Settings, common: &Common) -> Rendered {
+    let most = settings.paths_per_pixel;
+    let mut paths = FIRST_PATHS.min(most);
+    let mut session = start(input, &Settings { paths_per_pixel: paths, ..settings.clone() });
+    let pixels = (settings.width * settings.height) as u64;
+    let (mut done, mut before) = (0, f64::INFINITY);
+    loop {
+        let progress = Progress::start(common, "gathering", pixels, &format!("pixels, paths {} to {paths}", done + 1));
+        session.pass(paths - done, &|n| progress.add(n));
+        progress.finish();
+        let errors = session.errors();
+        if errors.total <= target {
+            break;
+        }
+        let cloud_error = errors.cloud.max(lasting(errors.total, before, settings.estimator));
+        before = errors.total;
+        if cloud_error > CLOUD_LIMITS * target {
+            // The error of well-spread samples falls at least as their number to the power 3/4.
+            let drawn = input.cloud.meta().samples_drawn as f64;
+            let needed = drawn * (cloud_error / (CLOUD_LIMITS * target)).powf(4.0 / 3.0);
+            let percent = 100.0 * cloud_error;
+            common.warn(format_args!(
+                "the cloud alone has an error of {percent:.2} %: sample it again with --samples {needed:.1e}"
+            ));
+            break;
+        }
+        if paths >= most {
+            common.warn(format_args!("--target-error is not met with {most} paths a pixel; --spp allows more"));
+            break;
+        }
+        done = paths;
+        paths = (2 * paths).min(most);
+    }
+    session.finish()
+}
+
+/// What remains of an error that was `before` with half the paths and is `now`, if the variance of well-spread paths falls
+/// as their number to the power 3/2; what the cut may add does not fall, because it is asked of the pixel.
+fn lasting(now: f64, before: f64, estimator: Estimator) -> f64 {
+    let fall = 2f64.powf(1.5);
+    let added = if let Estimator::Cut { accuracy } = estimator { accuracy } else { 0.0 };
+    ((fall * now * now - before * before) / (fall - 1.0) - added * added).max(0.0).sqrt()
+}
+
+/// Paths of the first pass of `--target-error`: two for each half of the cloud.
+const FIRST_PATHS: u32 = 4;
+
+/// The cloud limits if it alone takes this share of the wanted error, half its square.
+const CLOUD_LIMITS: f64 = 0.7;
+
+/// Clouds of fewer bytes are checked before the work, in milliseconds; larger ones beside it, before anything is written.
+const VERIFIED_FIRST: u64 = 1 << 26;
+
 fn paths(arguments: &Arguments) -> Result<(&Path, &Path), Failure> {
     match (&arguments.cloud, &arguments.scene) {
         (Some(cloud), Some(scene)) => Ok((cloud, scene)),
@@ -85,12 +159,23 @@ fn paths(arguments: &Arguments) -> Result<(&Path, &Path), Failure> {
     }
 }
 
+/// Default of `--accuracy`.
+const ACCURACY: f64 = 0.01;
+
+/// Default of `--spp`, and of the most paths that `--target-error` may take.
+const PATHS: u32 = 16;
+const MOST_PATHS: u32 = 4096;
+
 fn estimator(arguments: &Arguments) -> Result<Estimator, Failure> {
     if arguments.accuracy.is_some() && arguments.estimator != EstimatorName::Cut {
         return Err(Failure::usage("--accuracy: only --estimator cut has an accuracy; leave it out"));
     }
     match arguments.estimator {
-        EstimatorName::Cut => Err(Failure::usage("--estimator cut is not built yet; use roulette or exhaustive")),
+        EstimatorName::Cut => {
+            // What the cut adds may be half of the error asked for: a quarter of its square.
+            let default = arguments.target_error.map_or(ACCURACY, |target| 0.5 * target);
+            Ok(Estimator::Cut { accuracy: arguments.accuracy.unwrap_or(default) })
+        }
         EstimatorName::Exhaustive => Ok(Estimator::Exhaustive),
         EstimatorName::Roulette => Ok(Estimator::Roulette(match arguments.roulette {
             RuleName::Mixture => Rule::Mixture,
@@ -198,7 +283,7 @@ fn settings(arguments: &Arguments, chosen: &Chosen, estimator: Estimator) -> Res
     Ok(Settings {
         width,
         height,
-        paths_per_pixel: arguments.spp,
+        paths_per_pixel: arguments.spp.unwrap_or(if arguments.target_error.is_some() { MOST_PATHS } else { PATHS }),
         filter: match arguments.filter {
             FilterName::Box => Filter::Box,
             FilterName::Point => Filter::Point,
@@ -230,13 +315,13 @@ fn size(arguments: &Arguments, chosen: &Chosen) -> Result<(usize, usize), Failur
     Err(Failure::usage(format!("--width, --height: {width} x {height} pixels; each must lie between 1 and 65536")))
 }
 
-/// Refuses what cannot fit before any work is done: the samples as the sum reads them, and the image thrice.
-fn check_memory(cloud: &Cloud, settings: &Settings) -> Result<(), Failure> {
+/// Refuses what cannot fit before any work is done: the image thrice. The cloud is mapped.
+fn check_memory(settings: &Settings) -> Result<(), Failure> {
     let pixels = settings.width as u64 * settings.height as u64;
-    let needed = cloud.len().saturating_mul(48).saturating_add(pixels * 3 * 256);
+    let needed = pixels * 3 * 256;
     match cli::available_memory_bytes() {
         Some(available) if needed > available => Err(Failure::usage(format!(
-            "this image of this cloud needs {:.1} GiB of memory, {:.1} GiB are free; make either smaller",
+            "this image needs {:.1} GiB of memory, {:.1} GiB are free; make it smaller",
             needed as f64 / 2f64.powi(30),
             available as f64 / 2f64.powi(30)
         ))),
@@ -248,7 +333,7 @@ fn check_memory(cloud: &Cloud, settings: &Settings) -> Result<(), Failure> {
 fn show_scale(arguments: &Arguments, scene: &Scene, cloud: &Cloud, media: &[Medium], settings: &Settings) {
     for (material, medium) in cloud.meta().materials.iter().zip(media) {
         let diagonal = diagonal(scene, material.index);
-        let spacing = (material.area_m2 / material.count.max(1) as f64).sqrt();
+        let spacing = (material.area_m2 / material.count().max(1) as f64).sqrt();
         let transport = settings.model.of(medium).transport();
         let scale = media::scale(&material.name, medium, transport, diagonal, spacing);
         scale.lines.iter().for_each(|line| arguments.common.say(line));
@@ -305,11 +390,12 @@ fn finish(arguments: &Arguments, facts: &Facts, rendered: &Rendered) -> Result<(
         )));
     }
     let counts = &rendered.counts;
-    let error = film::relative_error(&rendered.pixels, facts.settings.paths_per_pixel);
-    let error = error.map_or("unknown".into(), |e| format!("{:.2} %", 100.0 * e));
+    let error = film::relative_error(&rendered.pixels).map_or("unknown".into(), |e| format!("{:.2} %", 100.0 * e));
     arguments.common.say(format_args!(
-        "{} gathers, {:.3e} BSSRDF evaluations; relative error of the paths {error} (the cloud's comes on top)",
-        counts.gathers, counts.evaluations as f64
+        "{} gathers, {:.3e} BSSRDF evaluations; relative error {error} ({})",
+        counts.gathers,
+        counts.evaluations as f64,
+        facts.covers()
     ));
     let share = |n: u64| 100.0 * n as f64 / counts.paths as f64;
     if counts.cut_by_depth > 0 {

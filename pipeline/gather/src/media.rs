@@ -1,8 +1,8 @@
 //! Which medium fills which material.
 
-use bssrdf::{Medium, MediumError, built_in};
+use bssrdf::Medium;
+use cli::{ReadMediumError, read_medium};
 use formats::cloud::Meta;
-use std::{fs, path::Path};
 
 /// Why media cannot be assigned.
 #[derive(Debug, thiserror::Error)]
@@ -16,11 +16,7 @@ pub enum AssignError {
     #[error("--medium: given twice for the same material: `{0}` and `{1}`")]
     Twice(String, String),
     #[error("--medium: {0}")]
-    Medium(MediumError),
-    #[error("{path}: {source}")]
-    File { path: String, source: MediumError },
-    #[error("{path}: cannot read: {source}")]
-    Read { path: String, source: std::io::Error },
+    Medium(#[from] ReadMediumError),
 }
 
 /// The medium of each sampled material from arguments `[MATERIAL=]NAME|FILE.json`.
@@ -49,22 +45,10 @@ pub fn assign(arguments: &[String], cloud: &Meta) -> Result<Vec<Medium>, AssignE
     if arguments.is_empty() {
         return Err(AssignError::Missing);
     }
-    let chosen = for_one
-        .iter()
-        .zip(&cloud.materials)
-        .map(|(one, m)| one.or(for_all).ok_or_else(|| AssignError::MissingFor(m.name.clone())).and_then(read));
+    let chosen = for_one.iter().zip(&cloud.materials).map(|(one, m)| {
+        one.or(for_all).ok_or_else(|| AssignError::MissingFor(m.name.clone())).and_then(|name| Ok(read_medium(name)?))
+    });
     chosen.collect()
-}
-
-/// A medium by built-in name, or from a file.
-fn read(name: &str) -> Result<Medium, AssignError> {
-    let is_file = name.ends_with(".json") || name.contains('/');
-    if !is_file {
-        return built_in(name).map_err(AssignError::Medium);
-    }
-    let text = fs::read_to_string(Path::new(name));
-    let text = text.map_err(|source| AssignError::Read { path: name.into(), source })?;
-    Medium::from_json(&text).map_err(|source| AssignError::File { path: name.into(), source })
 }
 
 /// Lengths of a medium beside the object's, and what is odd about them.

@@ -1,7 +1,7 @@
 //! note: [split] One camera path: Fresnel roulette at the interfaces, and `L_o = L_e + L_t + L_r` where light leaves.
 
 use crate::{
-    estimator::{Estimator, Exhaustive, Rates, Roulette, Sum},
+    estimator::{Cut, Estimator, Exhaustive, Radial, Rates, Roulette, Scratch, Sum},
     film::{Guide, Layer, Layers},
     samples::{Exit, LitSamples},
 };
@@ -14,13 +14,17 @@ use scene::{
 use std::f64::consts::PI;
 
 /// A translucent material with its medium and its samples.
-pub struct Body<M> {
+pub struct Body<'a, M> {
     pub medium: Medium,
     pub model: M,
     /// `σ̃_t` of light that is not scattered, 1/m.
     pub unscattered: [f64; 3],
     pub rates: Rates,
-    pub samples: LitSamples,
+    pub radial: Radial,
+    /// What the accuracy asked of the cut is multiplied by, see [`crate::calibration`].
+    pub calibration: f64,
+    /// The two independent halves of the cloud.
+    pub halves: [LitSamples<'a>; 2],
 }
 
 /// Everything a path needs; shared by all threads.
@@ -29,18 +33,54 @@ pub struct Renderer<'a, M> {
     pub rays: &'a Rays,
     pub camera: &'a Camera,
     /// One entry for each material; none for opaque ones.
-    pub bodies: Vec<Option<Body<M>>>,
+    pub bodies: Vec<Option<Body<'a, M>>>,
     /// Radiance of rays that escape, W/(m² sr).
     pub environment: DVec3,
     pub normals: NormalKind,
     pub estimator: Estimator,
-    /// `K`, the unlit samples included.
-    pub samples_drawn: f64,
+    /// `K`, the unlit samples included, of each half of the cloud.
+    pub samples_drawn: [u64; 2],
+    pub paths_per_pixel: u32,
     pub max_depth: u32,
     /// How far beyond a surface a ray goes on that passes it straight, m.
     pub clearance: f64,
     pub paths: Stream,
-    pub roulette: Stream,
+    pub gathers: Stream,
+}
+
+/// Which path.
+#[derive(Clone, Copy, Debug)]
+pub struct PathIndex {
+    pub pixel: u64,
+    /// Its number in the pixel. Even ones gather from the first half of the cloud, odd ones from the second.
+    pub path: u32,
+}
+
+/// What one thread counts and keeps between paths.
+#[derive(Clone, Debug, Default)]
+pub struct Worker {
+    pub counts: Counts,
+    /// One for each material.
+    scratch: Vec<Scratch>,
+}
+
+impl Worker {
+    /// For a scene of so many materials.
+    pub fn new(materials: usize) -> Worker {
+        Worker { counts: Counts::default(), scratch: vec![Scratch::default(); materials] }
+    }
+
+    pub fn scratch(&mut self, material: usize) -> &mut Scratch {
+        &mut self.scratch[material]
+    }
+}
+
+/// Light of one path, W/(m² sr).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PathLight {
+    pub layers: Layers,
+    /// All of it as each half of the cloud alone has it; of a half that the path did not gather from, what is left.
+    pub halves: [DVec3; 2],
 }
 
 /// What happened on the paths of an image.
@@ -51,6 +91,8 @@ pub struct Counts {
     pub shadow_rays: u64,
     pub gathers: u64,
     pub evaluations: u64,
+    /// Nodes of the samples' trees that were looked at.
+    pub nodes: u64,
     /// Paths ended by the depth limit: their light is missing.
     pub cut_by_depth: u64,
     /// Paths that left a medium without meeting its surface: the mesh is open.
@@ -68,6 +110,7 @@ impl Counts {
         self.shadow_rays += other.shadow_rays;
         self.gathers += other.gathers;
         self.evaluations += other.evaluations;
+        self.nodes += other.nodes;
         self.cut_by_depth += other.cut_by_depth;
         self.escaped_inside += other.escaped_inside;
         self.nested += other.nested;
@@ -76,6 +119,7 @@ impl Counts {
 }
 
 /// A path on its way.
+#[derive(Clone, Copy)]
 struct Walker {
     origin: DVec3,
     direction: DVec3,
@@ -86,7 +130,9 @@ struct Walker {
     throughput: DVec3,
     /// The layer of all further light, once there was an event.
     layer: Option<Layer>,
-    light: Layers,
+    events: u32,
+    /// Which half of the cloud it gathers from, if it is one.
+    half: usize,
     random: Item,
     dimension: u64,
     key: Item,
@@ -98,11 +144,6 @@ impl Walker {
         self.random.uniform(self.dimension - 1)
     }
 
-    /// Files light under the path's layer, or under `layer` if nothing happened to it yet.
-    fn add(&mut self, layer: Layer, radiance: DVec3) {
-        self.light[self.layer.unwrap_or(layer) as usize] += self.throughput * radiance;
-    }
-
     fn leave(&mut self, point: &SurfacePoint, direction: DVec3, event: Layer) {
         self.origin = point.position;
         self.direction = direction;
@@ -111,10 +152,28 @@ impl Walker {
     }
 }
 
+impl PathLight {
+    /// Files light under the path's layer, or under `layer` if nothing happened to it yet.
+    fn add(&mut self, walker: &Walker, layer: Layer, radiance: DVec3) {
+        self.add_halves(walker, layer, radiance, [radiance; 2]);
+    }
+
+    fn add_halves(&mut self, walker: &Walker, layer: Layer, radiance: DVec3, halves: [DVec3; 2]) {
+        self.layers[walker.layer.unwrap_or(layer) as usize] += walker.throughput * radiance;
+        self.halves.iter_mut().zip(halves).for_each(|(sum, half)| *sum += walker.throughput * half);
+    }
+}
+
+/// Dimensions of the random numbers that one branch of a path may use.
+const BRANCH: u64 = 1 << 32;
+
+/// A gather is never asked for more than this: beyond, the cut's prediction of its own error means nothing.
+const LOOSEST: f64 = 0.5;
+
 impl<M: LaneModel> Renderer<'_, M> {
-    /// Light that arrives at the camera along one path.
-    pub fn trace(&self, index: u64, origin: DVec3, direction: DVec3, counts: &mut Counts) -> Layers {
-        let (random, key) = (self.paths.item(index), self.roulette.item(index));
+    /// Light that arrives at the camera along one path. At its first interface the path splits in two.
+    pub fn trace(&self, index: PathIndex, origin: DVec3, direction: DVec3, worker: &mut Worker) -> PathLight {
+        let item = index.pixel << 32 | u64::from(index.path);
         let mut walker = Walker {
             origin,
             direction,
@@ -122,91 +181,124 @@ impl<M: LaneModel> Renderer<'_, M> {
             inside: None,
             throughput: DVec3::ONE,
             layer: None,
-            light: [DVec3::ZERO; 5],
-            random,
-            dimension: 2, // the first two chose the point in the pixel
-            key,
+            events: 0,
+            half: index.path as usize % 2,
+            random: self.paths.item(item),
+            dimension: 0,
+            key: self.gathers.item(item),
         };
-        counts.paths += 1;
-        let mut events = 0;
-        while self.step(&mut walker, counts) {
-            events += 1;
-            if events >= self.max_depth {
-                counts.cut_by_depth += 1;
+        let mut light = PathLight::default();
+        worker.counts.paths += 1;
+        let mut mirrored = None;
+        self.follow(&mut walker, &mut mirrored, &mut light, worker);
+        if let Some(mut walker) = mirrored {
+            self.follow(&mut walker, &mut None, &mut light, worker);
+        }
+        light
+    }
+
+    fn follow(&self, walker: &mut Walker, mirrored: &mut Option<Walker>, light: &mut PathLight, worker: &mut Worker) {
+        while self.step(walker, mirrored, light, worker) {
+            walker.events += 1;
+            if walker.events >= self.max_depth {
+                worker.counts.cut_by_depth += 1;
                 break;
             }
         }
-        walker.light
     }
 
     /// Follows the path to its next interface; false if it ends.
-    fn step(&self, walker: &mut Walker, counts: &mut Counts) -> bool {
-        counts.rays += 1;
-        let Some(hit) = self.rays.closest(walker.origin, walker.direction, walker.from) else {
-            self.escape(walker, counts);
+    fn step(
+        &self,
+        walker: &mut Walker,
+        mirrored: &mut Option<Walker>,
+        light: &mut PathLight,
+        worker: &mut Worker,
+    ) -> bool {
+        worker.counts.rays += 1;
+        let free = self.free_path(walker);
+        let Some(hit) = self.rays.closest_within(walker.origin, walker.direction, free, walker.from) else {
+            if free == f64::INFINITY {
+                self.escape(walker, light, &mut worker.counts);
+            }
             return false;
         };
         let point = self.scene.mesh.point(hit.triangle, hit.weights, self.normals);
         let front = walker.direction.dot(point.geometric_normal) < 0.0;
         let body = self.bodies[point.material as usize].as_ref();
-        // A back face met from outside: the camera is inside, or the mesh is open.
-        let medium = walker.inside.or((!front && body.is_some()).then_some(point.material));
-        if let Some(medium) = medium
-            && !self.attenuate(walker, medium, hit.distance)
-        {
+        if !self.attenuate(walker, &point, front, hit.distance) {
             return false;
         }
         match body {
             None => {
-                self.opaque(walker, &point, front, counts);
+                self.opaque(walker, &point, front, light, &mut worker.counts);
                 false
             }
             Some(_) if front && walker.inside.is_some() => {
                 // Straight on, a little beyond: two triangles that meet in the ray would send it to and fro.
-                counts.nested += 1;
+                worker.counts.nested += 1;
                 walker.origin = point.position + walker.direction * self.clearance;
                 walker.from = None;
                 true
             }
-            Some(body) if front => self.meet_from_outside(walker, body, &point, counts),
-            Some(body) => self.meet_from_inside(walker, body, &point, counts),
+            Some(body) if front => self.meet_from_outside(walker, body, &point, mirrored, light, worker),
+            Some(body) => self.meet_from_inside(walker, body, &point, &mut worker.counts),
         }
+    }
+
+    /// How far a ray inside a medium goes without being scattered or absorbed, by one of the three channels (method.md
+    /// 6.9). A ray that meets a surface within has survived with the mean of their transmittances.
+    fn free_path(&self, walker: &mut Walker) -> f64 {
+        let Some(body) = walker.inside.and_then(|m| self.bodies[m as usize].as_ref()) else {
+            return f64::INFINITY;
+        };
+        let channel = ((3.0 * walker.uniform()) as usize).min(2);
+        let sigma = body.unscattered[channel];
+        if sigma > 0.0 { -(1.0 - walker.uniform()).ln() / sigma } else { f64::INFINITY }
     }
 
     /// A ray that meets nothing more.
-    fn escape(&self, walker: &mut Walker, counts: &mut Counts) {
+    fn escape(&self, walker: &Walker, light: &mut PathLight, counts: &mut Counts) {
         let mut seen = self.environment;
         if let Some(body) = walker.inside.and_then(|m| self.bodies[m as usize].as_ref()) {
             counts.escaped_inside += 1;
-            for c in 0..3 {
-                if body.unscattered[c] > 0.0 {
-                    seen[c] = 0.0; // an infinite way through the medium
-                }
-            }
+            let clear = body.unscattered.map(|sigma| f64::from(u8::from(sigma == 0.0)));
+            // An infinite way through the medium; the channel of an infinite free path was one of the clear ones.
+            seen *= DVec3::from_array(clear) * (3.0 / clear.iter().sum::<f64>().max(1.0));
         }
-        walker.add(Layer::Emission, seen);
+        light.add(walker, Layer::Emission, seen);
     }
 
-    /// Transmittance `e^{−σ̃_t s}` of the way through a medium (method.md 6.9), with roulette on its mean: no channel
-    /// grows by more than 3. False if the path ends.
-    fn attenuate(&self, walker: &mut Walker, medium: u16, distance: f64) -> bool {
-        let Some(body) = &self.bodies[medium as usize] else {
+    /// Transmittance `e^{−σ̃_t s}` of the way through a medium (method.md 6.9), over the probability of having come so far:
+    /// no channel grows by more than 3. False if the path ends.
+    fn attenuate(&self, walker: &mut Walker, point: &SurfacePoint, front: bool, distance: f64) -> bool {
+        // A back face met from outside: the camera is inside, or the mesh is open. No free path was chosen then.
+        let chosen = walker.inside.is_some();
+        let medium = walker.inside.unwrap_or(point.material);
+        let Some(body) = self.bodies[medium as usize].as_ref().filter(|_| chosen || !front) else {
             return true;
         };
         let transmittance = DVec3::from_array(body.unscattered.map(|sigma| (-sigma * distance).exp()));
         let survival = transmittance.element_sum() / 3.0;
-        if survival < 1.0 && walker.uniform() >= survival {
+        if !chosen && survival < 1.0 && walker.uniform() >= survival {
             return false;
         }
         walker.throughput *= transmittance / survival;
-        true
+        survival > 0.0
     }
 
     /// A Lambertian surface that may emit: the path ends here, lit directly.
-    fn opaque(&self, walker: &mut Walker, point: &SurfacePoint, front: bool, counts: &mut Counts) {
+    fn opaque(
+        &self,
+        walker: &mut Walker,
+        point: &SurfacePoint,
+        front: bool,
+        light: &mut PathLight,
+        counts: &mut Counts,
+    ) {
         let material = &self.scene.materials[point.material as usize];
         if material.emits() && (front || material.double_sided) {
-            walker.add(Layer::Emission, material.emission);
+            light.add(walker, Layer::Emission, material.emission);
         }
         let mut facing = *point;
         if !front {
@@ -215,36 +307,45 @@ impl<M: LaneModel> Renderer<'_, M> {
         }
         let xi = || [walker.uniform(), walker.uniform()];
         let irradiance = all_light_at(&self.scene.lights, self.rays, &facing, xi, &mut counts.shadow_rays);
-        walker.add(Layer::Diffuse, material.base_color / PI * irradiance);
+        light.add(walker, Layer::Diffuse, material.base_color / PI * irradiance);
     }
 
-    /// Reflection with probability R, else refraction, which shows emitted and scattered light and goes on inside.
+    /// Reflection with probability R, else refraction, which shows emitted and scattered light and goes on inside. The
+    /// first interface of a path does both: choosing there would be most of the noise of an image.
     fn meet_from_outside(
         &self,
         walker: &mut Walker,
         body: &Body<M>,
         point: &SurfacePoint,
-        counts: &mut Counts,
+        mirrored: &mut Option<Walker>,
+        light: &mut PathLight,
+        worker: &mut Worker,
     ) -> bool {
+        let counts = &mut worker.counts;
         let eta = body.medium.eta;
         let view = -walker.direction;
         let mut normal = facing_normal(point.normal, point.geometric_normal, view, counts);
         let transmittance = fresnel::transmittance(normal.dot(view), eta);
-        if walker.uniform() >= transmittance {
-            let mut mirrored = fresnel::reflect(normal, view);
-            if mirrored.dot(point.geometric_normal) <= 0.0 {
-                counts.geometric_normals += 1;
-                mirrored = fresnel::reflect(point.geometric_normal, view);
-            }
-            walker.leave(point, mirrored, Layer::Specular);
+        let splits = walker.layer.is_none() && transmittance > 0.0;
+        if !splits && walker.uniform() >= transmittance {
+            self.mirror(walker, normal, point, counts);
             return true;
         }
+        if splits {
+            if transmittance < 1.0 {
+                let mut branch = Walker { dimension: walker.dimension + BRANCH, events: walker.events + 1, ..*walker };
+                branch.throughput *= 1.0 - transmittance;
+                self.mirror(&mut branch, normal, point, counts);
+                *mirrored = (branch.events < self.max_depth).then_some(branch);
+                counts.cut_by_depth += u64::from(mirrored.is_none());
+            }
+            walker.throughput *= transmittance;
+        }
         let emission = self.scene.materials[point.material as usize].emission;
-        walker.add(Layer::Emission, emission);
-        let scattered = self.gather(walker, body, point, normal, counts);
-        walker.add(Layer::Subsurface, scattered);
+        light.add(walker, Layer::Emission, emission);
+        self.gather(walker, body, point, normal, light, worker);
         if fresnel::enter(normal, view, eta).is_none_or(|e| e.direction.dot(point.geometric_normal) >= 0.0) {
-            counts.geometric_normals += 1;
+            worker.counts.geometric_normals += 1;
             normal = point.geometric_normal;
         }
         let Some(entry) = fresnel::enter(normal, view, eta) else {
@@ -253,6 +354,17 @@ impl<M: LaneModel> Renderer<'_, M> {
         walker.inside = Some(point.material);
         walker.leave(point, entry.direction, Layer::Transmission);
         true
+    }
+
+    /// Sends the path back from the outside of a surface.
+    fn mirror(&self, walker: &mut Walker, normal: DVec3, point: &SurfacePoint, counts: &mut Counts) {
+        let view = -walker.direction;
+        let mut mirrored = fresnel::reflect(normal, view);
+        if mirrored.dot(point.geometric_normal) <= 0.0 {
+            counts.geometric_normals += 1;
+            mirrored = fresnel::reflect(point.geometric_normal, view);
+        }
+        walker.leave(point, mirrored, Layer::Specular);
     }
 
     /// Reflection inside with probability R_in, else out into the scene. Nothing is gathered from inside.
@@ -284,30 +396,73 @@ impl<M: LaneModel> Renderer<'_, M> {
         true
     }
 
-    /// note: [reflectance] `L_r` at an exitant point: the mean over all drawn samples (method.md 6.7).
+    /// note: [reflectance] `L_r` at an exitant point: the mean over all drawn samples (method.md 6.7), or over those of
+    /// the path's half of the cloud.
     fn gather(
         &self,
         walker: &Walker,
         body: &Body<M>,
         point: &SurfacePoint,
         normal: DVec3,
-        counts: &mut Counts,
-    ) -> DVec3 {
-        if body.samples.is_empty() || body.medium.is_clear() {
-            return DVec3::ZERO;
+        light: &mut PathLight,
+        worker: &mut Worker,
+    ) {
+        if body.medium.is_clear() || body.halves.iter().all(|h| h.is_empty()) {
+            return;
         }
-        let exit = Exit::new(point.position, normal, walker.key.bits(walker.dimension));
-        let sum = self.sum(body, &exit);
-        counts.gathers += 1;
-        counts.evaluations += sum.evaluations;
-        sum.radiance / self.samples_drawn
+        worker.counts.gathers += 1;
+        let drawn = self.samples_drawn;
+        let mean = |half: usize, sum: &Sum| sum.radiance / drawn[half].max(1) as f64;
+        let mut of_half = |half: usize| {
+            let key = walker.key.bits(2 * walker.dimension + half as u64);
+            let exit = Exit::new(point.position, normal, key);
+            let share = walker.throughput.max_element();
+            let sum = self.sum(body, half, &exit, share, &mut worker.scratch[point.material as usize]);
+            worker.counts.evaluations += sum.evaluations;
+            worker.counts.nodes += sum.nodes;
+            sum
+        };
+        // The second half is empty if one sample was drawn.
+        let half = if drawn[1] == 0 { 0 } else { walker.half };
+        if drawn[1] == 0 || self.alternates() {
+            let value = mean(half, &of_half(half));
+            light.add_halves(walker, Layer::Subsurface, value, [value; 2]);
+        } else {
+            let sums = [of_half(0), of_half(1)];
+            let value = (sums[0].radiance + sums[1].radiance) / (drawn[0] + drawn[1]) as f64;
+            light.add_halves(walker, Layer::Subsurface, value, [mean(0, &sums[0]), mean(1, &sums[1])]);
+        }
     }
 
-    fn sum(&self, body: &Body<M>, exit: &Exit) -> Sum {
-        let (model, samples) = (&body.model, &body.samples);
+    /// Whether the paths of a pixel gather from the halves of the cloud in turn, instead of each from both.
+    fn alternates(&self) -> bool {
+        matches!(self.estimator, Estimator::Cut { .. }) && self.paths_per_pixel > 1
+    }
+
+    /// The accuracy of one sum of which the `share` arrives at the camera: so many sums make a pixel.
+    pub fn accuracy(&self, share: f64) -> f64 {
+        match self.estimator {
+            Estimator::Cut { accuracy } => {
+                let sums = f64::from(self.paths_per_pixel.max(2));
+                (accuracy * sums.sqrt() / share.max(1e-3)).min(LOOSEST)
+            }
+            Estimator::Exhaustive | Estimator::Roulette(_) => 0.0,
+        }
+    }
+
+    /// The sum over one half of the samples of `body`.
+    pub fn sum(&self, body: &Body<M>, half: usize, exit: &Exit, share: f64, scratch: &mut Scratch) -> Sum {
+        let (model, samples) = (&body.model, &body.halves[half]);
+        if samples.is_empty() {
+            return Sum::default();
+        }
         match self.estimator {
             Estimator::Exhaustive => simd::dispatch(Exhaustive { model, samples, exit }),
             Estimator::Roulette(_) => simd::dispatch(Roulette { model, samples, exit, rates: body.rates }),
+            Estimator::Cut { .. } => {
+                let accuracy = (self.accuracy(share) * body.calibration) as f32;
+                simd::dispatch(Cut { model, samples, radial: &body.radial, exit, accuracy, scratch })
+            }
         }
     }
 

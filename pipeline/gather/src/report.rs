@@ -20,6 +20,7 @@ pub struct Facts<'a> {
 
 fn estimator_name(estimator: Estimator) -> String {
     match estimator {
+        Estimator::Cut { accuracy } => format!("cut {accuracy}"),
         Estimator::Exhaustive => "exhaustive".into(),
         Estimator::Roulette(rule) => format!("roulette {}", rule.name()),
     }
@@ -61,11 +62,7 @@ impl Facts<'_> {
         put("pcsss/estimator", Attribute::Text(estimator_name(self.settings.estimator)));
         put("pcsss/version", text(version));
         put("pcsss/arguments", Attribute::Text(self.arguments(arguments)));
-        let covers = match self.settings.paths_per_pixel {
-            1 => "nothing: one path a pixel",
-            _ => "camera paths and roulette, not the cloud",
-        };
-        put("pcsss/varianceCovers", text(covers));
+        put("pcsss/varianceCovers", text(self.covers()));
         let media = self.cloud.materials.iter().zip(self.media);
         put("pcsss/media", Attribute::Texts(media.map(|(m, medium)| describe(&m.name, medium)).collect()));
         all
@@ -106,15 +103,15 @@ impl Facts<'_> {
             "paths": counts.paths,
             "gathers": counts.gathers,
             "bssrdf_evaluations": counts.evaluations,
-            "nodes_visited": 0,
+            "nodes_visited": counts.nodes,
             "rays": counts.rays,
             "shadow_rays": counts.shadow_rays,
             "paths_cut_by_depth": counts.cut_by_depth,
             "paths_escaped_inside": counts.escaped_inside,
             "nested_surfaces_passed": counts.nested,
             "geometric_normals_taken": counts.geometric_normals,
-            "estimated_relative_error": film::relative_error(&rendered.pixels, self.settings.paths_per_pixel),
-            "estimated_relative_error_covers": "camera paths and roulette, not the cloud",
+            "estimated_relative_error": film::relative_error(&rendered.pixels),
+            "estimated_relative_error_covers": self.covers(),
             "non_finite": rendered.non_finite_count,
             "non_finite_pixels": rendered.non_finite.iter().map(|p| self.pixel(*p)).collect::<Vec<_>>(),
             "cloud": hex(&self.cloud.content),
@@ -129,6 +126,11 @@ impl Facts<'_> {
             value["peak_memory_bytes"] = cli::peak_memory_bytes().into();
         }
         format!("{value:#}\n").into_bytes()
+    }
+
+    /// What variance and estimated error cover.
+    pub fn covers(&self) -> &'static str {
+        film::covers(self.settings.paths_per_pixel, self.cloud.samples_drawn)
     }
 
     /// Column and row of a pixel.

@@ -1,5 +1,6 @@
 //! note: [choice] Which triangle, and with what density.
 
+use crate::curve;
 use clap::ValueEnum;
 use scene::Mesh;
 
@@ -21,7 +22,18 @@ impl Choice {
     }
 }
 
-/// The triangles to choose from.
+/// A triangle that was chosen.
+pub struct Chosen {
+    pub triangle: u32,
+    /// note: [pdf] Density `pdf(x)` of a uniform point on it per area of the whole surface, 1/m² (method.md 6.3):
+    /// `1/(N A_j)` for the note's rule, `1/A` by area.
+    pub pdf_area: f64,
+    pub probability: f64,
+    /// Where in its interval the number lay that chose it: uniform in [0, 1).
+    pub rest: f64,
+}
+
+/// The triangles to choose from, in the order of a curve that fills space.
 pub struct TriangleChoice {
     rule: Choice,
     triangles: Vec<u32>,
@@ -34,8 +46,9 @@ pub struct TriangleChoice {
 impl TriangleChoice {
     /// The triangles of `mesh` that `wanted` accepts by their material.
     pub fn new(mesh: &Mesh, rule: Choice, wanted: impl Fn(u16) -> bool) -> Self {
-        let triangles: Vec<u32> =
+        let mut triangles: Vec<u32> =
             (0..mesh.triangles.len()).filter(|k| wanted(mesh.triangles[*k].material)).map(|k| k as u32).collect();
+        curve::sort(mesh, &mut triangles);
         let areas: Vec<f64> = triangles.iter().map(|k| mesh.area(*k as usize)).collect();
         let mut total = 0.0;
         let add = |area: &f64| {
@@ -51,19 +64,29 @@ impl TriangleChoice {
         self.area_so_far.last().copied().unwrap_or(0.0)
     }
 
-    /// The triangle that the uniform number `xi` chooses, and note: [pdf] the density `pdf(x)` of a uniform point on it
-    /// per area of the whole surface, 1/m² (method.md 6.3): `1/(N A_j)` for the note's rule, `1/A` by area.
-    pub fn choose(&self, xi: f64) -> (u32, f64) {
+    /// The triangle that the uniform number `xi` chooses.
+    pub fn choose(&self, xi: f64) -> Chosen {
         let last = self.triangles.len() - 1;
         match self.rule {
             Choice::Uniform => {
-                let j = ((xi * self.triangles.len() as f64) as usize).min(last);
-                (self.triangles[j], 1.0 / (self.triangles.len() as f64 * self.areas[j]))
+                let n = self.triangles.len() as f64;
+                let j = ((xi * n) as usize).min(last);
+                let rest = (xi * n - j as f64).clamp(0.0, BELOW_ONE);
+                let pdf_area = 1.0 / (n * self.areas[j]);
+                Chosen { triangle: self.triangles[j], pdf_area, probability: 1.0 / n, rest }
             }
             Choice::Area => {
-                let j = self.area_so_far.partition_point(|a| *a <= xi * self.area()).min(last);
-                (self.triangles[j], 1.0 / self.area())
+                let area = self.area();
+                let target = xi * area;
+                let j = self.area_so_far.partition_point(|a| *a <= target).min(last);
+                let before = if j == 0 { 0.0 } else { self.area_so_far[j - 1] };
+                let own = self.area_so_far[j] - before;
+                let rest = if own > 0.0 { ((target - before) / own).clamp(0.0, BELOW_ONE) } else { 0.0 };
+                Chosen { triangle: self.triangles[j], pdf_area: 1.0 / area, probability: own / area, rest }
             }
         }
     }
 }
+
+/// The largest number below 1.
+const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;

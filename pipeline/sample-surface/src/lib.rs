@@ -3,17 +3,20 @@
 //! Knows no medium and no camera: one cloud serves all of them.
 
 mod choice;
+mod curve;
+mod enough;
+pub mod hierarchy;
+mod pattern;
 mod sample;
 
-pub use choice::{Choice, TriangleChoice};
+pub use choice::{Choice, Chosen, TriangleChoice};
+pub use enough::{Goal, relative_error, sample_enough};
+pub use pattern::{Numbers, Pattern, Place};
 pub use sample::{Drawn, draw};
 
-use formats::cloud::{Meta, Options, SampledMaterial, Samples, version};
+use formats::cloud::{Content, Group, Meta, Options, Record, SampledMaterial, version};
 use rayon::prelude::*;
-use scene::{
-    NormalKind, Rays, Scene,
-    random::{Purpose, Stream},
-};
+use scene::{NormalKind, Rays, Scene};
 use std::collections::BTreeMap;
 
 /// Samples that one task draws.
@@ -25,6 +28,7 @@ pub struct Settings {
     /// `K`: samples to draw over all translucent surfaces.
     pub samples: u64,
     pub choice: Choice,
+    pub pattern: Pattern,
     pub normals: NormalKind,
     /// Names of the materials to sample; empty for the file's own marks.
     pub translucent: Vec<String>,
@@ -41,6 +45,8 @@ pub enum SampleError {
     NoLight,
     #[error("no surface to sample: all of them emit; name one with --translucent")]
     NoSurface,
+    #[error("{samples} samples have an error of {error:.2e}; the target needs about {next}, there is room for {most}")]
+    TooMany { samples: u64, error: f64, next: u64, most: u64 },
     #[error("{count} samples have a flux that is no finite number: are light intensities or sizes absurd?")]
     NotFinite { count: u64 },
 }
@@ -75,6 +81,14 @@ impl Plan {
     }
 }
 
+impl Plan {
+    /// Makes the cloud's identity depend on what its number of samples is chosen by.
+    pub fn depends_on(&mut self, goal: &Goal) {
+        let what = format!("{:?} {:?} {}", goal.medium.channels, goal.medium.eta, goal.error);
+        self.content = *blake3::Hasher::new().update(&self.content).update(what.as_bytes()).finalize().as_bytes();
+    }
+}
+
 /// The named materials, or those the file marks as volumes, or all that do not emit.
 fn translucent_materials(scene: &Scene, names: &[String]) -> Result<(Vec<u16>, bool), SampleError> {
     let mut used = vec![false; scene.materials.len()];
@@ -104,14 +118,14 @@ fn translucent_materials(scene: &Scene, names: &[String]) -> Result<(Vec<u16>, b
 
 /// A cloud in memory.
 pub struct Sampled {
-    pub samples: Samples,
+    pub content: Content,
     pub meta: Meta,
 }
 
 /// What one task drew.
 struct Portion {
-    /// One list for each sampled material.
-    samples: Vec<Samples>,
+    /// Two lists for each sampled material: its even and its odd samples.
+    groups: Vec<[Vec<Record>; 2]>,
     facing_away: u64,
     shadowed: u64,
     underflow: u64,
@@ -120,7 +134,8 @@ struct Portion {
     flux: scene::DVec3,
 }
 
-/// Draws the samples, in parallel; `progress` is told how many were drawn. The same for any number of threads.
+/// Draws the samples and orders them, in parallel; `progress` is told how many were drawn. The same for any number of
+/// threads.
 pub fn sample(
     scene: &Scene,
     rays: &Rays,
@@ -129,11 +144,12 @@ pub fn sample(
     progress: impl Fn(u64) + Sync,
 ) -> Result<Sampled, SampleError> {
     let choice = TriangleChoice::new(&scene.mesh, settings.choice, |m| plan.materials.contains(&m));
-    let stream = Stream::new(settings.options.seed, Purpose::Surface);
+    let numbers = Numbers::new(settings.pattern, settings.options.seed, settings.samples);
     let portion = |chunk: u64| {
         let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(settings.samples);
         progress(range.end - range.start);
-        draw_portion(scene, rays, &choice, settings.normals, plan, range.map(|k| stream.item(k)))
+        let places = range.map(|k| ((k & 1) as usize, numbers.place(&scene.mesh, &choice, k)));
+        draw_portion(scene, rays, settings.normals, plan, places)
     };
     let portions: Vec<Portion> = (0..settings.samples.div_ceil(CHUNK)).into_par_iter().map(portion).collect();
     let not_finite = portions.iter().map(|p| p.not_finite).sum();
@@ -146,17 +162,16 @@ pub fn sample(
 fn draw_portion(
     scene: &Scene,
     rays: &Rays,
-    choice: &TriangleChoice,
     normals: NormalKind,
     plan: &Plan,
-    items: impl Iterator<Item = scene::random::Item>,
+    places: impl Iterator<Item = (usize, Place)>,
 ) -> Portion {
-    let samples = vec![Samples::default(); plan.materials.len()];
+    let groups = vec![[Vec::new(), Vec::new()]; plan.materials.len()];
     let (facing_away, shadowed, underflow, not_finite, shadow_rays) = (0, 0, 0, 0, 0);
     let flux = scene::DVec3::ZERO;
-    let mut p = Portion { samples, facing_away, shadowed, underflow, not_finite, shadow_rays, flux };
-    for item in items {
-        match draw(scene, rays, choice, normals, item, &mut p.shadow_rays) {
+    let mut p = Portion { groups, facing_away, shadowed, underflow, not_finite, shadow_rays, flux };
+    for (half, place) in places {
+        match draw(scene, rays, normals, &place, &mut p.shadow_rays) {
             Drawn::FacingAway => p.facing_away += 1,
             Drawn::Shadowed => p.shadowed += 1,
             Drawn::Underflow => p.underflow += 1,
@@ -164,7 +179,7 @@ fn draw_portion(
             Drawn::Lit { sample, material } => {
                 p.flux += sample.flux.as_dvec3();
                 if let Ok(slot) = plan.materials.binary_search(&material) {
-                    p.samples[slot].push(&sample);
+                    p.groups[slot][half].push(Record::new(&sample));
                 }
             }
         }
@@ -172,7 +187,7 @@ fn draw_portion(
     p
 }
 
-/// Orders the samples by material and adds up what is known of them.
+/// Puts the samples of each material and half in order and adds up what is known of them.
 fn join(
     scene: &Scene,
     settings: &Settings,
@@ -180,17 +195,20 @@ fn join(
     choice: &TriangleChoice,
     mut portions: Vec<Portion>,
 ) -> Sampled {
-    let mut samples = Samples::default();
+    let mut content = Content::default();
     let mut materials = Vec::new();
     for (slot, index) in plan.materials.iter().enumerate() {
-        let first = samples.len() as u64;
-        portions.iter_mut().for_each(|p| samples.append(&mut p.samples[slot]));
+        let halves = [0, 1].map(|half| {
+            let mut records = Vec::with_capacity(portions.iter().map(|p| p.groups[slot][half].len()).sum());
+            // What is joined is freed.
+            portions.iter_mut().for_each(|p| records.extend(std::mem::take(&mut p.groups[slot][half])));
+            add_group(&mut content, &records)
+        });
         let triangles = scene.mesh.triangles.iter().enumerate().filter(|(_, t)| t.material == *index);
         materials.push(SampledMaterial {
             name: scene.materials[*index as usize].name.clone(),
             index: *index,
-            first,
-            count: samples.len() as u64 - first,
+            halves,
             area_m2: triangles.map(|(k, _)| scene.mesh.area(k)).sum(),
         });
     }
@@ -214,5 +232,18 @@ fn join(
         origin_m: scene.origin.to_array(),
         materials,
     };
-    Sampled { samples, meta }
+    Sampled { content, meta }
+}
+
+fn add_group(content: &mut Content, records: &[Record]) -> Group {
+    let (mut tiles, mut nodes) = hierarchy::build(records);
+    let group = Group {
+        samples: records.len() as u64,
+        first_tile: content.tiles.len() as u64,
+        first_node: content.nodes.len() as u64,
+    };
+    content.samples += group.samples;
+    content.tiles.append(&mut tiles);
+    content.nodes.append(&mut nodes);
+    group
 }

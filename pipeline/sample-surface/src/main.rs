@@ -1,13 +1,13 @@
 //! `sample-surface SCENE -o CLOUD`: arguments and files; the phase itself is the library.
 
-use clap::{Parser, ValueEnum};
-use cli::{Common, Failure, Progress, SceneArgs, parse_count};
+use clap::Parser;
+use cli::{Common, Failure, Progress, SceneArgs, parse_count, read_medium};
 use formats::{
     atomic::{self, Output},
     cloud::{self, Cloud, Options},
     write_ply,
 };
-use sample_surface::{Choice, Plan, SampleError, Settings, sample};
+use sample_surface::{Choice, Goal, Pattern, Plan, SampleError, Sampled, Settings, sample, sample_enough};
 use scene::{Rays, Scene};
 use std::{
     path::{Path, PathBuf},
@@ -28,6 +28,12 @@ struct Arguments {
     /// Samples drawn over all translucent surfaces: 250k, 1M, 1e6
     #[arg(short = 'n', long, value_name = "K", default_value = "1M", value_parser = parse_samples)]
     samples: u64,
+    /// Draw as many samples as this medium needs for --target-error, by the directional dipole
+    #[arg(long, value_name = "NAME|FILE.json", requires = "target_error", conflicts_with = "samples")]
+    for_medium: Option<String>,
+    /// Relative error of the light that leaves the surface, of --for-medium
+    #[arg(long, value_name = "X", requires = "for_medium", value_parser = parse_error)]
+    target_error: Option<f64>,
     /// Material whose surfaces are sampled (repeatable) [default: those the file marks as volumes; if there is none,
     /// all that do not emit]
     #[arg(long, value_name = "NAME")]
@@ -35,8 +41,8 @@ struct Arguments {
     /// Which triangle: by area, or every one alike as in the note
     #[arg(long, default_value = "area")]
     choice: Choice,
-    /// Well-spread samples (not built yet), or independent ones as in the note
-    #[arg(long, default_value = "independent")]
+    /// Well-spread samples, or independent ones as in the note
+    #[arg(long, default_value = "stratified")]
     pattern: Pattern,
     #[command(flatten)]
     scene_args: SceneArgs,
@@ -50,18 +56,21 @@ struct Arguments {
     common: Common,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Pattern {
-    Stratified,
-    Independent,
-}
+/// Bytes a sample takes while it is sampled, ordered and written: record, entry, tile, nodes and their moments.
+const BYTES_PER_SAMPLE: u64 = 112;
 
-/// Bytes a sample takes while it is sampled and written: twice in lists, once as file content.
-const BYTES_PER_SAMPLE: u64 = 96;
+/// Most samples: two halves of as many as a sequence has.
+const MAX_SAMPLES: u64 = 2 * scene::sequence::LENGTH;
+
+fn parse_error(text: &str) -> Result<f64, String> {
+    let error = text.parse().ok().filter(|x: &f64| (1e-6..=1.0).contains(x));
+    error.ok_or_else(|| "expected a number between 0.000001 and 1".into())
+}
 
 fn parse_samples(text: &str) -> Result<u64, String> {
     match parse_count(text)? {
         0 => Err("at least one sample is needed".into()),
+        MAX_SAMPLES.. => Err(format!("fewer than {MAX_SAMPLES} samples are possible")),
         count => Ok(count),
     }
 }
@@ -74,14 +83,18 @@ fn main() {
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     let start = Instant::now();
     let common = &arguments.common;
-    if arguments.pattern == Pattern::Stratified {
-        return Err(Failure::usage("--pattern stratified is not built yet; use --pattern independent"));
-    }
     check_memory(arguments.samples)?;
     let settings = settings(arguments);
+    let medium = arguments.for_medium.as_deref().map(read_medium).transpose()?;
+    let room = cli::available_memory_bytes().map_or(MAX_SAMPLES - 1, |bytes| bytes / BYTES_PER_SAMPLE);
+    let goal = medium.as_ref().zip(arguments.target_error);
+    let goal = goal.map(|(medium, error)| Goal { medium, error, most: room.min(MAX_SAMPLES - 1) });
     let mut seconds = Seconds::default();
     let scene = arguments.scene_args.import(&arguments.scene, common)?;
-    let plan = Plan::new(&scene, &settings).map_err(|e| named(&arguments.scene, &e))?;
+    let mut plan = Plan::new(&scene, &settings).map_err(|e| named(&arguments.scene, &e))?;
+    if let Some(goal) = &goal {
+        plan.depends_on(goal);
+    }
     seconds.add("import", start);
     if plan.unmarked {
         common.say("no material is marked as a volume: all surfaces that do not emit are translucent");
@@ -92,7 +105,10 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         common.say(format_args!("{}: up to date, kept", arguments.output.display()));
     } else {
         let output = Output::create(&arguments.output)?;
-        common.in_pool(|| sample_and_write(arguments, &settings, &scene, &plan, output, &mut seconds))??;
+        common.in_pool(|| {
+            let work = Work { arguments, settings: &settings, scene: &scene, plan: &plan, goal: goal.as_ref() };
+            work.sample_and_write(output, &mut seconds)
+        })??;
     }
     let cloud = Cloud::open(&arguments.output)?;
     if let Some(path) = &arguments.ply {
@@ -124,12 +140,13 @@ fn settings(arguments: &Arguments) -> Settings {
     Settings {
         samples: arguments.samples,
         choice: arguments.choice,
+        pattern: arguments.pattern,
         normals: scene.normal_kind(),
         translucent: arguments.translucent.clone(),
         options: Options {
             seed: arguments.common.seed,
             choice: arguments.choice.name().into(),
-            pattern: "independent".into(),
+            pattern: arguments.pattern.name().into(),
             normals: scene.normals.name().into(),
             metres_per_unit: scene.metres_per_unit,
             light_unit: scene.light_unit.name().into(),
@@ -158,25 +175,48 @@ fn touch(path: &Path) {
     }
 }
 
-fn sample_and_write(
-    arguments: &Arguments,
-    settings: &Settings,
-    scene: &Scene,
-    plan: &Plan,
-    mut output: Output,
-    seconds: &mut Seconds,
-) -> Result<(), Failure> {
-    let start = Instant::now();
-    let rays = Rays::new(&scene.mesh);
-    seconds.add("ray_tree", start);
-    let progress = Progress::start(&arguments.common, "sampling", settings.samples, "samples");
-    let sampled = sample(scene, &rays, settings, plan, |n| progress.add(n)).map_err(|e| named(&arguments.scene, &e))?;
-    seconds.0.push(("sample", progress.finish()));
-    let start = Instant::now();
-    cloud::write(&mut output, &arguments.output, &sampled.samples, &sampled.meta)?;
-    output.commit()?;
-    seconds.add("write", start);
-    Ok(())
+/// What is to be sampled.
+struct Work<'a> {
+    arguments: &'a Arguments,
+    settings: &'a Settings,
+    scene: &'a Scene,
+    plan: &'a Plan,
+    goal: Option<&'a Goal<'a>>,
+}
+
+impl Work<'_> {
+    fn sample_and_write(&self, mut output: Output, seconds: &mut Seconds) -> Result<(), Failure> {
+        let start = Instant::now();
+        let rays = Rays::new(&self.scene.mesh);
+        seconds.add("ray_tree", start);
+        let start = Instant::now();
+        let sampled = self.sample(&rays).map_err(|e| named(&self.arguments.scene, &e))?;
+        seconds.add("sample", start);
+        let start = Instant::now();
+        cloud::write(&mut output, &self.arguments.output, &sampled.content, &sampled.meta)?;
+        output.commit()?;
+        seconds.add("write", start);
+        Ok(())
+    }
+
+    fn sample(&self, rays: &Rays) -> Result<Sampled, SampleError> {
+        let common = &self.arguments.common;
+        if let Some(goal) = self.goal {
+            let tell = |samples, error: f64| {
+                common.say(format_args!(
+                    "{samples} samples: relative error {:.2} % in {}",
+                    100.0 * error,
+                    goal.medium.name
+                ));
+            };
+            let enough = sample_enough(self.scene, rays, self.settings, self.plan, goal, tell);
+            return enough.map(|(sampled, _)| sampled);
+        }
+        let progress = Progress::start(common, "sampling", self.settings.samples, "samples");
+        let sampled = sample(self.scene, rays, self.settings, self.plan, |n| progress.add(n))?;
+        progress.finish();
+        Ok(sampled)
+    }
 }
 
 /// Seconds per step.

@@ -1,20 +1,11 @@
 //! One sample: position, direction to the light, flux.
 
-use crate::choice::TriangleChoice;
+use crate::pattern::Place;
 use formats::cloud::Sample;
 use scene::{
     NormalKind, Rays, Scene,
     light::{Lit, light_at},
-    random::Item,
-    warp,
 };
-
-/// Dimensions of a sample's random numbers.
-mod dimension {
-    pub const TRIANGLE: u64 = 0;
-    pub const POINT: [u64; 2] = [1, 2];
-    pub const LIGHT: [u64; 3] = [3, 4, 5];
-}
 
 /// What became of a drawn sample.
 pub enum Drawn {
@@ -30,26 +21,16 @@ pub enum Drawn {
     NotFinite,
 }
 
-/// Draws a point of the surface and lights it. `shadow_rays` counts the rays traced.
-pub fn draw(
-    scene: &Scene,
-    rays: &Rays,
-    choice: &TriangleChoice,
-    normals: NormalKind,
-    random: Item,
-    shadow_rays: &mut u64,
-) -> Drawn {
-    let (triangle, pdf_area) = choice.choose(random.uniform(dimension::TRIANGLE));
-    let weights = warp::triangle(dimension::POINT.map(|d| random.uniform(d)));
-    let point = scene.mesh.point(triangle, weights, normals);
-    let xi = dimension::LIGHT.map(|d| random.uniform(d));
-    let (direction, irradiance) = match light_at(&scene.lights, rays, &point, xi, shadow_rays) {
+/// Lights a place of the surface. `shadow_rays` counts the rays traced.
+pub fn draw(scene: &Scene, rays: &Rays, normals: NormalKind, place: &Place, shadow_rays: &mut u64) -> Drawn {
+    let point = scene.mesh.point(place.triangle, place.weights, normals);
+    let (direction, irradiance) = match light_at(&scene.lights, rays, &point, place.light, shadow_rays) {
         Lit::FacingAway => return Drawn::FacingAway,
         Lit::Shadowed => return Drawn::Shadowed,
         Lit::Light { direction, irradiance } => (direction, irradiance),
     };
     // note: [flux] Φ = E/pdf(x); the estimator divides by K (method.md 6.5).
-    let flux = (irradiance / pdf_area).as_vec3();
+    let flux = (irradiance / place.pdf_area).as_vec3();
     if !flux.is_finite() {
         return Drawn::NotFinite;
     }

@@ -174,7 +174,9 @@ fn usage_errors() {
     let scene = bench.scene(|_| {});
     bench.refuses(&[&scene, "-o", "out.cloud", "-n", "0"], &["--samples", "at least one"]);
     bench.refuses(&[&scene, "-o", "out.cloud", "-n", "many"], &["--samples", "250k"]);
-    bench.refuses(&[&scene, "-o", "out.cloud", "-n", "1e15"], &["--samples", "memory"]);
+    bench.refuses(&[&scene, "-o", "out.cloud", "-n", "1e15"], &["--samples", "fewer"]);
+    bench.refuses(&[&scene, "-o", "out.cloud", "-n", "8e9"], &["--samples", "memory"]);
+    bench.refuses(&[&scene, "-o", "out.cloud", "--pattern", "random"], &["--pattern", "stratified", "independent"]);
     bench.refuses(&[&scene, "-o", "out.cloud", "--sample-count", "3"], &["--sample-count"]);
     bench.refuses(&[&scene], &["--output"]);
     bench.refuses(&[&scene, "-o", "out.cloud", "--environment", "1,-1,1"], &["--environment"]);

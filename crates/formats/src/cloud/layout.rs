@@ -14,8 +14,8 @@
 //! ```
 //!
 //! A table entry: name (16, zero padded); element type, components, layout, codec (4 × u16); offset, stored bytes, raw
-//! bytes, elements (4 × u64); xxh3-64 of the stored bytes (u64). Components are separate planes, each padded with zeros
-//! to a multiple of 16 elements.
+//! bytes, elements (4 × u64); xxh3-64 of the stored bytes (u64). Layout 1: elements follow each other, and within each
+//! its components.
 
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
@@ -23,10 +23,11 @@ pub(super) const MAGIC: [u8; 8] = [0x89, b'P', b'C', b'L', 0x0D, 0x0A, 0x1A, 0x0
 pub(super) const HEADER: usize = 64;
 const ENTRY: usize = 64;
 const MAX_SECTIONS: u32 = 64;
-/// Planes start at multiples of this, elements of a plane are padded to it.
-const LANES: u64 = 16;
+/// Sections start at multiples of this, the samples at a page.
 const ALIGN: u64 = 64;
 const PAGE: u64 = 4096;
+/// Elements follow each other.
+const RECORDS: u16 = 1;
 
 /// The major version of the format: one number, bumped when a record changes meaning.
 pub fn version() -> u16 {
@@ -38,15 +39,14 @@ pub fn version() -> u16 {
 #[repr(u16)]
 pub(super) enum Kind {
     F32 = 1,
+    U32 = 3,
     U8 = 5,
-    I16 = 6,
 }
 
 impl Kind {
     fn size(self) -> u64 {
         match self {
-            Kind::F32 => 4,
-            Kind::I16 => 2,
+            Kind::F32 | Kind::U32 => 4,
             Kind::U8 => 1,
         }
     }
@@ -67,22 +67,14 @@ pub(super) struct Section {
 impl Section {
     /// A section of `elements` elements that starts at the first fitting offset after `end`.
     pub fn after(end: u64, name: &'static str, kind: Kind, components: u16, elements: u64) -> Section {
-        let align = if name == "position" { PAGE } else { ALIGN };
+        let align = if name == "tile" { PAGE } else { ALIGN };
         let offset = end.next_multiple_of(align);
-        let bytes = plane_bytes(kind, elements) * u64::from(components);
+        let bytes = elements * kind.size() * u64::from(components);
         Section { name, kind, components, offset, bytes, elements, checksum: 0 }
     }
 
     pub fn end(&self) -> u64 {
         self.offset + self.bytes
-    }
-}
-
-/// Bytes of one plane, padding included. Only text is not padded.
-pub(super) fn plane_bytes(kind: Kind, elements: u64) -> u64 {
-    match kind {
-        Kind::U8 => elements,
-        _ => elements.next_multiple_of(LANES) * kind.size(),
     }
 }
 
@@ -101,7 +93,7 @@ pub(super) fn encode(sections: &[Section], length: u64, samples: u64) -> Vec<u8>
         let mut name = [0; 16];
         name[..s.name.len()].copy_from_slice(s.name.as_bytes());
         bytes.extend(name);
-        [s.kind as u16, s.components, 0, 0].iter().for_each(|v| bytes.extend(v.to_le_bytes()));
+        [s.kind as u16, s.components, RECORDS, 0].iter().for_each(|v| bytes.extend(v.to_le_bytes()));
         let numbers = [s.offset, s.bytes, s.bytes, s.elements, s.checksum];
         numbers.iter().for_each(|v| bytes.extend(v.to_le_bytes()));
     }
@@ -180,14 +172,12 @@ fn decode_entry(entry: &[u8], known: &[(&'static str, Kind, u16)], length: u64) 
         elements: long(48)?,
         checksum: long(56)?,
     };
-    let expected = u64::checked_mul(section.elements, u64::from(components) * kind.size())
-        .filter(|least| *least <= length)
-        .map(|_| plane_bytes(kind, section.elements) * u64::from(components));
+    let expected = u64::checked_mul(section.elements, u64::from(components) * kind.size());
     let fits = section.offset.checked_add(section.bytes).is_some_and(|end| end <= length)
         && section.offset.is_multiple_of(ALIGN)
         && expected == Some(section.bytes)
         && long(40)? == section.bytes
-        && [short(16)?, short(18)?, short(20)?, short(22)?] == [kind as u16, components, 0, 0];
+        && [short(16)?, short(18)?, short(20)?, short(22)?] == [kind as u16, components, RECORDS, 0];
     if fits { Ok(Some(section)) } else { Err(format!("section `{name}` is damaged; sample again")) }
 }
 

@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// One struct per version; old ones are kept so that an old file is named, not misread.
+/// The struct of this version; the number is checked before this is read.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Versioned {
-    V1(Meta),
+    V2(Meta),
 }
 
 /// Facts of a cloud. Holds no time, host or path: the same inputs give the same bytes.
@@ -34,11 +34,16 @@ pub struct Meta {
     pub diagonal_m: f64,
     /// World position that sample positions are relative to, m.
     pub origin_m: [f64; 3],
-    /// The sampled materials in order; their samples follow each other in the file.
+    /// The sampled materials in order; their groups follow each other in the file.
     pub materials: Vec<SampledMaterial>,
 }
 
 impl Meta {
+    /// Samples drawn for each of the two independent halves: even and odd ones.
+    pub fn drawn_by_half(&self) -> [u64; 2] {
+        [self.samples_drawn.div_ceil(2), self.samples_drawn / 2]
+    }
+
     /// True if no fact is NaN or infinite.
     pub(super) fn is_finite(&self) -> bool {
         let single = [self.surface_area_m2, self.diagonal_m, self.options.metres_per_unit];
@@ -71,12 +76,37 @@ pub struct SampledMaterial {
     pub name: String,
     /// Index into the scene's materials.
     pub index: u16,
-    /// First stored sample.
-    pub first: u64,
-    /// Stored samples.
-    pub count: u64,
+    /// The stored samples of each half.
+    pub halves: [Group; 2],
     /// m².
     pub area_m2: f64,
+}
+
+impl SampledMaterial {
+    /// Stored samples of both halves.
+    pub fn count(&self) -> u64 {
+        self.halves.iter().map(|h| h.samples).sum()
+    }
+}
+
+/// Samples in spatial order under a tree of their own: of one material and one half.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Group {
+    pub samples: u64,
+    pub first_tile: u64,
+    pub first_node: u64,
+}
+
+impl Group {
+    /// Tiles of sixteen samples; the last one may be filled up with samples without flux.
+    pub fn tiles(&self) -> u64 {
+        self.samples.div_ceil(super::TILE as u64)
+    }
+
+    /// Nodes of the tree over the tiles, see [`super::Node`].
+    pub fn nodes(&self) -> u64 {
+        super::node_count(self.tiles())
+    }
 }
 
 /// A digest as hexadecimal text.

@@ -1,31 +1,31 @@
 //! The point cloud: lit surface samples of phase one.
 //!
-//! Readable without this code: `data` planes are little-endian arrays that start where the section table says, and the
-//! section `provenance` repeats the facts as JSON.
+//! Readable without this code: the sections `tile` and `node` are little-endian arrays of [`Record`] and [`Node`] that
+//! start where the section table says, and the section `provenance` repeats the facts as JSON. It is mapped as it lies.
 
 mod layout;
 mod meta;
+mod record;
 
 pub use layout::version;
-pub use meta::{Meta, Options, SampledMaterial, hex};
+pub use meta::{Group, Meta, Options, SampledMaterial, hex};
+pub use record::{Node, Record, TILE, Tile, first_leaf, node_count, tile};
 
-use crate::{Error, atomic::Output, octahedral};
+use crate::{Error, atomic::Output};
 use bytemuck::Pod;
 use glam::{DVec3, Vec3};
-use layout::{HEADER, Header, Kind, Section, plane_bytes};
+use layout::{HEADER, Header, Kind, Section};
 use memmap2::Mmap;
 use meta::Versioned;
 use std::{fs::File, io::Write, path::Path};
 use xxhash_rust::xxh3::xxh3_64;
 
 /// The sections this version knows: name, element type, components.
-const SECTIONS: [(&str, Kind, u16); 6] = [
+const SECTIONS: [(&str, Kind, u16); 4] = [
     ("meta", Kind::U8, 1),
     ("provenance", Kind::U8, 1),
-    ("position", Kind::F32, 3),
-    ("normal", Kind::I16, 2),
-    ("direction", Kind::I16, 2),
-    ("flux", Kind::F32, 3),
+    ("tile", Kind::U32, (size_of::<Tile>() / 4) as u16),
+    ("node", Kind::F32, (size_of::<Node>() / 4) as u16),
 ];
 
 /// Largest metadata block that is read.
@@ -48,77 +48,49 @@ pub struct Sample {
     pub flux: Vec3,
 }
 
-/// Samples as they are collected: structure of arrays, as in the file.
+/// The stored part of a cloud: groups of tiles and the trees over them, see [`Group`].
 #[derive(Clone, Debug, Default)]
-pub struct Samples {
-    position: [Vec<f32>; 3],
-    normal: [Vec<i16>; 2],
-    direction: [Vec<i16>; 2],
-    flux: [Vec<f32>; 3],
+pub struct Content {
+    /// Stored samples, fillers not counted.
+    pub samples: u64,
+    pub tiles: Vec<Tile>,
+    pub nodes: Vec<Node>,
 }
 
-impl Samples {
-    pub fn len(&self) -> usize {
-        self.position[0].len()
-    }
-
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    pub fn push(&mut self, sample: &Sample) {
-        let (normal, direction) = (octahedral::encode(sample.normal), octahedral::encode(sample.direction));
-        for c in 0..3 {
-            self.position[c].push(sample.position[c]);
-            self.flux[c].push(sample.flux[c]);
-        }
-        for c in 0..2 {
-            self.normal[c].push(normal[c]);
-            self.direction[c].push(direction[c]);
-        }
-    }
-
-    /// Moves all samples of `other` behind these.
-    pub fn append(&mut self, other: &mut Samples) {
-        for c in 0..3 {
-            self.position[c].append(&mut other.position[c]);
-            self.flux[c].append(&mut other.flux[c]);
-        }
-        for c in 0..2 {
-            self.normal[c].append(&mut other.normal[c]);
-            self.direction[c].append(&mut other.direction[c]);
-        }
+impl Content {
+    /// The tiles and nodes of one group.
+    pub fn group(&self, group: &Group) -> (&[Tile], &[Node]) {
+        part(&self.tiles, &self.nodes, group)
     }
 }
 
-/// Writes a cloud; the same samples and facts give the same bytes.
-pub fn write(output: &mut Output, path: &Path, samples: &Samples, meta: &Meta) -> Result<(), Error> {
-    let facts = bincode::serde::encode_to_vec(Versioned::V1(meta.clone()), meta_config())
+fn part<'a>(tiles: &'a [Tile], nodes: &'a [Node], group: &Group) -> (&'a [Tile], &'a [Node]) {
+    let range = |first: u64, count: u64| first as usize..(first + count) as usize;
+    (&tiles[range(group.first_tile, group.tiles())], &nodes[range(group.first_node, group.nodes())])
+}
+
+/// Writes a cloud; the same content and facts give the same bytes.
+pub fn write(output: &mut Output, path: &Path, content: &Content, meta: &Meta) -> Result<(), Error> {
+    let facts = bincode::serde::encode_to_vec(Versioned::V2(meta.clone()), meta_config())
         .map_err(|e| Error::invalid(path, format!("the cloud's facts do not fit the file: {e}")))?;
     let provenance = serde_json::to_vec_pretty(&provenance(meta))
         .map_err(|e| Error::invalid(path, format!("the cloud's facts do not fit the file: {e}")))?;
-    let planes: [Vec<u8>; 6] = [
-        facts,
-        provenance,
-        planes(&samples.position),
-        planes(&samples.normal),
-        planes(&samples.direction),
-        planes(&samples.flux),
-    ];
-    let mut end = (HEADER + 64 * planes.len()) as u64;
+    let (tiles, nodes) = (bytemuck::cast_slice(&content.tiles), bytemuck::cast_slice(&content.nodes));
+    let blocks: [&[u8]; 4] = [&facts, &provenance, tiles, nodes];
+    let counts = [facts.len(), provenance.len(), content.tiles.len(), content.nodes.len()];
+    let mut end = (HEADER + 64 * blocks.len()) as u64;
     let mut sections = Vec::new();
-    for ((name, kind, components), bytes) in SECTIONS.into_iter().zip(&planes) {
-        let elements = if kind == Kind::U8 { bytes.len() } else { samples.len() };
-        let mut section = Section::after(end, name, kind, components, elements as u64);
-        section.checksum = xxh3_64(bytes);
+    for (k, (name, kind, components)) in SECTIONS.into_iter().enumerate() {
+        let mut section = Section::after(end, name, kind, components, counts[k] as u64);
+        section.checksum = xxh3_64(blocks[k]);
         end = section.end();
         sections.push(section);
     }
-    let head = layout::encode(&sections, end, samples.len() as u64);
+    let head = layout::encode(&sections, end, content.samples);
     let mut at = head.len() as u64;
     let mut put = |bytes: &[u8]| output.write_all(bytes).map_err(|source| Error::write(path, source));
     put(&head)?;
-    for (section, bytes) in sections.iter().zip(&planes) {
+    for (section, bytes) in sections.iter().zip(blocks) {
         put(&vec![0; (section.offset - at) as usize])?;
         put(bytes)?;
         at = section.end();
@@ -134,16 +106,6 @@ fn provenance(meta: &Meta) -> serde_json::Value {
     }
     value["format_version"] = version().into();
     value
-}
-
-/// The padded planes of a section, one after the other.
-fn planes<T: Pod>(components: &[Vec<T>]) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    for plane in components {
-        bytes.extend_from_slice(bytemuck::cast_slice(plane));
-        bytes.resize(bytes.len().next_multiple_of(16 * size_of::<T>()), 0);
-    }
-    bytes
 }
 
 /// An open cloud, mapped into memory.
@@ -186,40 +148,53 @@ impl Cloud {
         self.len() == 0
     }
 
-    /// Checks every section against its checksum and every sample for being a finite point with flux not negative.
+    /// Checks every section against its checksum, every sample for being a finite point with flux not negative, and
+    /// every node for numbers. Reads the whole file.
     pub fn verify(&self, path: &Path) -> Result<(), Error> {
         for section in &self.header.sections {
             layout::verify(&self.map, section).map_err(|what| Error::invalid(path, what))?;
         }
-        let good = |name, test: fn(f32) -> bool| (0..3).all(|c| self.plane::<f32>(name, c).iter().all(|v| test(*v)));
-        if !good("position", f32::is_finite) || !good("flux", |v| v.is_finite() && v >= 0.0) {
+        let good =
+            |r: &Record| r.position.iter().all(|x| x.is_finite()) && r.flux.iter().all(|x| x.is_finite() && *x >= 0.0);
+        if !self.tiles().as_flattened().iter().all(good) {
             return Err(Error::invalid(path, "a sample is not finite, or its flux negative; sample again"));
+        }
+        let numbers: &[f32] = bytemuck::cast_slice(self.nodes());
+        if !numbers.iter().all(|x| x.is_finite()) {
+            return Err(Error::invalid(path, "a node of the tree is not finite; sample again"));
         }
         Ok(())
     }
 
-    /// Samples `first..first + count`.
-    pub fn samples(&self, first: u64, count: u64) -> impl Iterator<Item = Sample> + '_ {
-        let position = [0, 1, 2].map(|c| self.plane::<f32>("position", c));
-        let flux = [0, 1, 2].map(|c| self.plane::<f32>("flux", c));
-        let normal = [0, 1].map(|c| self.plane::<i16>("normal", c));
-        let direction = [0, 1].map(|c| self.plane::<i16>("direction", c));
-        (first as usize..(first + count) as usize).map(move |k| Sample {
-            position: Vec3::from_array(position.map(|p| p[k])),
-            normal: octahedral::decode(normal.map(|p| p[k])),
-            direction: octahedral::decode(direction.map(|p| p[k])),
-            flux: Vec3::from_array(flux.map(|p| p[k])),
+    /// All tiles, see [`Group::first_tile`].
+    pub fn tiles(&self) -> &[Tile] {
+        self.section("tile")
+    }
+
+    /// All nodes, see [`Group::first_node`].
+    pub fn nodes(&self) -> &[Node] {
+        self.section("node")
+    }
+
+    /// The tiles and nodes of one group of this cloud.
+    pub fn group(&self, group: &Group) -> (&[Tile], &[Node]) {
+        part(self.tiles(), self.nodes(), group)
+    }
+
+    /// The samples of one material, its first half first.
+    pub fn samples<'a>(&'a self, material: &'a SampledMaterial) -> impl Iterator<Item = Sample> + 'a {
+        material.halves.iter().flat_map(|half| {
+            let (tiles, _) = self.group(half);
+            (0..half.samples as usize).map(move |k| tiles[k / TILE][k % TILE].sample())
         })
     }
 
-    /// One component of a section, without its padding. The header was checked: the section is there and inside.
-    fn plane<T: Pod>(&self, name: &str, component: u64) -> &[T] {
+    /// A section's elements. The header was checked: the section is there, inside the file and aligned.
+    fn section<T: Pod>(&self, name: &str) -> &[T] {
         let Some(s) = self.header.sections.iter().find(|s| s.name == name) else {
             return &[];
         };
-        let start = s.offset + component * plane_bytes(s.kind, s.elements);
-        let bytes = &self.map[start as usize..start as usize + s.elements as usize * size_of::<T>()];
-        bytemuck::cast_slice(bytes)
+        bytemuck::cast_slice(&self.map[s.offset as usize..s.end() as usize])
     }
 }
 
@@ -233,27 +208,32 @@ fn map(file: &File) -> std::io::Result<Mmap> {
 
 /// Facts that fit the header.
 fn read_meta(file: &[u8], header: &Header) -> Result<Meta, String> {
-    for (name, kind, _) in SECTIONS {
-        let section = header.section(name)?;
-        if kind != Kind::U8 && section.elements != header.samples {
-            return Err(format!("section `{name}` does not hold one element a sample; sample again"));
-        }
+    for (name, ..) in SECTIONS {
+        header.section(name)?;
     }
     let section = header.section("meta")?;
     layout::verify(file, section)?;
     let bytes = &file[section.offset as usize..section.end() as usize];
     let damaged = "the cloud's facts are damaged; sample again";
-    let (Versioned::V1(meta), used) =
+    let (Versioned::V2(meta), used) =
         bincode::serde::decode_from_slice(bytes, meta_config()).map_err(|_| damaged.to_owned())?;
-    let mut next = 0u64;
-    for m in &meta.materials {
-        if m.first != next {
-            return Err(damaged.into());
-        }
-        next = next.checked_add(m.count).ok_or(damaged)?;
+    let fits = used == bytes.len() && groups_fit(&meta, header).is_some() && meta.is_finite();
+    if fits { Ok(meta) } else { Err(damaged.into()) }
+}
+
+/// Some if the groups of the materials follow each other and fill the sections.
+fn groups_fit(meta: &Meta, header: &Header) -> Option<()> {
+    let (mut samples, mut tiles, mut nodes) = (0u64, 0u64, 0u64);
+    for half in meta.materials.iter().flat_map(|m| &m.halves) {
+        let placed = half.samples <= header.samples && (half.first_tile, half.first_node) == (tiles, nodes);
+        placed.then_some(())?;
+        samples = samples.checked_add(half.samples)?;
+        tiles = tiles.checked_add(half.tiles())?;
+        nodes = nodes.checked_add(half.nodes())?;
     }
-    let fits = used == bytes.len() && next == header.samples && meta.samples_drawn >= next && meta.samples_drawn > 0;
-    if fits && meta.is_finite() { Ok(meta) } else { Err(damaged.into()) }
+    let elements = |name| header.section(name).map(|s| s.elements).ok();
+    let full = samples == header.samples && elements("tile") == Some(tiles) && elements("node") == Some(nodes);
+    (full && meta.samples_drawn >= samples && meta.samples_drawn > 0).then_some(())
 }
 
 #[cfg(test)]
@@ -283,25 +263,37 @@ mod tests {
             mean_flux_w: [1.0; 3],
             diagonal_m: 2.0,
             origin_m: [0.0, 1.0, 2.0],
-            materials: vec![SampledMaterial { name: "Wax".into(), index: 0, first: 0, count, area_m2: 0.5 }],
+            materials: vec![SampledMaterial { name: "Wax".into(), index: 0, halves: halves(count), area_m2: 0.5 }],
         }
     }
 
-    fn samples(count: usize) -> Samples {
-        let mut samples = Samples::default();
-        for k in 0..count {
-            let x = k as f32;
-            let position = Vec3::new(x, 2.0 * x, -x);
-            samples.push(&Sample { position, normal: DVec3::Z, direction: DVec3::Y, flux: Vec3::splat(x) });
+    fn halves(count: u64) -> [Group; 2] {
+        let even = Group { samples: count.div_ceil(2), first_tile: 0, first_node: 0 };
+        [even, Group { samples: count / 2, first_tile: even.tiles(), first_node: even.nodes() }]
+    }
+
+    fn content(count: u64) -> Content {
+        let mut content = Content { samples: count, ..Content::default() };
+        let mut next = 0;
+        for half in halves(count) {
+            let records: Vec<Record> = (next..next + half.samples).map(|k| Record::new(&sample(k as f32))).collect();
+            content.tiles.extend(records.chunks(TILE).map(tile));
+            content.nodes.extend((0..half.nodes()).map(|_| Node::default()));
+            next += half.samples;
         }
-        samples
+        content
+    }
+
+    fn sample(x: f32) -> Sample {
+        let position = Vec3::new(x, 2.0 * x, -x);
+        Sample { position, normal: DVec3::Z, direction: DVec3::Y, flux: Vec3::splat(x) }
     }
 
     fn written(count: usize) -> (tempfile::TempDir, std::path::PathBuf) {
         let folder = tempfile::tempdir().expect("folder");
         let path = folder.path().join("test.cloud");
         let mut output = Output::create(&path).expect("creates");
-        write(&mut output, &path, &samples(count), &meta(count as u64)).expect("writes");
+        write(&mut output, &path, &content(count as u64), &meta(count as u64)).expect("writes");
         output.commit().expect("commits");
         (folder, path)
     }
@@ -313,12 +305,9 @@ mod tests {
             let cloud = Cloud::open(&path).expect("opens");
             cloud.verify(&path).expect("is good");
             assert_eq!(cloud.meta(), &meta(count as u64));
-            let read: Vec<Sample> = cloud.samples(0, count as u64).collect();
-            assert_eq!(read.len(), count);
-            if count == 37 {
-                assert_eq!(read[36].position, Vec3::new(36.0, 72.0, -36.0));
-                assert_eq!((read[36].normal, read[36].flux), (DVec3::Z, Vec3::splat(36.0)));
-            }
+            let read: Vec<Sample> = cloud.samples(&cloud.meta().materials[0]).collect();
+            let expected: Vec<Sample> = (0..count).map(|k| sample(k as f32)).collect();
+            assert_eq!(read, expected);
         }
     }
 

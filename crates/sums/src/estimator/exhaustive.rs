@@ -10,7 +10,7 @@ use bssrdf::{
 /// Evaluates every sample.
 pub struct Exhaustive<'a, M> {
     pub model: &'a M,
-    pub samples: &'a LitSamples,
+    pub samples: &'a LitSamples<'a>,
     pub exit: &'a Exit,
 }
 
@@ -20,10 +20,10 @@ impl<M: LaneModel> Kernel for Exhaustive<'_, M> {
     #[inline(always)]
     fn run(self) -> Sum {
         let mut sum = Accumulator::new();
-        for index in 0..self.samples.positions().len() {
+        for index in 0..self.samples.tiles().len() {
             let (block, flux) = self.samples.block(index, self.exit);
             sum.add(&self.model.bare(&block, self.exit.normal), &flux, &[1.0; LANES]);
         }
-        Sum { radiance: sum.total(), evaluations: self.samples.len() as u64 }
+        Sum { radiance: sum.total(), evaluations: self.samples.len() as u64, nodes: 0 }
     }
 }

@@ -3,18 +3,27 @@
 //!
 //! Each estimator returns the sum before the division by K.
 
+mod cut;
 mod exhaustive;
+mod radial;
 mod roulette;
 
+pub use cut::{Cut, Scratch};
 pub use exhaustive::Exhaustive;
+pub use radial::Radial;
 pub use roulette::{Rates, Roulette, Rule, random_bits};
 
 use bssrdf::lanes::{LANES, Lane};
-use scene::DVec3;
+use glam::DVec3;
 
 /// How the sum is estimated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Estimator {
+    /// Hierarchical: near samples one by one, far ones by a few that stand for many.
+    Cut {
+        /// Target of the relative standard error of a pixel's sums.
+        accuracy: f64,
+    },
     /// Every sample is evaluated.
     Exhaustive,
     /// The note's: a sample is evaluated with a probability that falls with its distance.
@@ -28,6 +37,8 @@ pub struct Sum {
     pub radiance: DVec3,
     /// Samples whose BSSRDF was evaluated.
     pub evaluations: u64,
+    /// Nodes of the tree that were looked at.
+    pub nodes: u64,
 }
 
 /// Running sums of sixteen lanes, in float64 and in a fixed order.

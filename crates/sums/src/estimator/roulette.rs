@@ -74,7 +74,7 @@ impl<const N: usize> Acceptance<N> {
 /// Evaluates the samples that the roulette accepts.
 pub struct Roulette<'a, M> {
     pub model: &'a M,
-    pub samples: &'a LitSamples,
+    pub samples: &'a LitSamples<'a>,
     pub exit: &'a Exit,
     pub rates: Rates,
 }
@@ -101,8 +101,9 @@ impl<M: LaneModel> Roulette<'_, M> {
     fn scan<const N: usize>(&self, acceptance: &Acceptance<N>) -> Sum {
         let mut accepted = Accepted::default();
         let mut sum = Accumulator::new();
-        for (block, positions) in self.samples.positions().iter().enumerate() {
-            let (p, bits, mut proposed) = self.propose(acceptance, block, positions);
+        for block in 0..self.samples.tiles().len() {
+            let positions = self.samples.positions(block);
+            let (p, bits, mut proposed) = self.propose(acceptance, block, &positions);
             while proposed != 0 {
                 let lane = proposed.trailing_zeros() as usize;
                 proposed &= proposed - 1;
@@ -119,7 +120,7 @@ impl<M: LaneModel> Roulette<'_, M> {
             }
         }
         self.evaluate(&mut accepted, &mut sum);
-        Sum { radiance: sum.total(), evaluations: accepted.evaluations }
+        Sum { radiance: sum.total(), evaluations: accepted.evaluations, nodes: 0 }
     }
 
     /// `p` and 32 bits of ξ for a block, and a bit for each lane that may be accepted.

@@ -1,0 +1,166 @@
+//! Pixels in parallel, paths in passes.
+
+use crate::{
+    Filter, Input, Rendered, Session, Settings, calibration,
+    estimator::{Estimator, Radial, Rule},
+    film::{Errors, Pixel, PixelSum},
+    path::{Body, Counts, PathIndex, Renderer, Worker},
+    samples::LitSamples,
+};
+use bssrdf::lanes::LaneModel;
+use glam::DVec2;
+use rayon::prelude::*;
+use scene::{
+    DVec3,
+    random::{Purpose, Stream},
+    sequence::Sequence,
+};
+use std::ops::Range;
+
+/// One task renders a square of so many pixels a side.
+const TILE: usize = 8;
+
+/// Share of the scene's diagonal that a ray skips when it passes a surface straight.
+const CLEARANCE: f64 = 1e-9;
+
+/// An image of one model on its way.
+pub struct Passes<'a, M> {
+    renderer: Renderer<'a, M>,
+    settings: Settings,
+    sums: Vec<PixelSum>,
+    /// Paths of each pixel so far.
+    paths: u32,
+    counts: Counts,
+    pixel_stream: Stream,
+}
+
+impl<'a, M: LaneModel> Passes<'a, M> {
+    pub fn new(input: &Input<'a>, settings: &Settings) -> Self {
+        let mut renderer = Renderer {
+            scene: input.scene,
+            rays: input.rays,
+            camera: input.camera,
+            bodies: bodies::<M>(input, settings),
+            environment: settings.environment,
+            normals: settings.normals,
+            estimator: settings.estimator,
+            samples_drawn: input.cloud.meta().drawn_by_half(),
+            paths_per_pixel: settings.paths_per_pixel,
+            max_depth: settings.max_depth,
+            clearance: CLEARANCE * input.scene.mesh.diagonal(),
+            paths: Stream::new(settings.seed, Purpose::CameraPath),
+            gathers: Stream::new(settings.seed, Purpose::Gather),
+        };
+        calibration::calibrate(&mut renderer, size(settings), settings.seed);
+        Passes {
+            renderer,
+            settings: settings.clone(),
+            sums: vec![PixelSum::default(); settings.width * settings.height],
+            paths: 0,
+            counts: Counts::default(),
+            pixel_stream: Stream::new(settings.seed, Purpose::Pixel),
+        }
+    }
+
+    /// The pixels of a tile, row by row.
+    fn places(&self, tile: usize) -> impl Iterator<Item = usize> + use<M> {
+        let (width, across) = (self.settings.width, self.settings.width.div_ceil(TILE));
+        let (x, y) = (tile % across * TILE, tile / across * TILE);
+        let (x_end, y_end) = ((x + TILE).min(width), (y + TILE).min(self.settings.height));
+        (y..y_end).flat_map(move |y| (x..x_end).map(move |x| y * width + x))
+    }
+
+    fn tiles(&self) -> usize {
+        self.settings.width.div_ceil(TILE) * self.settings.height.div_ceil(TILE)
+    }
+
+    /// The ray through a point of a pixel, `offset` pixels from its corner.
+    fn ray(&self, place: usize, offset: DVec2) -> (DVec3, DVec3) {
+        let corner = DVec2::new((place % self.settings.width) as f64, (place / self.settings.width) as f64);
+        let (origin, direction) = self.renderer.camera.ray(corner + offset, size(&self.settings));
+        (origin - self.renderer.scene.origin, direction)
+    }
+
+    fn add_paths(&self, place: usize, paths: Range<u32>, worker: &mut Worker) -> PixelSum {
+        // Even and odd paths are spread by a sequence each, so that they stay independent.
+        let key = |half| self.pixel_stream.item(2 * place as u64 + half);
+        let spread = [0, 1].map(|half| Sequence::new(key(half), self.pixel_stream));
+        let alone = self.settings.paths_per_pixel == 1;
+        let mut sum = self.sums[place];
+        for path in paths {
+            let offset = match self.settings.filter {
+                Filter::Point => DVec2::splat(0.5),
+                Filter::Box => {
+                    let [x, y, ..] = spread[path as usize % 2].point(path / 2);
+                    DVec2::new(x, y)
+                }
+            };
+            let (origin, direction) = self.ray(place, offset);
+            let light = self.renderer.trace(PathIndex { pixel: place as u64, path }, origin, direction, worker);
+            sum.add(path, alone, &light);
+        }
+        sum
+    }
+
+    fn pixel(&self, place: usize) -> Pixel {
+        let (origin, direction) = self.ray(place, DVec2::splat(0.5));
+        self.sums[place].pixel(self.renderer.guide(origin, direction))
+    }
+}
+
+impl<M: LaneModel> Session for Passes<'_, M> {
+    fn pass(&mut self, paths: u32, progress: &(dyn Fn(u64) + Sync)) {
+        let range = self.paths..self.paths.saturating_add(paths);
+        self.renderer.paths_per_pixel = self.settings.paths_per_pixel.max(range.end);
+        let tile = |tile: usize| {
+            let mut worker = Worker::new(self.renderer.bodies.len());
+            let add = |place: usize| (place, self.add_paths(place, range.clone(), &mut worker));
+            let sums: Vec<(usize, PixelSum)> = self.places(tile).map(add).collect();
+            progress(sums.len() as u64);
+            (sums, worker.counts)
+        };
+        let tiles: Vec<_> = (0..self.tiles()).into_par_iter().map(tile).collect();
+        for (sums, counts) in tiles {
+            self.counts.add(&counts);
+            sums.into_iter().for_each(|(place, sum)| self.sums[place] = sum);
+        }
+        self.paths = range.end;
+    }
+
+    fn errors(&self) -> Errors {
+        Errors::of(&self.sums)
+    }
+
+    fn finish(self: Box<Self>) -> Rendered {
+        let pixels: Vec<Pixel> = (0..self.sums.len()).into_par_iter().map(|place| self.pixel(place)).collect();
+        let bad = || pixels.iter().enumerate().filter(|(_, p)| !p.is_finite()).map(|(k, _)| k);
+        let (non_finite, non_finite_count) = (bad().take(8).collect(), bad().count() as u64);
+        Rendered { pixels, paths_per_pixel: self.paths, counts: self.counts, non_finite, non_finite_count }
+    }
+}
+
+/// Width and height, pixels.
+fn size(settings: &Settings) -> DVec2 {
+    DVec2::new(settings.width as f64, settings.height as f64)
+}
+
+fn bodies<'a, M: LaneModel>(input: &Input<'a>, settings: &Settings) -> Vec<Option<Body<'a, M>>> {
+    let mut bodies: Vec<Option<Body<M>>> = input.scene.materials.iter().map(|_| None).collect();
+    for (sampled, medium) in input.cloud.meta().materials.iter().zip(input.media) {
+        let model = settings.model.of(medium);
+        let rule = match settings.estimator {
+            Estimator::Roulette(rule) => rule,
+            Estimator::Exhaustive | Estimator::Cut { .. } => Rule::Mixture,
+        };
+        bodies[sampled.index as usize] = Some(Body {
+            model: M::new(medium),
+            unscattered: settings.model.unscattered_extinction(medium),
+            rates: rule.rates(model.transport()),
+            radial: Radial::new(medium, &*model),
+            calibration: 1.0,
+            halves: sampled.halves.map(|half| LitSamples::new(input.cloud, &half, medium.eta)),
+            medium: medium.clone(),
+        });
+    }
+    bodies
+}
