@@ -1,153 +1,163 @@
-//! The tree of boxes: built by obvhs, walked here.
-//!
-//! obvhs' own walk keeps its place on a stack of fixed size and silently forgets nodes beyond it; meshes whose details
-//! shrink geometrically (horns, shells) make deep trees.
+//! The tree of boxes, eight to a node, and the walk through it.
 
-use glam::{UVec2, Vec3, Vec3A};
-use obvhs::{
-    BvhBuildParams,
-    aabb::Aabb,
-    bvh2::reinsertion::ReinsertionOptimizer,
-    cwbvh::{CwBvh, bvh2_to_cwbvh::bvh2_to_cwbvh},
-    ploc::PlocBuilder,
-    ray::Ray,
-};
+use super::{ray::BoxRay, vectors::Vectors};
+use glam::Vec3;
 use std::ops::ControlFlow;
 
-/// Boxes grow by at least this share of the mesh's diagonal: sixteen float32 rounding steps, where rounded origin,
-/// direction, reciprocals, box corners and slab test together can be wrong by seven.
-const LEAST_PADDING: f32 = 16.0 * f32::EPSILON;
+/// Set in a child that is a leaf.
+const LEAF: u32 = 1 << 31;
 
-/// Boxes grow by at most this share. How much differs from box to box, at random: the builder joins each box with the
-/// best of its neighbours, and among equal boxes (a mesh on top of itself) all prefer the same one, which makes the
-/// build quadratic and the tree a list.
-pub(super) const PADDING: f32 = 2.0 * LEAST_PADDING;
-
-/// The tree passes over boxes that end nearer than this, in the units of the scaled mesh. Every box ends farther
-/// beyond its triangle than that.
-const NEAREST: f32 = 1e-4;
-
-/// Bits of a group that stand for inner nodes.
-const INNER: u32 = 0xff00_0000;
-
-pub(super) struct Tree {
-    boxes: CwBvh,
+/// The boxes of up to eight children, in full float32: smaller codes cost more to unpack than they save.
+#[repr(align(64))]
+pub(super) struct Node {
+    /// By axis, then low and high, then child.
+    planes: [[[f32; 8]; 2]; 3],
+    /// Indices of nodes, or of leaves with [`LEAF`].
+    children: [u32; 8],
 }
 
-/// The limit that a ray has in the tree to meet everything nearer than `distance`.
-pub(super) fn limit(distance: f64) -> f32 {
-    (distance as f32).next_up().max(2.0 * NEAREST)
+pub(super) struct Tree {
+    /// The root first, if there is anything.
+    pub nodes: Vec<Node>,
+}
+
+/// What looks at the leaves.
+pub(super) trait Visitor {
+    /// Whether nearer children are to be visited first. It costs more than it saves where any hit will do.
+    const ORDERED: bool;
+
+    /// Looks at a leaf that the ray may meet and returns the limit from now on, or ends the walk.
+    fn visit(&mut self, leaf: u32) -> ControlFlow<(), f32>;
+}
+
+impl Node {
+    /// Boxes that contain nothing.
+    pub const EMPTY: Node = Node { planes: [[[f32::INFINITY; 8], [f32::NEG_INFINITY; 8]]; 3], children: [0; 8] };
+
+    pub fn set(&mut self, slot: usize, low: Vec3, high: Vec3, child: u32) {
+        for axis in 0..3 {
+            self.planes[axis][0][slot] = low[axis];
+            self.planes[axis][1][slot] = high[axis];
+        }
+        self.children[slot] = child;
+    }
+
+    /// The code of a leaf among the children.
+    pub fn leaf(index: usize) -> u32 {
+        LEAF | index as u32
+    }
+
+    /// The planes across an axis: those that the ray meets first, then the others.
+    #[inline(always)]
+    pub fn planes(&self, axis: usize, ray: &BoxRay) -> [&[f32; 8]; 2] {
+        let first = ray.first[axis] & 1;
+        [&self.planes[axis][first], &self.planes[axis][1 - first]]
+    }
 }
 
 impl Tree {
-    /// A tree over triangles of which the box has this diagonal, or less.
-    pub fn new(triangles: &[[Vec3; 3]], diagonal: f32) -> Tree {
-        let boxes: Vec<Aabb> = triangles.iter().enumerate().map(|(k, t)| padded_box(k, t, diagonal)).collect();
-        let build = BvhBuildParams::medium_build();
-        let indices = (0..boxes.len() as u32).collect();
-        let mut builder = PlocBuilder::with_capacity(boxes.len());
-        let (distance, threshold) = (build.ploc_search_distance, build.search_depth_threshold);
-        let mut tree = builder.build(distance, &boxes, indices, build.sort_precision, threshold);
-        ReinsertionOptimizer::default().run(&mut tree, build.reinsertion_batch_ratio, None);
-        const TRIANGLES_PER_LEAF: u32 = 3; // the most that its nodes can hold
-        Tree { boxes: bvh2_to_cwbvh(&tree, TRIANGLES_PER_LEAF, true, false) }
-    }
-
-    /// The triangles in the order of the leaves.
-    pub fn order(&self) -> &[u32] {
-        &self.boxes.primitive_indices
-    }
-
-    /// Calls `visit` with the place in [`Tree::order`] of every triangle whose box the ray meets; it may shorten the
-    /// ray, or stop the walk.
+    /// Shows every leaf of which the ray meets the box no farther than the limit, which the visitor may lower.
     #[inline(always)]
-    pub fn walk(&self, mut ray: Ray, mut visit: impl FnMut(usize, &mut Ray) -> ControlFlow<()>) -> ControlFlow<()> {
-        let octant = octant(ray.direction);
-        let mut pending = Pending::default();
-        let mut next = (!self.boxes.nodes.is_empty()).then_some(UVec2::new(0, 1 << 31));
-        while let Some(mut group) = next {
-            // The children are in the order in which a ray of this octant meets them, first the highest bit.
-            let bit = 31 - group.y.leading_zeros();
-            group.y &= !(1 << bit);
-            let slot = (bit - 24) ^ (octant & 7);
-            let child = group.x + (group.y & !(u32::MAX << slot)).count_ones();
-            if group.y & INNER != 0 {
-                pending.push(group);
-            }
-            let node = &self.boxes.nodes[child as usize];
-            let hits = node.intersect_ray(&ray, octant);
-            let mut leaves = hits & !INNER;
-            while leaves != 0 {
-                let bit = 31 - leaves.leading_zeros();
-                leaves &= !(1 << bit);
-                visit((node.primitive_base_idx + bit) as usize, &mut ray)?;
-            }
-            let inner = hits & INNER;
-            next = if inner != 0 {
-                Some(UVec2::new(node.child_base_idx, inner | u32::from(node.imask)))
+    pub fn walk<V: Visitor>(
+        &self,
+        vectors: impl Vectors,
+        ray: &BoxRay,
+        limit: f32,
+        visitor: &mut V,
+    ) -> ControlFlow<()> {
+        let mut limit = limit;
+        let mut pending = Pending::new();
+        // Not a part of `pending`, which cannot be in registers.
+        let mut count = 0;
+        let mut next = 0;
+        while !self.nodes.is_empty() {
+            if next & LEAF != 0 {
+                limit = visitor.visit(next & !LEAF)?;
             } else {
-                pending.pop()
-            };
+                let node = &self.nodes[next as usize];
+                let (near, met) = vectors.boxes(node, ray, limit);
+                if met != 0 {
+                    let entry = |k| entry(if V::ORDERED { near[k] } else { 0.0 }, node.children[k]);
+                    next = pending.all_but_one(&mut count, met, entry);
+                    continue;
+                }
+            }
+            let Some(nearer) = pending.nearer(&mut count, limit) else { break };
+            next = nearer;
         }
         ControlFlow::Continue(())
     }
 }
 
-/// The order in which a ray meets the children of a node, as obvhs codes it.
-fn octant(direction: Vec3A) -> u32 {
-    let forward = direction.cmpge(Vec3A::ZERO).bitmask();
-    let bits = (forward & 1) << 2 | (forward & 2) | (forward & 4) >> 2;
-    bits * 0x0101_0101
+/// A child and where the ray enters its box: in the order of the distances, which are positive.
+#[inline(always)]
+fn entry(near: f32, child: u32) -> u64 {
+    u64::from(near.to_bits()) << 32 | u64::from(child)
 }
 
-/// Nodes that are still to be visited: the first ones without asking for memory.
+/// Children that are still to be visited, the first ones without asking for memory.
 struct Pending {
-    near: [UVec2; Pending::NEAR],
-    count: usize,
-    far: Vec<UVec2>,
-}
-
-impl Default for Pending {
-    fn default() -> Self {
-        Pending { near: [UVec2::ZERO; Pending::NEAR], count: 0, far: Vec::new() }
-    }
+    first: [u64; Pending::FIRST],
+    others: Vec<u64>,
 }
 
 impl Pending {
-    const NEAR: usize = 32;
+    const FIRST: usize = 64;
 
     #[inline(always)]
-    fn push(&mut self, group: UVec2) {
-        if self.count < Self::NEAR {
-            self.near[self.count] = group;
-            self.count += 1;
-        } else {
-            self.far.push(group);
-        }
+    fn new() -> Pending {
+        Pending { first: [0; Pending::FIRST], others: Vec::new() }
     }
 
     #[inline(always)]
-    fn pop(&mut self) -> Option<UVec2> {
-        if self.count == Self::NEAR
-            && let Some(group) = self.far.pop()
-        {
-            return Some(group);
+    fn push(&mut self, count: &mut usize, entry: u64) {
+        match self.first.get_mut(*count) {
+            Some(place) => *place = entry,
+            None => self.push_other(entry),
         }
-        self.count = self.count.checked_sub(1)?;
-        self.near.get(self.count).copied()
+        *count += 1;
     }
-}
 
-/// The box of triangle `k`, larger by [`LEAST_PADDING`] to [`PADDING`].
-fn padded_box(k: usize, corners: &[Vec3; 3], diagonal: f32) -> Aabb {
-    let bits = crate::random::mix(k as u64 + 1);
-    let share = |i: u32| (bits >> (10 * i) & 1023) as f32 / 1024.0;
-    let pad = |i| {
-        let share = Vec3A::new(share(i), share(i + 1), share(i + 2));
-        (share * (PADDING - LEAST_PADDING) + LEAST_PADDING) * diagonal
-    };
-    let [a, b, c] = corners.map(Vec3A::from);
-    Aabb::new(a.min(b).min(c) - pad(0), a.max(b).max(c) + pad(3))
+    #[cold]
+    #[inline(never)]
+    fn push_other(&mut self, entry: u64) {
+        self.others.push(entry);
+    }
+
+    #[inline(always)]
+    fn pop(&mut self, count: &mut usize) -> Option<u64> {
+        *count = count.checked_sub(1)?;
+        self.first.get(*count).copied().or_else(|| self.others.pop())
+    }
+
+    /// The last child that the ray enters no farther than the limit.
+    #[inline(always)]
+    fn nearer(&mut self, count: &mut usize, limit: f32) -> Option<u32> {
+        loop {
+            let entry = self.pop(count)?;
+            if f32::from_bits((entry >> 32) as u32) <= limit {
+                return Some(entry as u32);
+            }
+        }
+    }
+
+    /// Returns the first in order of the entries whose bits are set, and keeps the others.
+    #[inline(always)]
+    fn all_but_one(&mut self, count: &mut usize, mut bits: u32, entry: impl Fn(usize) -> u64) -> u32 {
+        let mut take = || {
+            let slot = bits.trailing_zeros() as usize & 7;
+            bits &= bits.wrapping_sub(1);
+            (entry(slot), bits != 0)
+        };
+        let (mut least, mut more) = take();
+        while more {
+            let other;
+            (other, more) = take();
+            self.push(count, least.max(other));
+            least = least.min(other);
+        }
+        least as u32
+    }
 }
 
 #[cfg(test)]
@@ -156,13 +166,23 @@ mod tests {
 
     /// No mesh tried so far makes a walk this deep.
     #[test]
-    fn pending_nodes_come_back_last_first_however_many_there_are() {
-        let mut pending = Pending::default();
-        let group = |k: usize| UVec2::new(k as u32, 1 << 31);
-        for count in [1, Pending::NEAR, Pending::NEAR + 1, 10 * Pending::NEAR] {
-            (0..count).for_each(|k| pending.push(group(k)));
-            (0..count).rev().for_each(|k| assert_eq!(pending.pop(), Some(group(k))));
-            assert_eq!(pending.pop(), None);
+    fn pending_children_come_back_last_first_however_many_there_are() {
+        let (mut pending, mut count) = (Pending::new(), 0);
+        for number in [1, Pending::FIRST, Pending::FIRST + 1, 10 * Pending::FIRST] {
+            (0..number).for_each(|k| pending.push(&mut count, k as u64));
+            (0..number).rev().for_each(|k| assert_eq!(pending.pop(&mut count), Some(k as u64)));
+            assert_eq!(pending.pop(&mut count), None);
         }
+    }
+
+    #[test]
+    fn the_nearest_child_is_next_and_those_beyond_the_limit_are_left_out() {
+        let (mut pending, mut count) = (Pending::new(), 0);
+        let near = [5.0, 2.0, 0.0, 7.0, 1.0, 3.0, 9.0, 4.0];
+        let next = pending.all_but_one(&mut count, 0b1010_1010, |k| entry(near[k], k as u32));
+        assert_eq!((next, count), (1, 3));
+        let mut left: Vec<u32> = std::iter::from_fn(|| pending.nearer(&mut count, 4.0)).collect();
+        left.sort();
+        assert_eq!(left, [5, 7]);
     }
 }

@@ -1,63 +1,102 @@
-//! The triangle test in float64.
+//! The triangle test in float64, and the four triangles of a leaf.
 
 use glam::{DVec3, Vec3};
+use std::array::from_fn;
 
-/// A ray sheared so that it runs along one axis: the triangle test is then two-dimensional. The axis is the one along
-/// which the ray's direction is largest; it is known when this is compiled, so that no component is looked up.
-pub(super) struct TriangleTest<const AXIS: usize> {
-    /// Components along the two other axes, then along this one.
-    origin: [f64; 3],
-    shear: [f64; 3],
+/// The triangles of a leaf: up to four.
+#[repr(align(32))]
+pub(super) struct Leaf {
+    /// By axis, then corner, then triangle. What is left over is a point, which no ray meets.
+    pub corners: [[[f32; 4]; 3]; 3],
+    /// Triangles of the mesh.
+    pub triangles: [u32; 4],
+}
+
+/// A ray sheared so that it runs along one axis, that along which its direction is largest: the triangle test is then
+/// two-dimensional.
+pub(super) struct TriangleTest {
+    /// The two other axes, then this one; so are the components below.
+    pub axes: [usize; 3],
+    pub origin: [f64; 3],
+    pub shear: [f64; 3],
 }
 
 /// Where a ray meets the plane of a triangle, within it.
 pub(super) struct Crossing {
     /// Of any sign.
     pub distance: f64,
-    /// Twice the areas opposite the corners, as seen along the axis; all of one sign.
+    /// Twice the areas opposite the corners, as seen along the axis; none has another sign than the others.
     areas: [f64; 3],
 }
 
-impl<const AXIS: usize> TriangleTest<AXIS> {
-    const OTHERS: [usize; 2] = [(AXIS + 1) % 3, (AXIS + 2) % 3];
-
-    pub fn new(origin: DVec3, direction: DVec3) -> Self {
-        let [x, y] = Self::OTHERS;
-        let along = direction[AXIS];
-        TriangleTest {
-            origin: [origin[x], origin[y], origin[AXIS]],
-            shear: [direction[x] / along, direction[y] / along, 1.0 / along],
-        }
-    }
-
-    /// The crossing, edges and corners included.
-    #[inline(always)]
-    pub fn intersect(&self, corners: &[Vec3; 3]) -> Option<Crossing> {
-        let [x, y] = Self::OTHERS;
-        let [a, b, c] = corners.map(|corner| {
-            let v = corner.to_array();
-            let z = f64::from(v[AXIS]) - self.origin[2];
-            let sheared = |k: usize, i: usize| f64::from(v[k]) - self.origin[i] - self.shear[i] * z;
-            [sheared(x, 0), sheared(y, 1), z]
+impl Leaf {
+    /// Holds one to four triangles, of which `corners` gives the corners.
+    pub fn new(triangles: &[u32], corners: impl Fn(u32) -> [Vec3; 3]) -> Leaf {
+        let triangle = |lane: usize| triangles.get(lane).copied().unwrap_or(triangles[0]);
+        let lanes: [[Vec3; 3]; 4] = from_fn(|lane| {
+            let [a, b, c] = corners(triangle(lane));
+            if lane < triangles.len() { [a, b, c] } else { [a; 3] }
         });
-        // Rounding keeps the order of the two products: none of the signs is ever wrong, at worst it is zero.
-        let u = c[0] * b[1] - c[1] * b[0];
-        let v = a[0] * c[1] - a[1] * c[0];
-        let w = b[0] * a[1] - b[1] * a[0];
-        if u.min(v).min(w) < 0.0 && u.max(v).max(w) > 0.0 {
-            return None;
-        }
-        let sum = u + v + w;
-        if sum == 0.0 {
-            return None; // seen edge-on
-        }
-        let distance = self.shear[2] * ((u * a[2] + v * b[2] + w * c[2]) / sum);
-        Some(Crossing { distance, areas: [u, v, w] })
+        let corners = from_fn(|axis| from_fn(|corner| from_fn(|lane| lanes[lane][corner][axis])));
+        Leaf { corners, triangles: from_fn(triangle) }
     }
+
+    /// The corners of one of the triangles.
+    pub fn triangle(&self, lane: usize) -> [DVec3; 3] {
+        from_fn(|corner| DVec3::from_array(from_fn(|axis| f64::from(self.corners[axis][corner][lane]))))
+    }
+}
+
+impl TriangleTest {
+    #[inline(always)]
+    pub fn new(origin: DVec3, direction: DVec3) -> Self {
+        let [x, y, z] = direction.abs().to_array();
+        let axes = if z > x && z > y {
+            [0, 1, 2]
+        } else if y > x {
+            [2, 0, 1]
+        } else {
+            [1, 2, 0]
+        };
+        let [x, y, z] = axes.map(|axis| direction[axis]);
+        TriangleTest { axes, origin: axes.map(|axis| origin[axis]), shear: [x / z, y / z, 1.0 / z] }
+    }
+
+    /// Whether the line of the ray meets a triangle, edges and corners included. Not if it is seen edge-on.
+    #[inline(always)]
+    pub fn meets(&self, leaf: &Leaf, lane: usize) -> bool {
+        let areas = areas(&self.sheared(leaf, lane));
+        areas.iter().any(|x| *x < 0.0) != areas.iter().any(|x| *x > 0.0)
+    }
+
+    /// The crossing with a triangle that is met.
+    #[inline(always)]
+    pub fn crossing(&self, leaf: &Leaf, lane: usize) -> Crossing {
+        let corners = self.sheared(leaf, lane);
+        let areas = areas(&corners);
+        let [u, v, w] = areas;
+        let [a, b, c] = corners.map(|corner| corner[2]);
+        Crossing { distance: self.shear[2] * ((u * a + v * b + w * c) / (u + v + w)), areas }
+    }
+
+    #[inline(always)]
+    fn sheared(&self, leaf: &Leaf, lane: usize) -> [[f64; 3]; 3] {
+        from_fn(|corner| {
+            let [x, y, z] = from_fn(|k| f64::from(leaf.corners[self.axes[k]][corner][lane]) - self.origin[k]);
+            [x - self.shear[0] * z, y - self.shear[1] * z, z]
+        })
+    }
+}
+
+/// Rounding keeps the order of the two products: none of the signs is ever wrong, at worst it is zero.
+#[inline(always)]
+fn areas([a, b, c]: &[[f64; 3]; 3]) -> [f64; 3] {
+    [c[0] * b[1] - c[1] * b[0], a[0] * c[1] - a[1] * c[0], b[0] * a[1] - b[1] * a[0]]
 }
 
 impl Crossing {
     /// Barycentric weights.
+    #[inline(always)]
     pub fn weights(&self) -> [f64; 3] {
         let sum = self.areas.iter().sum::<f64>();
         self.areas.map(|area| area / sum)

@@ -83,6 +83,71 @@ fn a_tangle_of_triangles() {
     }
 }
 
+fn bits(hit: Option<Hit>) -> Option<(u32, u64, [u64; 3])> {
+    hit.map(|h| (h.triangle, h.distance.to_bits(), h.weights.map(f64::to_bits)))
+}
+
+/// At the distance of the hit itself too, to the last bit, and from outside the scene's box.
+#[test]
+fn a_limit_only_decides_whether_the_closest_hit_counts() {
+    for radius in [1e-3, 1.0, 1e3] {
+        let mesh = bumpy(4, radius);
+        let rays = Rays::new(&mesh);
+        for k in 0..4000 {
+            let item = random(k);
+            let from = direction(item, 0) * (radius * [0.7, 1.5, 40.0, 1e9][(k % 4) as usize]);
+            let direction = (direction(item, 2) * (radius * 0.7) - from).normalize();
+            let hit = rays.closest(from, direction, None).expect("aimed inside");
+            let within = |limit: f64| bits(rays.closest_within(from, direction, limit, None));
+            for limit in [hit.distance, hit.distance.next_up(), 1.1 * hit.distance, f64::INFINITY] {
+                assert_eq!(within(limit), bits(Some(hit)), "limit {limit}, hit at {}", hit.distance);
+            }
+            for limit in [hit.distance.next_down(), 0.9 * hit.distance, 0.0, -1.0, f64::NEG_INFINITY, f64::NAN] {
+                assert_eq!(within(limit), None, "limit {limit}, hit at {}", hit.distance);
+            }
+        }
+    }
+}
+
+/// Leaves that are not full, and trees of one leaf.
+#[test]
+fn each_of_a_few_triangles_is_found_and_nothing_else() {
+    for count in 1..=20 {
+        let points: Vec<DVec3> = (0..count).flat_map(|k| [[0, 0], [1, 0], [0, 1]].map(|at| stair(k, at))).collect();
+        let triangles: Vec<[u32; 3]> = (0..count).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+        let rays = Rays::new(&mesh(&points, &triangles));
+        for k in 0..count {
+            let over = (stair(k, [1, 0]) + stair(k, [0, 1])) / 2.0;
+            for (shift, found) in [(-1e-6, Some(k)), (1e-6, None)] {
+                let origin = over + DVec3::new(shift, shift, 1.0);
+                let hit = rays.closest(origin, DVec3::NEG_Z, None);
+                assert_eq!(hit.map(|h| h.triangle), found, "triangle {k} of {count}, {shift}");
+                assert_eq!(rays.visible(origin, DVec3::NEG_Z, f64::INFINITY, None), found.is_none());
+                let from = rays.closest(origin, DVec3::NEG_Z, Some(k));
+                assert!(from.is_none(), "a ray does not meet the triangle that it starts on");
+            }
+        }
+    }
+}
+
+/// Corner of the k-th of some triangles beside each other.
+fn stair(k: u32, [x, y]: [u32; 2]) -> DVec3 {
+    DVec3::new(f64::from(2 * k + x), f64::from(y), f64::from(k % 3))
+}
+
+/// However the tree was walked.
+#[test]
+fn of_triangles_equally_near_the_first_is_named() {
+    let wheel: Vec<DVec3> = (0..12).map(|k| DVec3::new(f64::from(k).cos(), f64::from(k).sin(), 1.0)).collect();
+    let points = [vec![DVec3::Z * 0.5], wheel].concat();
+    let triangles: Vec<[u32; 3]> = (0..24).map(|k| [0, 1 + k * 5 % 12, 1 + (k * 5 + 5) % 12]).collect();
+    let rays = Rays::new(&mesh(&points, &triangles));
+    for from_below in [0.0, 0.25, 0.4999] {
+        let hit = rays.closest(DVec3::Z * from_below, DVec3::Z, None).expect("the hub is hit");
+        assert_eq!((hit.triangle, hit.distance), (0, 0.5 - from_below));
+    }
+}
+
 /// Sheets so near to each other and to the ray's start that their boxes are one.
 #[test]
 fn layers_much_thinner_than_the_boxes() {

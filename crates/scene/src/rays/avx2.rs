@@ -1,0 +1,94 @@
+//! AVX2: half as many rays again per second as the plain version.
+//!
+//! The one invariant: an [`Avx2`] exists only on a processor that has the features, because [`Avx2::detect`] alone
+//! makes it. Loads and stores go through references to arrays of their size and need no alignment.
+#![allow(unsafe_code)]
+
+use super::{
+    ray::BoxRay,
+    tree::Node,
+    triangle::{Leaf, TriangleTest},
+    vectors::{Query, Vectors},
+};
+use std::arch::x86_64::*;
+
+/// Says that the processor has AVX2 and BMI1.
+#[derive(Clone, Copy)]
+pub(super) struct Avx2(());
+
+impl Avx2 {
+    #[inline(always)]
+    pub fn detect() -> Option<Avx2> {
+        (is_x86_feature_detected!("avx2") && is_x86_feature_detected!("bmi1")).then_some(Avx2(()))
+    }
+
+    /// Runs a query that is compiled for these features.
+    #[inline(always)]
+    pub fn run<Q: Query>(self, query: Q) -> Q::Found {
+        // SAFETY: the processor has the features, or `self` would not exist.
+        unsafe { run(query, self) }
+    }
+}
+
+#[target_feature(enable = "avx2,bmi1")]
+fn run<Q: Query>(query: Q, vectors: Avx2) -> Q::Found {
+    query.run(vectors)
+}
+
+impl Vectors for Avx2 {
+    #[inline(always)]
+    fn boxes(self, node: &Node, ray: &BoxRay, limit: f32) -> ([f32; 8], u32) {
+        // SAFETY: the processor has the features, or `self` would not exist.
+        unsafe { boxes(node, ray, limit) }
+    }
+
+    #[inline(always)]
+    fn triangles(self, leaf: &Leaf, test: &TriangleTest) -> u32 {
+        // SAFETY: as above.
+        unsafe { triangles(leaf, test) }
+    }
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+fn boxes(node: &Node, ray: &BoxRay, limit: f32) -> ([f32; 8], u32) {
+    // SAFETY: eight numbers are read from an array of eight.
+    let load = |values: &[f32; 8]| unsafe { _mm256_loadu_ps(values.as_ptr()) };
+    let (mut near, mut far) = (_mm256_setzero_ps(), _mm256_set1_ps(limit));
+    for axis in 0..3 {
+        let (origin, inverse) = (_mm256_set1_ps(ray.origin[axis]), _mm256_set1_ps(ray.inverse[axis]));
+        let [first, last] = node.planes(axis, ray).map(|p| _mm256_mul_ps(_mm256_sub_ps(load(p), origin), inverse));
+        // Of a number and what is none these return the second argument.
+        near = _mm256_max_ps(first, near);
+        far = _mm256_min_ps(last, far);
+    }
+    let mut entries = [0.0; 8];
+    // SAFETY: eight numbers are written to an array of eight.
+    unsafe { _mm256_storeu_ps(entries.as_mut_ptr(), near) };
+    (entries, _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(near, far)) as u32)
+}
+
+/// [`TriangleTest::meets`] for four triangles.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn triangles(leaf: &Leaf, test: &TriangleTest) -> u32 {
+    // SAFETY: four numbers are read from an array of four.
+    let load = |values: &[f32; 4]| unsafe { _mm256_cvtps_pd(_mm_loadu_ps(values.as_ptr())) };
+    let [origin_x, origin_y, origin_z] = test.origin.map(|x| _mm256_set1_pd(x));
+    let [shear_x, shear_y, _] = test.shear.map(|x| _mm256_set1_pd(x));
+    let [xs, ys, zs] = test.axes.map(|axis| &leaf.corners[axis]);
+    let corner = |k: usize| {
+        let z = _mm256_sub_pd(load(&zs[k]), origin_z);
+        let x = _mm256_sub_pd(_mm256_sub_pd(load(&xs[k]), origin_x), _mm256_mul_pd(shear_x, z));
+        let y = _mm256_sub_pd(_mm256_sub_pd(load(&ys[k]), origin_y), _mm256_mul_pd(shear_y, z));
+        [x, y]
+    };
+    let (a, b, c) = (corner(0), corner(1), corner(2));
+    let area = |p: [__m256d; 2], q: [__m256d; 2]| _mm256_sub_pd(_mm256_mul_pd(p[0], q[1]), _mm256_mul_pd(p[1], q[0]));
+    let (u, v, w) = (area(c, b), area(a, c), area(b, a));
+    let low = _mm256_min_pd(_mm256_min_pd(u, v), w);
+    let high = _mm256_max_pd(_mm256_max_pd(u, v), w);
+    let below = _mm256_cmp_pd::<_CMP_LT_OQ>(low, _mm256_setzero_pd());
+    let above = _mm256_cmp_pd::<_CMP_GT_OQ>(high, _mm256_setzero_pd());
+    _mm256_movemask_pd(_mm256_xor_pd(below, above)) as u32
+}

@@ -1,0 +1,115 @@
+//! The two queries as walks through the tree.
+
+use super::{
+    Hit, Rays,
+    ray::Ray,
+    tree::Visitor,
+    triangle::TriangleTest,
+    vectors::{Query, Vectors},
+};
+use std::ops::ControlFlow;
+
+/// The nearest hit no farther than `limit`, of those equally near the one with the lowest number. Its distance is that
+/// from the ray's start, in scaled units.
+pub(super) struct Closest<'a> {
+    pub rays: &'a Rays,
+    pub ray: &'a Ray,
+    pub limit: f64,
+}
+
+/// Whether anything is hit before `limit`.
+pub(super) struct Occluded<'a> {
+    pub rays: &'a Rays,
+    pub ray: &'a Ray,
+    pub limit: f64,
+}
+
+impl Query for Closest<'_> {
+    type Found = Option<Hit>;
+
+    #[inline(always)]
+    fn run(self, vectors: impl Vectors) -> Option<Hit> {
+        let Closest { rays, ray, limit } = self;
+        let test = TriangleTest::new(ray.origin, ray.direction);
+        let mut search = SearchClosest { vectors, rays, ray, test, limit, best: None };
+        let walk = rays.tree.walk(vectors, &ray.for_boxes(), limit as f32, &mut search);
+        debug_assert!(walk.is_continue());
+        search.best
+    }
+}
+
+struct SearchClosest<'a, V> {
+    vectors: V,
+    rays: &'a Rays,
+    ray: &'a Ray,
+    test: TriangleTest,
+    limit: f64,
+    best: Option<Hit>,
+}
+
+impl<V: Vectors> Visitor for SearchClosest<'_, V> {
+    const ORDERED: bool = true;
+
+    #[inline(always)]
+    fn visit(&mut self, leaf: u32) -> ControlFlow<(), f32> {
+        let leaf = &self.rays.leaves[leaf as usize];
+        for lane in lanes(self.vectors.triangles(leaf, &self.test)) {
+            let (crossing, triangle) = (self.test.crossing(leaf, lane), leaf.triangles[lane]);
+            let distance = crossing.distance;
+            // The order in which leaves are visited must not show.
+            let first =
+                distance < self.limit || distance == self.limit && self.best.is_none_or(|b| triangle < b.triangle);
+            if first && self.rays.counts(distance, leaf, lane, self.ray) {
+                self.limit = distance;
+                self.best = Some(Hit { distance, triangle, weights: crossing.weights() });
+            }
+        }
+        ControlFlow::Continue(self.limit as f32)
+    }
+}
+
+impl Query for Occluded<'_> {
+    type Found = bool;
+
+    #[inline(always)]
+    fn run(self, vectors: impl Vectors) -> bool {
+        let Occluded { rays, ray, limit } = self;
+        let test = TriangleTest::new(ray.origin, ray.direction);
+        let mut search = SearchAny { vectors, rays, ray, test, limit };
+        rays.tree.walk(vectors, &ray.for_boxes(), limit as f32, &mut search).is_break()
+    }
+}
+
+struct SearchAny<'a, V> {
+    vectors: V,
+    rays: &'a Rays,
+    ray: &'a Ray,
+    test: TriangleTest,
+    limit: f64,
+}
+
+impl<V: Vectors> Visitor for SearchAny<'_, V> {
+    const ORDERED: bool = false;
+
+    #[inline(always)]
+    fn visit(&mut self, leaf: u32) -> ControlFlow<(), f32> {
+        let leaf = &self.rays.leaves[leaf as usize];
+        for lane in lanes(self.vectors.triangles(leaf, &self.test)) {
+            let distance = self.test.crossing(leaf, lane).distance;
+            if distance < self.limit && self.rays.counts(distance, leaf, lane, self.ray) {
+                return ControlFlow::Break(());
+            }
+        }
+        ControlFlow::Continue(self.limit as f32)
+    }
+}
+
+/// The set bits of four.
+#[inline(always)]
+fn lanes(mut bits: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = bits.trailing_zeros() as usize;
+        bits &= bits.wrapping_sub(1);
+        (lane < 4).then_some(lane)
+    })
+}
