@@ -2,9 +2,9 @@
 
 use crate::{
     Filter, Input, Rendered, Session, Settings, calibration,
-    estimator::{Estimator, Radial, Rule},
+    estimator::{Estimator, Radial},
     film::{Errors, Pixel, PixelSum},
-    path::{Body, Counts, PathIndex, Renderer, Worker},
+    path::{Body, Counts, Method, PathIndex, Renderer, Worker},
     samples::LitSamples,
 };
 use bssrdf::lanes::LaneModel;
@@ -148,15 +148,15 @@ fn bodies<'a, M: LaneModel>(input: &Input<'a>, settings: &Settings) -> Vec<Optio
     let mut bodies: Vec<Option<Body<M>>> = input.scene.materials.iter().map(|_| None).collect();
     for (sampled, medium) in input.cloud.meta().materials.iter().zip(input.media) {
         let model = settings.model.of(medium);
-        let rule = match settings.estimator {
-            Estimator::Roulette(rule) => rule,
-            Estimator::Exhaustive | Estimator::Cut { .. } => Rule::Mixture,
+        let method = match settings.estimator {
+            Estimator::Exhaustive => Method::Exhaustive,
+            Estimator::Roulette(rule) => Method::Roulette(rule.rates(model.transport())),
+            Estimator::Cut { .. } => Method::Cut(Radial::new(medium, &*model)),
         };
         bodies[sampled.index as usize] = Some(Body {
             model: M::new(medium),
             unscattered: settings.model.unscattered_extinction(medium),
-            rates: rule.rates(model.transport()),
-            radial: Radial::new(medium, &*model),
+            method,
             calibration: 1.0,
             halves: sampled.halves.map(|half| LitSamples::new(input.cloud, &half, medium.eta)),
             medium: medium.clone(),

@@ -19,12 +19,18 @@ pub struct Body<'a, M> {
     pub model: M,
     /// `σ̃_t` of light that is not scattered, 1/m.
     pub unscattered: [f64; 3],
-    pub rates: Rates,
-    pub radial: Radial,
+    pub method: Method,
     /// What the accuracy asked of the cut is multiplied by, see [`crate::calibration`].
     pub calibration: f64,
     /// The two independent halves of the cloud.
     pub halves: [LitSamples<'a>; 2],
+}
+
+/// How the samples of a body are summed.
+pub enum Method {
+    Exhaustive,
+    Roulette(Rates),
+    Cut(Radial),
 }
 
 /// Everything a path needs; shared by all threads.
@@ -456,12 +462,12 @@ impl<M: LaneModel> Renderer<'_, M> {
         if samples.is_empty() {
             return Sum::default();
         }
-        match self.estimator {
-            Estimator::Exhaustive => simd::dispatch(Exhaustive { model, samples, exit }),
-            Estimator::Roulette(_) => simd::dispatch(Roulette { model, samples, exit, rates: body.rates }),
-            Estimator::Cut { .. } => {
+        match &body.method {
+            Method::Exhaustive => simd::dispatch(Exhaustive { model, samples, exit }),
+            Method::Roulette(rates) => simd::dispatch(Roulette { model, samples, exit, rates: *rates }),
+            Method::Cut(radial) => {
                 let accuracy = (self.accuracy(share) * body.calibration) as f32;
-                simd::dispatch(Cut { model, samples, radial: &body.radial, exit, accuracy, scratch })
+                simd::dispatch(Cut { model, samples, radial, exit, accuracy, scratch })
             }
         }
     }

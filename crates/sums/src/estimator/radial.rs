@@ -33,20 +33,17 @@ impl Radial {
     pub fn new(medium: &Medium, model: &dyn Bssrdf) -> Radial {
         let table = || -> Box<[f32; ENTRIES]> { Box::new([0.0; ENTRIES]) };
         let mut radial = Radial { value: table(), disc: table(), slope: table(), scatter: table() };
-        let directions = directions(medium.eta);
         let (nearest, farthest) = reach(medium, model);
+        let known = variations(model, &directions(medium.eta), nearest, farthest);
         let mut slope = 0.0f64;
-        let mut last = Variation::default();
         for k in (0..ENTRIES).rev() {
             let distance = f64::from(middle(k)).sqrt();
             if distance > farthest || !distance.is_finite() {
                 continue;
             }
-            if distance > nearest {
-                last = variation(model, distance, &directions);
-            }
-            slope = slope.max(last.slope);
-            (radial.value[k], radial.scatter[k]) = (last.value as f32, last.scatter as f32);
+            let here = interpolate(&known, (distance / nearest).ln() / STEP.ln());
+            slope = slope.max(here.slope);
+            (radial.value[k], radial.scatter[k]) = (here.value as f32, here.scatter as f32);
             radial.slope[k] = slope as f32;
         }
         radial.average();
@@ -134,18 +131,40 @@ fn on_plane(model: &dyn Bssrdf, channel: usize, distance: f64, directions: &[Vec
     directions.iter().flatten().map(value).collect()
 }
 
-fn variation(model: &dyn Bssrdf, distance: f64, directions: &[Vec<DVec3>; 8]) -> Variation {
-    const STEP: f64 = 1.05;
+/// Ratio of the distances that the model is evaluated at.
+const STEP: f64 = 1.1;
+
+/// The variation at `nearest`, and at every [`STEP`] from there.
+fn variations(model: &dyn Bssrdf, directions: &[Vec<DVec3>; 8], nearest: f64, farthest: f64) -> Vec<Variation> {
+    let steps = ((farthest / nearest).ln() / STEP.ln()).ceil().clamp(1.0, 2000.0) as i32;
+    let at = |step: i32| {
+        let distance = nearest * STEP.powi(step);
+        (distance, [0, 1, 2].map(|channel| on_plane(model, channel, distance, directions)))
+    };
+    let rows: Vec<(f64, [Vec<f64>; 3])> = (-1..=steps + 1).map(at).collect();
+    rows.windows(3).map(|rows| variation(&rows[0], &rows[1], &rows[2])).collect()
+}
+
+/// Between two known ones by the geometric mean.
+fn interpolate(known: &[Variation], place: f64) -> Variation {
+    let place = place.clamp(0.0, (known.len() - 1) as f64);
+    let (low, share) = (place as usize, place.fract());
+    let (a, b) = (&known[low], &known[(low + 1).min(known.len() - 1)]);
+    let mean = |a: f64, b: f64| if a > 0.0 && b > 0.0 { a * (b / a).powf(share) } else { a };
+    Variation { value: mean(a.value, b.value), slope: mean(a.slope, b.slope), scatter: mean(a.scatter, b.scatter) }
+}
+
+/// What three rows of values say of the distance of the middle one.
+fn variation(near: &(f64, [Vec<f64>; 3]), here: &(f64, [Vec<f64>; 3]), far: &(f64, [Vec<f64>; 3])) -> Variation {
     let mut sum = Variation::default();
+    let (distance, width) = (here.0, far.0 - near.0);
     for channel in 0..3 {
-        let at = |d| on_plane(model, channel, d, directions);
-        let (near, here, far) = (at(distance / STEP), at(distance), at(distance * STEP));
+        let (near, here, far) = (&near.1[channel], &here.1[channel], &far.1[channel]);
         let n = here.len().max(1) as f64;
         let mean = here.iter().sum::<f64>() / n;
-        let width = distance * (STEP - 1.0 / STEP);
-        let radial = near.iter().zip(&far).map(|(a, b)| ((a - b) / width).powi(2)).sum::<f64>() / n;
+        let radial = near.iter().zip(far).map(|(a, b)| ((a - b) / width).powi(2)).sum::<f64>() / n;
         // The next azimuth lies as many directions further on as an azimuth has.
-        let turned = here.iter().cycle().skip(here.len() / 8).zip(&here);
+        let turned = here.iter().cycle().skip(here.len() / 8).zip(here);
         let across = turned.take(here.len()).map(|(a, b)| ((a - b) / (PI / 4.0 * distance)).powi(2)).sum::<f64>() / n;
         sum.value += mean;
         sum.slope += (0.5 * (radial + across)).sqrt();
