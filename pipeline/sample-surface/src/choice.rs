@@ -29,6 +29,8 @@ pub struct Chosen {
     /// `1/(N A_j)` for the note's rule, `1/A` by area.
     pub pdf_area: f64,
     pub probability: f64,
+    /// Probability of all triangles before it in the order.
+    pub before: f64,
     /// Where in its interval the number lay that chose it: uniform in [0, 1).
     pub rest: f64,
 }
@@ -73,7 +75,7 @@ impl TriangleChoice {
                 let j = ((xi * n) as usize).min(last);
                 let rest = (xi * n - j as f64).clamp(0.0, BELOW_ONE);
                 let pdf_area = 1.0 / (n * self.areas[j]);
-                Chosen { triangle: self.triangles[j], pdf_area, probability: 1.0 / n, rest }
+                Chosen { triangle: self.triangles[j], pdf_area, probability: 1.0 / n, before: j as f64 / n, rest }
             }
             Choice::Area => {
                 let area = self.area();
@@ -82,11 +84,12 @@ impl TriangleChoice {
                 let before = if j == 0 { 0.0 } else { self.area_so_far[j - 1] };
                 let own = self.area_so_far[j] - before;
                 let rest = if own > 0.0 { ((target - before) / own).clamp(0.0, BELOW_ONE) } else { 0.0 };
-                Chosen { triangle: self.triangles[j], pdf_area: 1.0 / area, probability: own / area, rest }
+                let (probability, before) = (own / area, before / area);
+                Chosen { triangle: self.triangles[j], pdf_area: 1.0 / area, probability, before, rest }
             }
         }
     }
 }
 
 /// The largest number below 1.
-const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
+pub const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;

@@ -1,7 +1,7 @@
 //! How many samples are enough: the error of the light that leaves the surface, by what the two halves of a cloud differ
 //! by. The one place where phase one knows a medium; the samples themselves depend on their number alone.
 
-use crate::{Numbers, Pattern, Plan, SampleError, Sampled, Settings, TriangleChoice, sample};
+use crate::{Numbers, Pattern, Place, Plan, SampleError, Sampled, Settings, TriangleChoice, sample};
 use bssrdf::{
     Medium, Model,
     lanes::{DirectionalLanes, LaneModel},
@@ -67,16 +67,16 @@ pub fn relative_error(scene: &Scene, sampled: &Sampled, settings: &Settings, pla
     let choice = TriangleChoice::new(&scene.mesh, settings.choice, |m| plan.materials.contains(&m));
     // The points have nothing to do with the samples: another seed.
     let numbers = Numbers::new(Pattern::Stratified, !settings.options.seed, POINTS);
-    let measure = |index: u64| {
-        let place = numbers.place(&scene.mesh, &choice, index);
+    let places: Vec<Place> = numbers.places(&scene.mesh, &choice, 0..POINTS).map(|(_, place)| place).collect();
+    let measure = |(index, place): (usize, &Place)| {
         let point = scene.mesh.point(place.triangle, place.weights, settings.normals);
-        let sum = |half| radiance(sampled, half, &point, index, (&model, &radial, goal));
+        let sum = |half| radiance(sampled, half, &point, index as u64, (&model, &radial, goal));
         let [one, two] = [sum(0), sum(1)];
         // Points are not spread by area under the note's choice of triangles.
         let weight = 1.0 / place.pdf_area;
         (weight * (one - two).length_squared() / 4.0, weight * ((one + two) / 2.0).length_squared())
     };
-    let measured: Vec<(f64, f64)> = (0..POINTS).into_par_iter().map(measure).collect();
+    let measured: Vec<(f64, f64)> = places.par_iter().enumerate().map(measure).collect();
     let (variance, power) = measured.iter().fold((0.0, 0.0), |sum, m| (sum.0 + m.0, sum.1 + m.1));
     if power > 0.0 { (variance / power).sqrt() } else { 0.0 }
 }

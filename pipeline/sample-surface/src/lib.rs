@@ -148,8 +148,7 @@ pub fn sample(
     let portion = |chunk: u64| {
         let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(settings.samples);
         progress(range.end - range.start);
-        let places = range.map(|k| ((k & 1) as usize, numbers.place(&scene.mesh, &choice, k)));
-        draw_portion(scene, rays, settings.normals, plan, places)
+        draw_portion(scene, rays, settings.normals, plan, numbers.places(&scene.mesh, &choice, range))
     };
     let portions: Vec<Portion> = (0..settings.samples.div_ceil(CHUNK)).into_par_iter().map(portion).collect();
     let not_finite = portions.iter().map(|p| p.not_finite).sum();

@@ -160,8 +160,8 @@ impl Cloud {
             return Err(Error::invalid(path, "a sample is not finite, or its flux negative; sample again"));
         }
         let numbers: &[f32] = bytemuck::cast_slice(self.nodes());
-        if !numbers.iter().all(|x| x.is_finite()) {
-            return Err(Error::invalid(path, "a node of the tree is not finite; sample again"));
+        if !numbers.iter().all(|x| x.is_finite()) || !self.nodes().iter().all(|n| n.flux >= 0.0) {
+            return Err(Error::invalid(path, "a node of the tree is not finite, or its flux negative; sample again"));
         }
         Ok(())
     }

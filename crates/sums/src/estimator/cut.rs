@@ -170,7 +170,10 @@ impl<M: LaneModel> Cut<'_, M> {
             let depth = first_leaf.ilog2() - node.id.ilog2();
             let first = ((u64::from(node.id) << depth) - first_leaf) * TILE as u64;
             let end = (((u64::from(node.id) + 1) << depth) - first_leaf) * TILE as u64;
-            let count = end.min(self.samples.len() as u64) - first;
+            // A node beyond the last sample has no flux, unless the file was forged.
+            let Some(count) = end.min(self.samples.len() as u64).checked_sub(first).filter(|count| *count > 0) else {
+                continue;
+            };
             let xi = u64::from(random_bits(node.id, self.exit.key));
             let index = (first + ((xi * count) >> 32)) as u32;
             self.samples.prefetch(index);

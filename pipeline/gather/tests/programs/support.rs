@@ -40,6 +40,16 @@ impl Bench {
         command.current_dir(self.folder.path()).args(arguments).output().expect("the program starts")
     }
 
+    /// Runs a program with so many KiB of address space, where there is a shell to ask for that.
+    pub fn run_within(&self, kibibytes: &str, name: &str, arguments: &[&str]) -> Output {
+        if !Path::new("/bin/sh").exists() {
+            return self.run(name, arguments);
+        }
+        let mut command = Command::new("/bin/sh");
+        command.args(["-c", "ulimit -v \"$1\" && shift && exec \"$@\"", "sh", kibibytes]).arg(program(name));
+        command.current_dir(self.folder.path()).args(arguments).output().expect("the program starts")
+    }
+
     /// Runs a program that must succeed; returns its stdout.
     pub fn succeed(&self, name: &str, arguments: &[&str]) -> String {
         let output = self.run(name, arguments);
