@@ -4,6 +4,8 @@
 
 #[path = "stability/cameras.rs"]
 mod cameras;
+#[path = "stability/clouds.rs"]
+mod clouds;
 #[path = "stability/document.rs"]
 mod document;
 #[path = "stability/evaluate.rs"]
@@ -12,6 +14,10 @@ mod evaluate;
 mod files;
 #[path = "stability/fireflies.rs"]
 mod fireflies;
+#[path = "stability/forge.rs"]
+mod forge;
+#[path = "stability/hostile.rs"]
+mod hostile;
 #[path = "stability/interface.rs"]
 mod interface;
 #[path = "stability/lights.rs"]

@@ -5,10 +5,20 @@
 //! the decisions once in a thousand runs (`support::FALSE_ALARM_RATE`). The feature `slow` runs the same statistics
 //! with more samples.
 
+#[path = "statistics/cut.rs"]
+mod cut;
+#[path = "statistics/error_bars.rs"]
+mod error_bars;
+#[path = "statistics/knob.rs"]
+mod knob;
 #[path = "statistics/means.rs"]
 mod means;
 #[path = "statistics/paths.rs"]
 mod paths;
+#[path = "statistics/patterns.rs"]
+mod patterns;
+#[path = "statistics/picks.rs"]
+mod picks;
 #[path = "statistics/reflectance.rs"]
 mod reflectance;
 #[path = "statistics/roulette.rs"]
@@ -17,3 +27,5 @@ mod roulette;
 mod sampling;
 #[path = "statistics/slab.rs"]
 mod slab;
+#[path = "statistics/spread.rs"]
+mod spread;

@@ -1,12 +1,12 @@
 //! A sphere under parallel light, seen from afar: brute-force scattering beside the models.
 
-use support::walk::{free_path, scatter};
 use bssrdf::{DVec3, Medium, fresnel};
 use gather::estimator::{Estimator, Rule};
 use glam::DVec2;
 use rayon::prelude::*;
 use scene::Camera;
 use std::f64::consts::{PI, TAU};
+use support::walk::{free_path, scatter};
 use support::{
     pipeline::{Lit, Point},
     random::Random,

@@ -9,13 +9,14 @@ use crate::{
     picture::{SIZE, SUBSURFACE, Shot, assert_close_at, assert_paired, sum},
 };
 use bssrdf::Medium;
-use formats::cloud::{Cloud, Sample, Samples};
+use formats::cloud::{Cloud, Sample};
 use glam::{DVec3, Vec3};
-use sample_surface::{Choice, Sampled};
+use sample_surface::Choice;
 use serde_json::json;
 use support::{
     meshes::World,
     pipeline::{MODELS, filed, sampled_with},
+    planted::{planted, stored},
 };
 
 const MIRROR: DVec3 = DVec3::new(-1.0, 1.0, 1.0);
@@ -31,12 +32,13 @@ fn matched(medium: &Medium) -> Medium {
 
 /// The mirror image of a cloud.
 fn mirror(cloud: &Cloud) -> Cloud {
-    let mut samples = Samples::default();
-    for s in cloud.samples(0, cloud.len()) {
+    let image = |s: Sample| {
         let position = s.position * Vec3::new(-1.0, 1.0, 1.0);
-        samples.push(&Sample { position, normal: s.normal * MIRROR, direction: s.direction * MIRROR, ..s });
-    }
-    filed(&Sampled { samples, meta: cloud.meta().clone() })
+        Sample { position, normal: s.normal * MIRROR, direction: s.direction * MIRROR, ..s }
+    };
+    let materials: Vec<_> =
+        stored(cloud).into_iter().map(|halves| halves.map(|half| half.into_iter().map(image).collect())).collect();
+    filed(&planted(cloud.meta(), &materials))
 }
 
 /// Signs change, digits do not: camera rays, hits and offsets are mirror images of each other up to the order of sums of

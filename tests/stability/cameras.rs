@@ -53,6 +53,7 @@ fn camera_inside_an_absorbing_medium() {
 }
 
 /// Rays along every edge of a box, exactly and with rounding: two faces are seen edge-on, and the others met at a corner.
+/// At an index of 1.2 what the grazing interface lets in is not trapped by total reflection.
 #[test]
 fn camera_ray_along_an_edge() {
     let body = body(slab(DVec3::ONE, 1));
@@ -65,7 +66,7 @@ fn camera_ray_along_an_edge() {
                     (target[(axis + 1) % 3], target[(axis + 2) % 3]) = (u, v);
                     let camera = aimed_at(target, towards, 1.0);
                     let what = format!("along {axis} at {u} {v}, {tilt}");
-                    let counts = assert_invisible(&what, &body, &[1.5], &camera, &one_pixel());
+                    let counts = assert_invisible(&what, &body, &[1.2], &camera, &one_pixel());
                     assert_eq!(counts.escaped_inside, 0, "{what}");
                 }
             }
@@ -92,7 +93,7 @@ fn camera_ray_through_a_vertex() {
     }
 }
 
-/// cos θ = 10⁻⁷: the ray is mirrored, all but for 3·10⁻⁷, and what it met has a finite place.
+/// cos θ = 10⁻⁷: the light is mirrored, all but for 6·10⁻⁷, and what the ray met has a finite place.
 #[test]
 fn grazing_view() {
     let body = body(quad(0.5, 0.0, 4));
@@ -101,7 +102,8 @@ fn grazing_view() {
         let camera = aimed_at(DVec3::ZERO, DVec3::new(1.0, 0.0, cosine), 1.0);
         assert_invisible("grazing", &body, &[1.3], &camera, &settings);
         let rendered = body.render(&[1.3], &camera, &settings);
-        assert_eq!(channel(&rendered, &settings, "specular.R"), [1.0]);
+        let reflectance = 1.0 - fresnel::transmittance(cosine, 1.3);
+        assert!((f64::from(channel(&rendered, &settings, "specular.R")[0]) - reflectance).abs() < 1e-7);
         assert!((channel(&rendered, &settings, "Z")[0] - 10.0).abs() < 1e-5);
         assert!(fresnel::transmittance(cosine, 1.3) < 10.0 * cosine);
     }
@@ -121,13 +123,13 @@ fn camera_on_the_surface_and_far_away() {
     }
 }
 
-/// The depth limit cuts every path that meets the body, counts it, and shows nothing in its place.
+/// The depth limit cuts both branches of every path that meets the body, counts them, and shows nothing in their place.
 #[test]
 fn depth_of_one() {
     let body = body(sphere(1.0, 3));
     let settings = Settings { environment: SKY, max_depth: 1, ..settings(Model::DirectionalDipole, 8, 8) };
     let camera = aimed_at(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0), 0.5);
     let rendered = body.render(&[1.5], &camera, &settings);
-    assert_eq!((rendered.counts.cut_by_depth, rendered.counts.rays), (64, 64));
+    assert_eq!((rendered.counts.cut_by_depth, rendered.counts.rays), (128, 64));
     assert!(rendered.pixels.iter().all(|p| p.beauty() == DVec3::ZERO));
 }

@@ -4,13 +4,17 @@ use bssrdf::{
     Exitant, Incident, Medium, Model, Separation, evaluate,
     lanes::{BetterLanes, Block, DirectionalLanes, LANES, LaneModel, StandardLanes},
 };
-use formats::cloud::Sample;
+use formats::cloud::{Cloud, Record, Sample};
 use gather::{
     estimator::Estimator,
     samples::{Exit, LitSamples},
 };
 use glam::{DVec3, Vec3};
-use support::pipeline::{MODELS, RULES, sum};
+use std::{cell::RefCell, rc::Rc};
+use support::{
+    pipeline::{ESTIMATORS, MODELS, Scatterer},
+    planted::{alternating, cloud_of},
+};
 
 /// What one model gives, R, G, B; 1/(m² sr).
 #[derive(Clone, Copy, Debug)]
@@ -75,34 +79,63 @@ fn lanes<M: LaneModel>(medium: &Medium, s: &Separation) -> DVec3 {
     DVec3::from_array(values.map(|lane| f64::from(lane[0])))
 }
 
-/// `S_gather` by the three models, as a cloud of one sample gives it to the whole sum. Every rule of the roulette must
-/// give that over its probability, or nothing; at the sample itself it may not refuse it.
+thread_local! {
+    /// The cloud of the sample, and the scatterers of the medium, that were asked for last: sweeps ask for the same ones
+    /// again and again.
+    static CLOUD: RefCell<Option<(Sample, Rc<Cloud>)>> = const { RefCell::new(None) };
+    static SCATTERERS: RefCell<Option<(Medium, Rc<[Scatterer; 3]>)>> = const { RefCell::new(None) };
+}
+
+/// The value that is kept under this key, or a new one.
+fn kept<K: Clone + PartialEq, V>(last: &RefCell<Option<(K, Rc<V>)>>, key: &K, make: impl FnOnce() -> V) -> Rc<V> {
+    match &mut *last.borrow_mut() {
+        Some((k, value)) if k == key => value.clone(),
+        other => {
+            let value = Rc::new(make());
+            *other = Some((key.clone(), value.clone()));
+            value
+        }
+    }
+}
+
+/// `S_gather` by the three models, as a cloud of one sample gives it to the whole sum. The cut, which has nothing to
+/// choose from, must give exactly that. Every rule of the roulette must give it over its probability, or nothing; at the
+/// sample itself it may not refuse it.
 pub fn gather(medium: &Medium, incident: &Incident, exitant: &Exitant) -> [Value; 3] {
     let Incident { position, normal, direction } = *incident;
     let sample = Sample { position: position.as_vec3(), normal, direction, flux: Vec3::ONE };
-    let samples = LitSamples::new(std::iter::once(sample), medium.eta);
+    let cloud = CLOUD.with(|last| kept(last, &sample, || cloud_of(&alternating([sample]))));
+    let scatterers = SCATTERERS.with(|last| kept(last, medium, || MODELS.map(|m| Scatterer::new(m, medium))));
+    let samples = LitSamples::new(&cloud, &cloud.meta().materials[0].halves[0], medium.eta);
     let exit = |key: u64| Exit::new(exitant.position, exitant.normal, key);
     MODELS.map(|model| {
         let of = model.of(medium);
         let value = |c| evaluate(&*of, medium.eta, c, incident, exitant).gather;
         let exact = DVec3::from_array([0, 1, 2].map(value));
-        let fast = sum(model, medium, &samples, &exit(0), Estimator::Exhaustive).radiance;
+        let scatterer = &scatterers[model as usize];
+        let fast = scatterer.sum(&samples, &exit(0), Estimator::Exhaustive).radiance;
         assert_sane(exact, (model, medium, incident, exitant));
         assert_sane(fast, (model, medium, incident, exitant));
-        for (rule, key) in RULES.into_iter().flat_map(|rule| (0..8).map(move |key| (rule, key))) {
-            let chosen = sum(model, medium, &samples, &exit(key), Estimator::Roulette(rule)).radiance;
-            assert_sane(chosen, (model, rule, medium, incident, exitant));
+        for (estimator, key) in ESTIMATORS.into_iter().flat_map(|e| (0..8).map(move |key| (e, key))) {
+            let chosen = scatterer.sum(&samples, &exit(key), estimator).radiance;
+            assert_sane(chosen, (model, estimator, medium, incident, exitant));
             let weighted = chosen.cmpge(fast * (1.0 - 1e-6)).all();
             let refused = chosen == DVec3::ZERO && exitant.position != position;
-            assert!(weighted || refused, "{model:?} {rule:?}: {chosen} of {fast}");
+            let fits = match estimator {
+                Estimator::Roulette(_) => weighted || refused,
+                _ => chosen == fast,
+            };
+            assert!(fits, "{model:?} {estimator:?}: {chosen} of {fast}");
         }
         Value { model, exact, fast }
     })
 }
 
-/// Light from `direction` onto the origin of the plane z = 0.
+/// Light onto the origin of the plane z = 0, from `direction` as a cloud stores it: within 5·10⁻⁵.
 pub fn onto_plane(direction: DVec3) -> Incident {
-    Incident { position: DVec3::ZERO, normal: DVec3::Z, direction: direction.normalize() }
+    let direction = direction.normalize();
+    let sample = Sample { position: Vec3::ZERO, normal: DVec3::Z, direction, flux: Vec3::ONE };
+    Incident { position: DVec3::ZERO, normal: DVec3::Z, direction: Record::new(&sample).sample().direction }
 }
 
 /// Straight out of the plane z = 0.

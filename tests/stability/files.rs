@@ -6,7 +6,7 @@ use bssrdf::{Medium, MediumFile};
 use compare::compare;
 use formats::{
     Attribute, Channel, Image,
-    cloud::{Cloud, Meta, Sample, Samples},
+    cloud::{Cloud, Meta, Sample},
 };
 use glam::{DVec3, Vec3};
 use scene::{Scene, View};
@@ -15,6 +15,7 @@ use std::path::Path;
 use support::{
     meshes::{Light, Part, quad, world},
     pipeline::{by_area, sampled, write},
+    planted::{alternating, planted},
 };
 
 /// What JSON has no number for, and what leaves the range of float64.
@@ -153,9 +154,8 @@ fn medium() {
 /// One sample, changed, in a file whose checksums are right.
 fn verdict(path: &Path, sample: Sample, change: impl Fn(&mut Meta)) -> Result<(), formats::Error> {
     let sun = Light::Directional { towards: DVec3::Z, irradiance: DVec3::ONE };
-    let mut cloud = sampled(&world(&[Part::translucent(quad(0.5, 0.0, 1))], &[sun], DVec3::ZERO), &by_area(1, 0));
-    cloud.samples = Samples::default();
-    cloud.samples.push(&sample);
+    let drawn = sampled(&world(&[Part::translucent(quad(0.5, 0.0, 1))], &[sun], DVec3::ZERO), &by_area(1, 0));
+    let mut cloud = planted(&drawn.meta, &[alternating([sample])]);
     change(&mut cloud.meta);
     write(&cloud, path);
     Cloud::open(path)?.verify(path)

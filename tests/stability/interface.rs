@@ -1,11 +1,14 @@
 //! The interface: equal indices, total reflection, the ends of the fits, grazing light and view.
 
 use crate::evaluate::{assert_close, assert_is, bare, gather, onto_plane, out_of_plane};
-use bssrdf::{ETA_MAX, ETA_MIN, Medium, Model, Separation, fresnel};
+use bssrdf::{ETA_MAX, ETA_MIN, Incident, Medium, Model, Separation, fresnel};
 use formats::cloud::Sample;
-use gather::samples::LitSamples;
+use gather::samples::{Exit, LitSamples};
 use glam::{DVec3, Vec3};
-use support::pipeline::{MODELS, grey};
+use support::{
+    pipeline::{ESTIMATORS, MODELS, Scatterer, grey},
+    planted::{alternating, cloud_of},
+};
 
 /// α' = 0.9; lengths are mean free paths.
 fn medium(eta: f64) -> Medium {
@@ -65,7 +68,7 @@ fn no_jump_in_the_index() {
     }
 }
 
-/// η = 0.7 beyond the critical angle: no light enters, no sample is kept, none is seen to leave.
+/// η = 0.7 beyond the critical angle: no light enters, whatever the estimator, and none is seen to leave.
 #[test]
 fn total_reflection_outside() {
     let sine_beyond = onto_plane(DVec3::new(0.71, 0.0, (1.0f64 - 0.71 * 0.71).sqrt()));
@@ -77,7 +80,15 @@ fn total_reflection_outside() {
     }
     let direction = sine_beyond.direction;
     let sample = Sample { position: Vec3::ZERO, normal: DVec3::Z, direction, flux: Vec3::ONE };
-    assert!(LitSamples::new([sample; 40].into_iter(), 0.7).is_empty());
+    let cloud = cloud_of(&alternating([sample; 40]));
+    for half in cloud.meta().materials[0].halves {
+        let samples = LitSamples::new(&cloud, &half, 0.7);
+        let exit = Exit::new(DVec3::X, DVec3::Z, 3);
+        for (model, estimator) in MODELS.into_iter().flat_map(|m| ESTIMATORS.map(|e| (m, e))) {
+            let radiance = Scatterer::new(model, &medium(0.7)).sum(&samples, &exit, estimator).radiance;
+            assert_eq!(radiance, DVec3::ZERO, "{model:?} {estimator:?}");
+        }
+    }
     assert_eq!(fresnel::transmittance(direction.z, 0.7), 0.0);
     for model in MODELS {
         let exit = bssrdf::Exitant { direction, ..out_of_plane(1.0) };
@@ -99,7 +110,7 @@ fn the_critical_angle_itself() {
 }
 
 /// cos θ = 10⁻⁷ on both sides: T falls in proportion to the cosine and keeps its digits, which one minus a reflectance
-/// would not.
+/// would not. A cloud stores no cosine between 0 and 3·10⁻⁵: the smallest that it does goes through the sum.
 #[test]
 fn grazing_light_and_view() {
     for eta in [1.3, 2.5, 1.0 + 1e-7] {
@@ -108,8 +119,11 @@ fn grazing_light_and_view() {
             assert!((ten / one - 1.0).abs() < 1e-5, "{one} {ten}");
             assert!(one > 1.0 && one < 10.0);
         }
-        let light = onto_plane(DVec3::new(1.0, 0.0, 1e-7));
-        let values = gather(&medium(eta), &light, &out_of_plane(-0.5));
+        let light = Incident { direction: DVec3::new(1.0, 0.0, 1e-7).normalize(), ..onto_plane(DVec3::Z) };
+        let stored = onto_plane(DVec3::new(1.0, 0.0, 3e-5));
+        assert!(stored.direction.z > 2e-5 && stored.direction.z < 4e-5, "{stored:?}");
+        let values = gather(&medium(eta), &stored, &out_of_plane(-0.5));
+        assert!(values.iter().all(|v| v.fast.min_element() > 0.0));
         assert_close(&values, 1e-4);
         for model in MODELS {
             let exit = bssrdf::Exitant { direction: light.direction, ..out_of_plane(-0.5) };

@@ -2,7 +2,7 @@
 
 use crate::scenes::{aimed_at, render};
 use formats::cloud::Cloud;
-use gather::{Filter, Settings, estimator::Estimator};
+use gather::{Filter, Settings};
 use glam::DVec3;
 use scene::{
     SurfacePoint,
@@ -10,7 +10,7 @@ use scene::{
 };
 use support::{
     meshes::{Light, Part, World, quad, rectangle, slab, world},
-    pipeline::{MODELS, RULES, by_area, cloud, grey, settings},
+    pipeline::{ESTIMATORS, MODELS, by_area, cloud, grey, settings},
 };
 
 /// The middle of the square in z = 0.
@@ -26,8 +26,7 @@ fn under(height: f64) -> World {
 
 /// An image of the middle by all models and estimators.
 fn render_all(world: &World, cloud: &Cloud) {
-    let estimators = RULES.map(Estimator::Roulette).into_iter().chain([Estimator::Exhaustive]);
-    for (estimator, model) in estimators.flat_map(|estimator| MODELS.map(|model| (estimator, model))) {
+    for (estimator, model) in ESTIMATORS.into_iter().flat_map(|estimator| MODELS.map(|model| (estimator, model))) {
         let settings = Settings { paths_per_pixel: 4, filter: Filter::Box, estimator, ..settings(model, 8, 8) };
         let camera = aimed_at(DVec3::ZERO, DVec3::new(0.3, 0.2, 1.0), 0.4);
         render(world, cloud, &[grey(10.0, 1000.0, 0.5, 1.3)], &camera, &settings);

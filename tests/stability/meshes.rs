@@ -25,7 +25,7 @@ fn sunny(mesh: Mesh) -> World {
 }
 
 fn list(cloud: &Cloud) -> Vec<Sample> {
-    cloud.samples(0, cloud.len()).collect()
+    cloud.samples(&cloud.meta().materials[0]).collect()
 }
 
 fn spread(model: Model, environment: DVec3) -> Settings {
@@ -45,7 +45,7 @@ fn zero_area_triangles_change_nothing() {
     let (clean, dirty) = (sunny(clean), sunny(dirty));
     assert_eq!((clean.scene.degenerate_triangles, dirty.scene.degenerate_triangles), (0, 12));
     for choice in [Choice::Area, Choice::Uniform] {
-        let sampling = Sampling { samples: 1000, choice, seed: 1 };
+        let sampling = Sampling { choice, ..by_area(1000, 1) };
         let (clean, dirty) = (cloud(&clean, &sampling), cloud(&dirty, &sampling));
         assert_eq!(list(&clean), list(&dirty));
         assert_eq!(clean.meta().surface_area_m2, dirty.meta().surface_area_m2);
@@ -67,7 +67,7 @@ fn slivers_of_a_millionth() {
     let needle = world.scene.mesh.point(5, [0.3, 0.3, 0.4], NormalKind::Geometric);
     assert_eq!(needle.normal, DVec3::Z);
     for choice in [Choice::Area, Choice::Uniform] {
-        let cloud = cloud(&world, &Sampling { samples: 1000, choice, seed: 1 });
+        let cloud = cloud(&world, &Sampling { choice, ..by_area(1000, 1) });
         assert!((cloud.meta().surface_area_m2 - 4.0).abs() < 1e-6);
         assert_eq!(cloud.len(), 1000, "a flat mesh has no shadow");
         let settings = spread(Model::DirectionalDipole, DVec3::ZERO);
@@ -78,7 +78,7 @@ fn slivers_of_a_millionth() {
 }
 
 /// A triangle given twice is two surfaces: each is lit, and both shine, so that the scattered light doubles; nothing
-/// shadows its own copy, and a camera path meets one of the two.
+/// shadows its own copy, and a camera path meets one of the two: its mirrored and its refracted ray meet nothing more.
 #[test]
 fn duplicate_triangles_are_two_surfaces() {
     let once = quad(0.5, 0.0, 3);
@@ -92,10 +92,11 @@ fn duplicate_triangles_are_two_surfaces() {
     let settings = spread(Model::StandardDipole, DVec3::ZERO);
     let camera = aimed_at(DVec3::ZERO, DVec3::new(0.3, 0.2, 1.0), 0.2);
     let counts = render(&twice, &two, &[grey(1.0, 10.0, 0.0, 1.3)], &camera, &settings).counts;
-    assert_eq!((counts.nested, counts.rays), (0, 2 * counts.paths));
+    assert_eq!((counts.nested, counts.rays), (0, 3 * counts.paths));
 }
 
-/// A sheet without a back: what is refracted never comes out, is counted, and sees the sky if the medium is clear.
+/// A sheet without a back: what is refracted never comes out. In a medium it ends somewhere; if the medium is clear it
+/// sees the sky, and is counted.
 #[test]
 fn open_mesh() {
     let world = sunny(quad(1.0, 0.0, 3));
@@ -106,14 +107,15 @@ fn open_mesh() {
     for model in MODELS {
         let settings = spread(model, DVec3::ZERO);
         let counts = render(&world, &cloud, &[grey(1.0, 10.0, 0.0, 1.5)], &above, &settings).counts;
-        assert_eq!(counts.escaped_inside, counts.gathers, "{counts:?}");
-        assert!(counts.gathers > counts.paths / 2);
-        assert_eq!((counts.rays, counts.cut_by_depth, counts.nested), (2 * counts.paths, 0, 0));
+        assert_eq!((counts.gathers, counts.escaped_inside), (counts.paths, 0), "{counts:?}");
+        assert_eq!((counts.rays, counts.cut_by_depth, counts.nested), (3 * counts.paths, 0, 0));
         let behind = render(&world, &cloud, &[grey(1.0, 10.0, 0.0, 1.5)], &below, &settings);
         assert_eq!(behind.counts.gathers, 0);
-        for camera in [&above, &below] {
-            assert_invisible("open and clear", &clear, &[1.5], camera, &settings);
-        }
+        let [above, below] =
+            [&above, &below].map(|camera| assert_invisible("open and clear", &clear, &[1.5], camera, &settings));
+        assert_eq!(above.escaped_inside, above.paths);
+        // Met from behind, the sheet mirrors 4 % into the medium.
+        assert!(below.escaped_inside > 0 && below.escaped_inside < below.paths / 10, "{below:?}");
     }
 }
 
@@ -186,7 +188,7 @@ fn one_sample() {
                 let incident = Incident { position, normal: s.normal, direction: s.direction };
                 evaluate(&*of, medium.eta, 0, &incident, &exitant).gather * f64::from(s.flux.x)
             };
-            let expected: f64 = cloud.samples(0, cloud.len()).map(term).sum();
+            let expected: f64 = list(&cloud).into_iter().map(term).sum();
             let lit = Lit::new(&cloud, &medium, model).radiance(Estimator::Exhaustive, point, 0);
             assert_is(&format!("{} {seed}", model.name()), lit, DVec3::splat(expected), 2e-5);
         }
@@ -206,13 +208,13 @@ fn ten_million_triangles() {
     let world = sunny(quad(0.5, 0.0, 2237));
     assert_eq!(world.scene.mesh.triangles.len(), 2 * 2237 * 2237);
     for choice in [Choice::Area, Choice::Uniform] {
-        let cloud = cloud(&world, &Sampling { samples: 100_000, choice, seed: 1 });
+        let cloud = cloud(&world, &Sampling { choice, ..by_area(100_000, 1) });
         assert_eq!(cloud.len(), 100_000);
         assert_is("flux", DVec3::from_array(cloud.meta().mean_flux_w), DVec3::splat(0.8), 1e-3);
         let settings = spread(Model::DirectionalDipole, SKY);
         let camera = aimed_at(DVec3::ZERO, DVec3::new(0.3, 0.2, 1.0), 0.4);
         let rendered = render(&world, &cloud, &[grey(1.0, 10.0, 0.0, 1.3)], &camera, &settings);
-        assert_eq!(rendered.counts.escaped_inside, rendered.counts.gathers);
+        assert_eq!((rendered.counts.gathers, rendered.counts.escaped_inside), (rendered.counts.paths, 0));
         assert!(channel(&rendered, &settings, "Z").iter().all(|z| *z > 0.0));
     }
 }

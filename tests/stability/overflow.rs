@@ -1,7 +1,7 @@
 //! Numbers beyond float32, the range of every file: they are found and named, and none is written.
 
 use bssrdf::Model;
-use formats::cloud::{Sample, Samples};
+use formats::cloud::Sample;
 use gather::{Input, Rendered, Settings, render};
 use glam::{DVec3, Vec3};
 use sample_surface::{Plan, SampleError};
@@ -9,6 +9,7 @@ use scene::NormalKind;
 use support::{
     meshes::{Light, Part, World, quad, world},
     pipeline::{MODELS, by_area, cloud, filed, grey, orthographic, sampled, settings},
+    planted::{Halves, planted, stored},
 };
 
 fn under_a_sun(irradiance: DVec3) -> World {
@@ -16,14 +17,15 @@ fn under_a_sun(irradiance: DVec3) -> World {
     world(&[Part::translucent(quad(0.05, 0.0, 1))], &[sun], DVec3::ZERO)
 }
 
-/// The square of 10 cm fills the middle of the image; all samples carry `flux`.
-fn rendered(flux: Vec3, settings: &Settings) -> Rendered {
+/// The square of 10 cm fills the middle of the image; all samples carry `flux`. If the halves of the cloud are `twins`
+/// they hold the same samples, and know of no variance.
+fn rendered(flux: Vec3, twins: bool, settings: &Settings) -> Rendered {
     let world = under_a_sun(DVec3::ONE);
-    let mut planted = sampled(&world, &by_area(64, 0));
-    let samples: Vec<Sample> = filed(&planted).samples(0, 64).collect();
-    planted.samples = Samples::default();
-    samples.iter().for_each(|s| planted.samples.push(&Sample { flux, ..*s }));
-    let cloud = filed(&planted);
+    let drawn = cloud(&world, &by_area(64, 0));
+    let halves = stored(&drawn)[0].clone().map(|half| half.into_iter().map(|s| Sample { flux, ..s }).collect());
+    let [one, other]: Halves = halves;
+    let halves = if twins { [one.clone(), one] } else { [one, other] };
+    let cloud = filed(&planted(drawn.meta(), &[halves]));
     let (media, camera) = ([grey(0.0, 1e3, 0.0, 1.3)], orthographic(DVec3::Z, 0.1));
     let input = Input { scene: &world.scene, rays: &world.rays, cloud: &cloud, media: &media, camera: &camera };
     render(&input, settings, |_| ())
@@ -34,7 +36,7 @@ fn rendered(flux: Vec3, settings: &Settings) -> Rendered {
 fn radiance_beyond_float32_is_counted_and_placed() {
     for model in MODELS {
         let settings = settings(model, 12, 12);
-        let rendered = rendered(Vec3::new(1.0, 1e38, 1.0), &settings);
+        let rendered = rendered(Vec3::new(1.0, 1e38, 1.0), true, &settings);
         let beyond = |(k, p): (usize, &gather::film::Pixel)| (p.beauty().y > f64::from(f32::MAX)).then_some(k);
         let expected: Vec<usize> = rendered.pixels.iter().enumerate().filter_map(beyond).collect();
         assert!(expected.len() > 8 && expected.len() < 40, "{expected:?}");
@@ -42,19 +44,22 @@ fn radiance_beyond_float32_is_counted_and_placed() {
         assert_eq!(rendered.non_finite, expected[..8]);
         assert!(rendered.pixels.iter().all(|p| p.beauty().is_finite()), "float64 holds all of it");
     }
-    let harmless = self::rendered(Vec3::splat(1e30), &settings(Model::StandardDipole, 12, 12));
+    let harmless = self::rendered(Vec3::splat(1e30), true, &settings(Model::StandardDipole, 12, 12));
     assert_eq!((harmless.non_finite_count, harmless.non_finite.len()), (0, 0));
 }
 
-/// A variance is a square: it leaves float32 long before the radiance does, and goes into the same file.
+/// A variance is a square: it leaves float32 long before the radiance does, and goes into the same file. It is that of the
+/// cloud, too: one path a pixel knows it.
 #[test]
 fn variance_beyond_float32_is_counted() {
-    let settings = Settings { paths_per_pixel: 4, filter: gather::Filter::Box, ..settings(MODELS[0], 12, 12) };
-    let rendered = rendered(Vec3::splat(1e25), &settings);
-    let beyond = rendered.pixels.iter().filter(|p| p.variance().max_element() > f64::from(f32::MAX)).count();
-    assert!(beyond > 0);
-    assert_eq!(rendered.non_finite_count, beyond as u64);
-    assert!(rendered.pixels.iter().all(|p| p.beauty().max_element() < f64::from(f32::MAX)));
+    for paths_per_pixel in [1, 4] {
+        let settings = Settings { paths_per_pixel, filter: gather::Filter::Box, ..settings(MODELS[0], 12, 12) };
+        let rendered = rendered(Vec3::splat(1e25), false, &settings);
+        let beyond = rendered.pixels.iter().filter(|p| p.variance().max_element() > f64::from(f32::MAX)).count();
+        assert!(beyond > 0);
+        assert_eq!(rendered.non_finite_count, beyond as u64);
+        assert!(rendered.pixels.iter().all(|p| p.beauty().max_element() < f64::from(f32::MAX)));
+    }
 }
 
 /// Light whose flux leaves float32, or float64: phase one refuses to make a cloud, and counts the samples.
@@ -68,6 +73,7 @@ fn flux_beyond_float32_makes_no_cloud() {
         let settings = sample_surface::Settings {
             samples: 100,
             choice: sample_surface::Choice::Area,
+            pattern: sample_surface::Pattern::Stratified,
             normals: NormalKind::Geometric,
             translucent: Vec::new(),
             options: sampled(&under_a_sun(DVec3::ONE), &by_area(1, 0)).meta.options,

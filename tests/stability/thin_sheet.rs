@@ -74,7 +74,8 @@ fn light_shines_through_a_sheet() {
             let incident = Incident { position, normal: sample.normal, direction: sample.direction };
             evaluate(&*of, medium.eta, 0, &incident, &exitant).gather * f64::from(sample.flux.x)
         };
-        let expected = cloud.samples(0, cloud.len()).map(term).sum::<f64>() / cloud.meta().samples_drawn as f64;
+        let expected =
+            cloud.samples(&cloud.meta().materials[0]).map(term).sum::<f64>() / cloud.meta().samples_drawn as f64;
         assert!(expected > 0.0);
         assert_is(model.name(), lit, DVec3::splat(expected), 1e-5);
     }

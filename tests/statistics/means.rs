@@ -11,43 +11,44 @@ use glam::DVec3;
 use rayon::prelude::*;
 use sample_surface::Choice;
 use scene::Camera;
+use std::ops::Range;
 use support::{
     EFFORT,
     meshes::{Light, Part, World, quad, rectangle, slab, world},
-    pipeline::{Sampling, by_area, cloud, grey, orthographic, sampled, settings},
+    pipeline::{Sampling, by_area, cloud, grey, orthographic, sampled, settings, stratified},
     z_test::{Estimate, assert_equal, assert_mean},
 };
 
 const SEEDS: u64 = 64;
 const SAMPLES: u64 = 4096 * EFFORT;
 /// m.
-const HALF_SIZE: DVec3 = DVec3::new(3e-3, 2e-3, 1e-3);
+pub const HALF_SIZE: DVec3 = DVec3::new(3e-3, 2e-3, 1e-3);
 
 /// Scatters within half a millimetre and absorbs within one: the far side of the slab is dark, not black.
-fn jelly() -> Medium {
+pub fn jelly() -> Medium {
     grey(300.0, 2000.0, 0.0, 1.0)
 }
 
-fn sun(irradiance: DVec3) -> Light {
+pub fn sun(irradiance: DVec3) -> Light {
     Light::Directional { towards: DVec3::new(0.48, 0.6, 0.64), irradiance }
 }
 
-fn lamp() -> Light {
+pub fn lamp() -> Light {
     Light::Point { position: DVec3::new(-6e-3, 1e-3, 4e-3), intensity: DVec3::new(4e-5, 2e-5, 1e-5) }
 }
 
 /// The slab under some lights.
-fn lit_by(lights: &[Light]) -> World {
+pub fn lit_by(lights: &[Light]) -> World {
     world(&[Part::translucent(slab(HALF_SIZE, 6))], lights, DVec3::ZERO)
 }
 
 /// The slab from a corner: all of the upper side and two others.
-fn corner() -> Camera {
+pub fn corner() -> Camera {
     orthographic(DVec3::new(1.0, 1.2, 1.5), 2.5e-3)
 }
 
 /// The sum of all pixels over one cloud.
-fn image_sum(world: &World, camera: &Camera, cloud: &Cloud, model: Model) -> DVec3 {
+pub fn image_sum(world: &World, camera: &Camera, cloud: &Cloud, model: Model) -> DVec3 {
     let media = [jelly()];
     let input = Input { scene: &world.scene, rays: &world.rays, cloud, media: &media, camera };
     let rendered = gather::render(&input, &settings(model, 12, 8), |_| ());
@@ -57,8 +58,14 @@ fn image_sum(world: &World, camera: &Camera, cloud: &Cloud, model: Model) -> DVe
 
 /// The sum of all pixels, each channel, over clouds with seeds from `first` on.
 fn estimate(world: &World, camera: &Camera, first: u64, sampling: impl Fn(u64) -> Sampling + Sync) -> [Estimate; 3] {
-    let run = |seed| image_sum(world, camera, &cloud(world, &sampling(seed)), Model::StandardDipole);
-    let runs: Vec<DVec3> = (first..first + SEEDS).into_par_iter().map(run).collect();
+    over_seeds(first..first + SEEDS, |seed| {
+        image_sum(world, camera, &cloud(world, &sampling(seed)), Model::StandardDipole)
+    })
+}
+
+/// The mean of one colour for each seed, each channel.
+pub fn over_seeds(seeds: Range<u64>, run: impl Fn(u64) -> DVec3 + Sync + Send) -> [Estimate; 3] {
+    let runs: Vec<DVec3> = seeds.into_par_iter().map(run).collect();
     [0, 1, 2].map(|c| Estimate::of(&runs.iter().map(|r| r[c]).collect::<Vec<_>>()))
 }
 
@@ -66,7 +73,8 @@ fn estimate(world: &World, camera: &Camera, first: u64, sampling: impl Fn(u64) -
 #[test]
 fn uniform_and_area_choice_have_one_mean() {
     let world = lit_by(&[sun(DVec3::ONE), lamp()]);
-    let uniform = estimate(&world, &corner(), 100, |seed| Sampling { samples: SAMPLES, choice: Choice::Uniform, seed });
+    let uniform =
+        estimate(&world, &corner(), 100, |seed| Sampling { choice: Choice::Uniform, ..by_area(SAMPLES, seed) });
     let area = estimate(&world, &corner(), 200, |seed| by_area(SAMPLES, seed));
     for c in 0..3 {
         assert_equal(&format!("uniform and area, channel {c}"), uniform[c], area[c]);
@@ -77,10 +85,12 @@ fn uniform_and_area_choice_have_one_mean() {
 #[test]
 fn more_samples_do_not_move_the_mean() {
     let world = lit_by(&[sun(DVec3::ONE), lamp()]);
-    let few = estimate(&world, &corner(), 300, |seed| by_area(SAMPLES, seed));
-    let many = estimate(&world, &corner(), 400, |seed| by_area(4 * SAMPLES, seed));
-    for c in 0..3 {
-        assert_equal(&format!("K and 4K, channel {c}"), few[c], many[c]);
+    for (first, sampling) in [(300, by_area as fn(u64, u64) -> Sampling), (10_300, stratified)] {
+        let few = estimate(&world, &corner(), first, |seed| sampling(SAMPLES, seed));
+        let many = estimate(&world, &corner(), first + 100, |seed| sampling(4 * SAMPLES, seed));
+        for c in 0..3 {
+            assert_equal(&format!("K and 4K, seeds from {first}, channel {c}"), few[c], many[c]);
+        }
     }
 }
 
@@ -149,7 +159,7 @@ fn blocked_samples_count() {
 fn stored_samples_are_half(covered: &World) {
     let count = |seed| {
         let meta = sampled(covered, &by_area(SAMPLES, seed)).meta;
-        let stored: u64 = meta.materials.iter().map(|m| m.count).sum();
+        let stored: u64 = meta.materials.iter().map(|m| m.count()).sum();
         let dropped: u64 = meta.samples_dropped.values().sum();
         assert_eq!((meta.samples_drawn, meta.samples_dropped["shadowed"]), (SAMPLES, dropped));
         assert_eq!(stored + dropped, SAMPLES);

@@ -32,10 +32,11 @@ fn assert_image(what: &str, rendered: &Rendered, expected: DVec3) {
     }
 }
 
-/// Under light of the same radiance from everywhere a clear body cannot be seen: each path shows exactly that radiance
-/// unless the depth limit ended it, and then nothing.
+/// Under light of the same radiance from everywhere a clear body cannot be seen: the two branches of a path show R and T21
+/// of that radiance unless the depth limit ended one, and that then shows nothing.
 ///
-/// Seen to catch: throughput scaled by η⁻² at one crossing; the chosen refraction weighted with T21 again.
+/// Seen to catch: throughput scaled by η⁻² at one crossing; the refracted branch weighted with T21 twice; the mirrored
+/// one without R.
 #[test]
 fn a_clear_body_under_a_constant_sky_is_invisible() {
     let world = world(&[Part::translucent(sphere(1.0, 3))], &[], DVec3::ONE);
@@ -43,12 +44,17 @@ fn a_clear_body_under_a_constant_sky_is_invisible() {
     let camera = orthographic(DVec3::new(1.0, 2.0, 3.0), 1.2);
     let rendered = render(&world, &camera, 0.0, &with_sky(DVec3::ONE, paths, 64));
     let mut missing = 0.0;
+    let mut darker = 0;
     for pixel in &rendered.pixels {
         let lost = (DVec3::ONE - pixel.beauty()) * f64::from(paths);
-        assert!((lost - lost.round()).abs().max_element() < 1e-4, "a path shows {lost} too little");
+        assert!(lost.min_element() > -1e-12, "the paths show {lost} too little");
         missing += lost.x;
+        darker += u64::from(lost.x > 1e-12);
     }
-    assert_eq!(missing.round() as u64, rendered.counts.cut_by_depth);
+    // What is lost was refracted: T21 of a path, between a tenth (two degrees from grazing) and its largest value.
+    let cut = rendered.counts.cut_by_depth;
+    let largest = fresnel::transmittance(1.0, 1.5);
+    assert!(darker <= cut && missing <= largest * cut as f64 + 1e-9 && missing >= 0.1 * cut as f64, "{missing} {cut}");
     let share = rendered.counts.cut_by_depth as f64 / rendered.counts.paths as f64;
     println!("{share:.1e} of the paths cut");
     assert!(share < 0.01);
@@ -58,7 +64,9 @@ fn a_clear_body_under_a_constant_sky_is_invisible() {
 /// A clear body that glows is seen through its interface: `T21 L_e` beside the sky, from a face under a known angle. It
 /// is convex, so no face lights another.
 ///
-/// Seen to catch: emission added at reflections too; T21 of the chosen refraction applied again; emission shown at
+/// Nothing in it is random: each pixel has its value, to the float32 of the file.
+///
+/// Seen to catch: emission added to the mirrored branch too; T21 of the refracted one applied twice; emission shown at
 /// inner hits.
 #[test]
 fn emission_is_seen_through_the_interface() {
@@ -71,7 +79,9 @@ fn emission_is_seen_through_the_interface() {
         let camera = orthographic(DVec3::new(sine, 0.0, cosine), 0.01);
         let rendered = render(&world, &camera, 0.0, &with_sky(sky, 100 * EFFORT as u32, 1000));
         let expected = fresnel::transmittance(cosine, 1.5) * emission + sky;
-        assert_image(&format!("glow at {degrees}°"), &rendered, expected);
+        let worst =
+            rendered.pixels.iter().map(|p| (p.beauty() / expected - 1.0).abs().max_element()).fold(0.0, f64::max);
+        assert!(worst < 1e-7 && rendered.counts.cut_by_depth == 0, "glow at {degrees}°: {worst:e}");
     }
 }
 

@@ -5,7 +5,7 @@ use bssrdf::{
     lanes::{LaneModel, StandardLanes},
     simd,
 };
-use formats::cloud::Sample;
+use formats::cloud::{Cloud, Sample};
 use gather::{
     estimator::{Estimator, Rates, Roulette, random_bits},
     samples::{Exit, LitSamples},
@@ -15,20 +15,22 @@ use support::{
     EFFORT,
     meshes::{Light, Part, slab, world},
     pipeline::{Lit, Point, RULES, by_area, cloud, grey},
+    planted::cloud_of,
     random::Random,
     significance,
     z_test::{Estimate, assert_mean},
 };
 
-/// A cloud of `count` equal samples one metre below the origin.
-fn equal_samples(count: usize) -> LitSamples {
+/// A cloud of `count` equal samples one metre below the origin, all in its first half.
+fn equal_samples(count: usize) -> Cloud {
     let sample = Sample { position: Vec3::NEG_Z, normal: DVec3::Z, direction: DVec3::Z, flux: Vec3::ONE };
-    LitSamples::new(std::iter::repeat_n(sample, count), 1.3)
+    cloud_of(&[vec![sample; count], Vec::new()])
 }
 
-/// How many of the samples are accepted with probability `p` each.
-fn accepted(samples: &LitSamples, p: f64, key: u64) -> u64 {
+/// How many of the samples of the first half are accepted with probability `p` each.
+fn accepted(cloud: &Cloud, p: f64, key: u64) -> u64 {
     let model = &StandardLanes::new(&grey(1.0, 1.0, 0.0, 1.3));
+    let samples = &LitSamples::new(cloud, &cloud.meta().materials[0].halves[0], 1.3);
     let exit = &Exit::new(DVec3::ZERO, DVec3::Z, key);
     simd::dispatch(Roulette { model, samples, exit, rates: Rates::One(-p.ln()) }).evaluations
 }
@@ -51,9 +53,9 @@ fn samples_are_accepted_with_their_probability() {
     let run = |p: f64, keys: u64| {
         let mut random = Random(p.to_bits());
         let count: u64 = (0..keys).map(|_| accepted(&samples, p, random.bits())).sum();
-        assert_count(&format!("p = {p:e}"), count, (keys * samples.len() as u64) as f64, p);
+        assert_count(&format!("p = {p:e}"), count, (keys * samples.len()) as f64, p);
     };
-    assert_eq!(accepted(&samples, 1.0, 1), samples.len() as u64);
+    assert_eq!(accepted(&samples, 1.0, 1), samples.len());
     for p in [0.9, 0.5, 0.1, 1e-3] {
         run(p, 20 * EFFORT);
     }

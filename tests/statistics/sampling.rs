@@ -38,9 +38,9 @@ fn triangles_are_chosen_with_the_density_returned() {
             let mut observed = vec![0; mesh.triangles.len()];
             let mut density = vec![0.0; mesh.triangles.len()];
             for item in items(seed) {
-                let (triangle, pdf_area) = choice.choose(item.uniform(0));
-                observed[triangle as usize] += 1;
-                density[triangle as usize] = pdf_area;
+                let chosen = choice.choose(item.uniform(0));
+                observed[chosen.triangle as usize] += 1;
+                density[chosen.triangle as usize] = chosen.pdf_area;
             }
             let expected: Vec<f64> =
                 density.iter().enumerate().map(|(k, pdf)| pdf * mesh.area(k) * DRAWS as f64).collect();

@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 use support::{
     EFFORT,
     meshes::{Light, Part, World, graded_disc, world},
-    pipeline::{Lit, Point, Sampling, cloud, orthographic, settings},
+    pipeline::{Lit, Point, Sampling, by_area, cloud, orthographic, settings},
     quadrature::integrate,
     z_test::{Estimate, assert_mean},
 };
@@ -39,7 +39,7 @@ fn disc(lights: &[Light], environment: DVec3) -> World {
 }
 
 fn sampling(samples: u64, seed: u64) -> Sampling {
-    Sampling { samples: samples * EFFORT, choice: Choice::Uniform, seed }
+    Sampling { choice: Choice::Uniform, ..by_area(samples * EFFORT, seed) }
 }
 
 /// Independent clouds of a test, each with a range of seeds of its own.

@@ -1,8 +1,8 @@
 //! What the models say of half-spaces and slabs: their plane integrals, in units of the reduced mean free path.
 
+use crate::quadrature::{Extent, integrate_graded, plane_integral};
 use bssrdf::{DVec3, Medium, Model, Separation, fresnel};
 use std::f64::consts::PI;
-use crate::quadrature::{Extent, integrate_graded, plane_integral};
 
 /// A grey medium of reduced albedo `albedo` and unit reduced extinction.
 pub fn medium(albedo: f64, eta: f64) -> Medium {

@@ -3,8 +3,10 @@
 
 pub mod chi_square;
 pub mod half_space;
+pub mod lit;
 pub mod meshes;
 pub mod pipeline;
+pub mod planted;
 pub mod quadrature;
 pub mod random;
 pub mod walk;
@@ -18,7 +20,7 @@ pub const EFFORT: u64 = if cfg!(feature = "slow") { 16 } else { 1 };
 pub const FALSE_ALARM_RATE: f64 = 1e-3;
 
 /// Statistical decisions in all tests together, at most.
-pub const DECISIONS: f64 = 200.0;
+pub const DECISIONS: f64 = 400.0;
 
 /// The p-value below which one decision fails (Šidák's correction of [`FALSE_ALARM_RATE`] for [`DECISIONS`]).
 pub fn significance() -> f64 {

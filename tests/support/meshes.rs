@@ -4,7 +4,7 @@
 use glam::{DQuat, DVec3, Vec3};
 use scene::{ImportOptions, LightUnit, Rays, Scene};
 use serde_json::{Value, json};
-use std::{collections::HashMap, f64::consts::TAU, fs};
+use std::{collections::HashMap, f64::consts::TAU, fs, path::Path};
 
 /// Vertices and triangles, wound counter-clockwise seen from outside, m.
 #[derive(Clone, Debug, Default)]
@@ -52,6 +52,21 @@ pub struct World {
 pub fn world(parts: &[Part], lights: &[Light], environment: DVec3) -> World {
     let (document, binary) = encode(parts, lights);
     imported(&document, &binary, 1.0, environment)
+}
+
+/// A scene in a file of its own, in metres, under a constant environment.
+pub fn scene_file(path: &Path, environment: DVec3) -> World {
+    let options = ImportOptions { metres_per_unit: 1.0, light_unit: LightUnit::Radiometric };
+    let mut scene = Scene::import(path, &options).expect("the file is valid glTF");
+    scene.add_environment(environment);
+    let rays = Rays::new(&scene.mesh);
+    World { scene, rays }
+}
+
+/// A scene of the repository's `data/scenes`, by name.
+pub fn repository_scene(name: &str) -> World {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/scenes");
+    scene_file(&folder.join(format!("{name}.glb")), DVec3::ZERO)
 }
 
 /// A glTF document whose only buffer is `scene.bin`, through a file and the importer.

@@ -1,36 +1,39 @@
 //! Both phases as functions: a scene to a cloud, a cloud to radiance at a point.
 
 use crate::meshes::World;
-use bssrdf::{
-    Medium, Model,
-    lanes::{BetterLanes, DirectionalLanes, LaneModel, StandardLanes},
-    simd,
-};
+use bssrdf::{Medium, Model};
 use formats::{
     atomic::Output,
     cloud::{self, Cloud, Options},
 };
 use gather::{
     Filter,
-    estimator::{Estimator, Exhaustive, Roulette, Rule, Sum},
-    samples::{Exit, LitSamples},
+    estimator::{Estimator, Rule},
 };
 use glam::DVec3;
-use sample_surface::{Choice, Plan, Sampled, Settings};
+use sample_surface::{Choice, Pattern, Plan, Sampled, Settings};
 use scene::{Camera, NormalKind, Projection};
 use std::path::Path;
+
+pub use crate::lit::{Lit, Point, Scatterer};
 
 /// How phase one samples in a test.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampling {
     pub samples: u64,
     pub choice: Choice,
+    pub pattern: Pattern,
     pub seed: u64,
 }
 
 /// Independent samples by area.
 pub fn by_area(samples: u64, seed: u64) -> Sampling {
-    Sampling { samples, choice: Choice::Area, seed }
+    Sampling { samples, choice: Choice::Area, pattern: Pattern::Independent, seed }
+}
+
+/// Well-spread samples by area: what the programs draw by default.
+pub fn stratified(samples: u64, seed: u64) -> Sampling {
+    Sampling { pattern: Pattern::Stratified, ..by_area(samples, seed) }
 }
 
 /// Phase one in memory.
@@ -43,12 +46,13 @@ pub fn sampled_with(world: &World, sampling: &Sampling, normals: NormalKind) -> 
     let settings = Settings {
         samples: sampling.samples,
         choice: sampling.choice,
+        pattern: sampling.pattern,
         normals,
         translucent: Vec::new(),
         options: Options {
             seed: sampling.seed,
             choice: sampling.choice.name().into(),
-            pattern: "independent".into(),
+            pattern: sampling.pattern.name().into(),
             normals: if normals == NormalKind::Geometric { "geometric" } else { "shading" }.into(),
             metres_per_unit: 1.0,
             light_unit: "radiometric".into(),
@@ -62,7 +66,7 @@ pub fn sampled_with(world: &World, sampling: &Sampling, normals: NormalKind) -> 
 /// Writes what phase one made.
 pub fn write(sampled: &Sampled, path: &Path) {
     let mut output = Output::create(path).expect("the temporary folder is writable");
-    cloud::write(&mut output, path, &sampled.samples, &sampled.meta).expect("the temporary folder is writable");
+    cloud::write(&mut output, path, &sampled.content, &sampled.meta).expect("the temporary folder is writable");
     output.commit().expect("the temporary folder is writable");
 }
 
@@ -77,73 +81,6 @@ pub fn filed(sampled: &Sampled) -> Cloud {
     let path = folder.path().join("test.cloud");
     write(sampled, &path);
     Cloud::open(&path).expect("the cloud was written whole")
-}
-
-/// A cloud lit into a medium, ready for sums at any point of its first material.
-pub struct Lit {
-    model: Model,
-    medium: Medium,
-    samples: LitSamples,
-    drawn: f64,
-    origin: DVec3,
-}
-
-/// A point that light leaves from.
-#[derive(Clone, Copy, Debug)]
-pub struct Point {
-    /// World position, m.
-    pub position: DVec3,
-    pub normal: DVec3,
-}
-
-impl Lit {
-    pub fn new(cloud: &Cloud, medium: &Medium, model: Model) -> Lit {
-        let meta = cloud.meta();
-        let first = &meta.materials[0];
-        Lit {
-            model,
-            medium: medium.clone(),
-            samples: LitSamples::new(cloud.samples(first.first, first.count), medium.eta),
-            drawn: meta.samples_drawn as f64,
-            origin: DVec3::from_array(meta.origin_m),
-        }
-    }
-
-    /// `L_r` at a point, W/(m² sr); `key` chooses the roulette's random numbers.
-    pub fn radiance(&self, estimator: Estimator, point: Point, key: u64) -> DVec3 {
-        let exit = Exit::new(point.position - self.origin, point.normal, key);
-        sum(self.model, &self.medium, &self.samples, &exit, estimator).radiance / self.drawn
-    }
-
-    /// The mean of `L_r` over points by the whole sum.
-    pub fn mean(&self, points: &[Point]) -> DVec3 {
-        let radiance = |p: &Point| self.radiance(Estimator::Exhaustive, *p, 0);
-        points.iter().map(radiance).sum::<DVec3>() / points.len() as f64
-    }
-}
-
-/// The sum over samples by any model and estimator, with the widest vectors there are.
-pub fn sum(model: Model, medium: &Medium, samples: &LitSamples, exit: &Exit, estimator: Estimator) -> Sum {
-    let transport = model.of(medium).transport();
-    match model {
-        Model::DirectionalDipole => sum_with::<DirectionalLanes>(medium, transport, samples, exit, estimator),
-        Model::BetterDipole => sum_with::<BetterLanes>(medium, transport, samples, exit, estimator),
-        Model::StandardDipole => sum_with::<StandardLanes>(medium, transport, samples, exit, estimator),
-    }
-}
-
-fn sum_with<M: LaneModel>(
-    medium: &Medium,
-    transport: [f64; 3],
-    samples: &LitSamples,
-    exit: &Exit,
-    estimator: Estimator,
-) -> Sum {
-    let model = &M::new(medium);
-    match estimator {
-        Estimator::Exhaustive => simd::dispatch(Exhaustive { model, samples, exit }),
-        Estimator::Roulette(rule) => simd::dispatch(Roulette { model, samples, exit, rates: rule.rates(transport) }),
-    }
 }
 
 /// A camera that looks from the direction `towards` at the origin.
@@ -183,6 +120,16 @@ pub const MODELS: [Model; 3] = [Model::DirectionalDipole, Model::BetterDipole, M
 
 /// All rules of the roulette.
 pub const RULES: [Rule; 3] = [Rule::Mixture, Rule::Mean, Rule::Min];
+
+/// Every estimator: the roulette by each rule, the cut at the accuracy that is its default and at a loose one.
+pub const ESTIMATORS: [Estimator; 6] = [
+    Estimator::Exhaustive,
+    Estimator::Roulette(Rule::Mixture),
+    Estimator::Roulette(Rule::Mean),
+    Estimator::Roulette(Rule::Min),
+    Estimator::Cut { accuracy: 0.01 },
+    Estimator::Cut { accuracy: 0.5 },
+];
 
 /// Coefficients of one grey channel in 1/m, the same in all three.
 pub fn grey(sigma_a: f64, sigma_s: f64, asymmetry: f64, eta: f64) -> Medium {

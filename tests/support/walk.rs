@@ -2,11 +2,11 @@
 //!
 //! Lengths are mean free paths. Weights are 1 throughout: absorption ends a walk, so that every walk ends.
 
+use crate::random::Random;
 use bssrdf::fresnel;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
-use crate::random::Random;
 
 /// A medium in units of its mean free path.
 #[derive(Clone, Copy, Debug)]

@@ -92,7 +92,12 @@ impl Numbers {
     }
 
     /// The places of these samples, and the half that each belongs to.
-    pub fn places(&self, mesh: &Mesh, choice: &TriangleChoice, range: Range<u64>) -> impl Iterator<Item = (usize, Place)> {
+    pub fn places(
+        &self,
+        mesh: &Mesh,
+        choice: &TriangleChoice,
+        range: Range<u64>,
+    ) -> impl Iterator<Item = (usize, Place)> {
         let mut pieces = [None, None];
         range.map(move |index| {
             let half = (index & 1) as usize;
@@ -147,7 +152,8 @@ impl Half {
     /// A piece with its first point.
     fn piece(&self, mesh: &Mesh, chosen: &Chosen, own: f64, levels: f64) -> Piece {
         let pieces = levels.exp2();
-        let number = |k: f64| (self.count * (chosen.before + chosen.probability * k / pieces) - self.shift).ceil().max(0.0);
+        let number =
+            |k: f64| (self.count * (chosen.before + chosen.probability * k / pieces) - self.shift).ceil().max(0.0);
         let (first, end) = (number(own), number(own + 1.0).min(self.count));
         let expected = self.count * chosen.probability / pieces;
         // A piece that has a sample for certain is weighed by how many it has: their number is then no noise.

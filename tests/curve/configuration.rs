@@ -1,0 +1,197 @@
+//! What is compared: one row for each way to use the programs, and the scenes and media.
+
+use std::path::{Path, PathBuf};
+
+/// How phase one draws its samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct CloudKind {
+    /// `--choice`
+    pub choice: &'static str,
+    /// `--pattern`
+    pub pattern: &'static str,
+}
+
+/// How phase two sums them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Summing {
+    /// The note's, with the acceptance rule that suits the medium.
+    Roulette,
+    /// All samples.
+    Exhaustive,
+    /// Hierarchical; none is the default accuracy.
+    Cut(Option<f64>),
+}
+
+/// A way to use the two programs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Configuration {
+    pub name: &'static str,
+    pub cloud: CloudKind,
+    pub summing: Summing,
+}
+
+const INDEPENDENT_UNIFORM: CloudKind = CloudKind { choice: "uniform", pattern: "independent" };
+pub const INDEPENDENT_AREA: CloudKind = CloudKind { choice: "area", pattern: "independent" };
+const STRATIFIED_UNIFORM: CloudKind = CloudKind { choice: "uniform", pattern: "stratified" };
+pub const STRATIFIED_AREA: CloudKind = CloudKind { choice: "area", pattern: "stratified" };
+
+/// Accuracy of a gather that is as good as exact beside the error of a cloud.
+pub const FINE: Summing = Summing::Cut(Some(0.003));
+
+/// The configuration for errors that the cut's default accuracy would show in.
+pub const FINE_NAME: &str = "all, accuracy 0.003";
+
+/// All that is compared: the note's settings, each ingredient alone, and all together.
+pub const CONFIGURATIONS: [Configuration; 7] = [
+    Configuration { name: "note", cloud: INDEPENDENT_UNIFORM, summing: Summing::Roulette },
+    Configuration { name: "area", cloud: INDEPENDENT_AREA, summing: Summing::Roulette },
+    Configuration { name: "stratified", cloud: STRATIFIED_UNIFORM, summing: Summing::Roulette },
+    Configuration { name: "area + stratified", cloud: STRATIFIED_AREA, summing: Summing::Roulette },
+    Configuration { name: "cut", cloud: INDEPENDENT_UNIFORM, summing: Summing::Cut(None) },
+    Configuration { name: "all", cloud: STRATIFIED_AREA, summing: Summing::Cut(None) },
+    Configuration { name: FINE_NAME, cloud: STRATIFIED_AREA, summing: FINE },
+];
+
+/// The sum over all samples, of a cloud of the default kind.
+pub const EXHAUSTIVE: Configuration =
+    Configuration { name: "exhaustive", cloud: STRATIFIED_AREA, summing: Summing::Exhaustive };
+
+impl CloudKind {
+    /// Words for tables.
+    pub fn name(self) -> String {
+        format!("{}, {}", self.choice, self.pattern)
+    }
+}
+
+impl Configuration {
+    /// Flags of `sample-surface`.
+    pub fn sample_flags(&self) -> Vec<String> {
+        ["--choice", self.cloud.choice, "--pattern", self.cloud.pattern].map(String::from).into()
+    }
+
+    /// Flags of `gather`.
+    pub fn gather_flags(&self, medium: &Medium) -> Vec<String> {
+        let text = |flags: &[&str]| flags.iter().map(|f| (*f).to_owned()).collect::<Vec<_>>();
+        match self.summing {
+            Summing::Roulette => text(&["--estimator", "roulette", "--roulette", medium.rule]),
+            Summing::Exhaustive => text(&["--estimator", "exhaustive"]),
+            Summing::Cut(None) => text(&["--estimator", "cut"]),
+            Summing::Cut(Some(x)) => text(&["--estimator", "cut", "--accuracy", &x.to_string()]),
+        }
+    }
+
+    /// `--accuracy`, as the tables show it.
+    pub fn accuracy(&self) -> String {
+        match self.summing {
+            Summing::Cut(Some(x)) => x.to_string(),
+            Summing::Cut(None) => "default".into(),
+            _ => String::new(),
+        }
+    }
+}
+
+/// A medium and the note's rule for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Medium {
+    pub name: &'static str,
+    /// `--roulette`: `mean` as in the note, `mixture` where the variance of `mean` is not finite.
+    pub rule: &'static str,
+}
+
+pub const MARBLE: Medium = Medium { name: "marble", rule: "mean" };
+pub const SKIM_MILK: Medium = Medium { name: "skimmilk", rule: "mean" };
+pub const MEDIA: [Medium; 4] =
+    [MARBLE, SKIM_MILK, Medium { name: "ketchup", rule: "mixture" }, Medium { name: "skin1", rule: "mixture" }];
+
+/// A scene file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Subject {
+    pub name: String,
+    pub path: PathBuf,
+    /// Cameras in the file.
+    pub cameras: usize,
+    /// Flags of both programs.
+    pub flags: &'static [&'static str],
+    /// Flags that choose the camera.
+    pub view: Vec<String>,
+}
+
+impl Subject {
+    pub fn new(name: &str, path: PathBuf, cameras: usize) -> Subject {
+        Subject { name: name.into(), path, cameras, flags: &[], view: Vec::new() }
+    }
+}
+
+/// Scenes, of a folder of meshes that need not be there.
+pub struct Subjects {
+    /// Bunny and dragon, or what is there instead.
+    pub main: Vec<Subject>,
+    /// The scenes that other renderers were measured on.
+    pub sphere_of_peers: Option<Subject>,
+    pub bunny_of_peers: Option<Subject>,
+    /// What is missing, in words.
+    pub remarks: Vec<String>,
+}
+
+impl Subjects {
+    /// Bunny and dragon of `meshes`, the peers' scenes of the folder `peers` beside it, else the scene of the gallery.
+    pub fn find(meshes: &Path, gallery: &Path) -> Subjects {
+        let mut remarks = Vec::new();
+        let mut found = |name: &str, path: PathBuf, cameras: usize| {
+            if path.is_file() {
+                return Some(Subject::new(name, path, cameras));
+            }
+            remarks.push(format!("`{}` is not there: {name} is left out.", short(&path)));
+            None
+        };
+        let bunny = found("bunny", meshes.join("bunny.glb"), 3);
+        let dragon = found("dragon", meshes.join("dragon.glb"), 2);
+        let peers = meshes.join("../peers");
+        let sphere_of_peers = found("sphere of the peers", peers.join("sphere.glb"), 1);
+        let bunny_of_peers = found("bunny of the peers", peers.join("bunny.glb"), 1);
+        let bunny_of_peers = bunny_of_peers.map(|s| Subject { flags: &["--normals", "geometric"], ..s });
+        let mut main: Vec<Subject> = bunny.into_iter().chain(dragon).collect();
+        if main.is_empty() {
+            remarks.push("Instead of bunny and dragon, `data/scenes/figure.glb` is measured.".into());
+            main.push(figure(gallery));
+        }
+        Subjects { main, sphere_of_peers, bunny_of_peers, remarks }
+    }
+}
+
+/// The gallery's own mesh; its cameras are view files.
+fn figure(gallery: &Path) -> Subject {
+    let view = vec!["--view".into(), gallery.join("views/figure/front.json").display().to_string()];
+    Subject { view, ..Subject::new("figure", gallery.join("scenes/figure.glb"), 0) }
+}
+
+/// The last two names of a path: documents say nothing about the machine's folders.
+fn short(path: &Path) -> String {
+    let mut names: Vec<_> = path.iter().rev().take(2).map(|n| n.to_string_lossy()).collect();
+    names.reverse();
+    names.join("/")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flags_say_what_the_row_says() {
+        let [note, .., all, coarse] = CONFIGURATIONS;
+        assert_eq!(note.gather_flags(&MEDIA[2]), ["--estimator", "roulette", "--roulette", "mixture"]);
+        assert_eq!(note.gather_flags(&MARBLE)[3], "mean");
+        assert_eq!(all.sample_flags(), ["--choice", "area", "--pattern", "stratified"]);
+        assert_eq!(all.gather_flags(&MARBLE), ["--estimator", "cut"]);
+        assert_eq!(coarse.gather_flags(&MARBLE), ["--estimator", "cut", "--accuracy", "0.1"]);
+    }
+
+    #[test]
+    fn missing_meshes_are_replaced_and_named() {
+        let subjects = Subjects::find(Path::new("/nowhere/meshes"), Path::new("/gallery"));
+        assert_eq!(subjects.main.len(), 1);
+        assert_eq!(subjects.main[0].name, "figure");
+        assert_eq!(subjects.remarks.len(), 5);
+        assert!(subjects.remarks[0].contains("`meshes/bunny.glb` is not there"), "{}", subjects.remarks[0]);
+    }
+}

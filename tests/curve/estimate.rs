@@ -1,0 +1,63 @@
+//! Whether the error that `gather` estimates is the error that there is.
+
+use crate::{
+    bench::{Bench, Shot},
+    configuration::{MEDIA, Medium, Subject},
+    error::Error,
+    findings::{Findings, Target, percent, table, three},
+    measure::root,
+    reference::{Quality, reference},
+};
+
+/// Root mean squares over a few seeds.
+struct Found {
+    estimated: f64,
+    measured: f64,
+    bias: f64,
+    reference: f64,
+}
+
+/// Every scene and medium.
+pub fn estimate(bench: &mut Bench, subjects: &[Subject]) -> Result<Findings, Error> {
+    let (mut rows, mut worst) = (Vec::new(), 0.0f64);
+    for subject in subjects {
+        for medium in MEDIA {
+            let found = one(bench, subject, medium)?;
+            let ratio = found.estimated / found.measured;
+            worst = worst.max((ratio - 1.0).abs());
+            let shares = [found.estimated, found.measured].map(percent);
+            let rest = [three(ratio), percent(found.bias), percent(found.reference)];
+            rows.push([subject.name.clone(), medium.name.into()].into_iter().chain(shares).chain(rest).collect());
+        }
+        bench.forget_clouds();
+    }
+    let mut findings = Findings::default();
+    let what = "estimated error of an image against the measured one, worst deviation";
+    findings.targets.push(Target::at_most(what, 0.25, Some(worst), "measured"));
+    let header = ["scene", "medium", "estimated", "measured", "ratio", "bias", "reference's own error"];
+    let text = "Relative RMSE of whole images, root mean square over independent seeds of cloud and paths. The bias is \
+                the mean brightness over the reference's, its own error included.";
+    findings.section("The estimated error", format!("{text}\n\n{}", table(&header, &rows)));
+    Ok(findings)
+}
+
+fn one(bench: &mut Bench, subject: &Subject, medium: Medium) -> Result<Found, Error> {
+    let effort = bench.effort;
+    let side = effort.of(32, 128, 256);
+    let shot = Shot { size: [side; 2], ..bench.shot(subject, medium, bench.all()) };
+    let quality = Quality { clouds: 4, samples: effort.of(20_000, 2_000_000, 8_000_000), spp: effort.of(4, 16, 64) };
+    let converged = reference(bench, &shot, quality)?;
+    let seeds = effort.of(2, 3, 6);
+    let (mut estimated, mut measured, mut bias) = (0.0, 0.0, 0.0);
+    for seed in 1..=seeds {
+        let samples = effort.of(3_000, 300_000, 1_000_000);
+        let taken = bench.take(&Shot { samples, spp: 16, cloud_seed: seed, gather_seed: seed, ..shot.clone() })?;
+        let (squared, tilt) = (converged.squared_error(&taken.picture), converged.bias(&taken.picture));
+        bench.judge(&taken, root(squared), Some(tilt));
+        estimated += taken.gathering.number("estimated_relative_error").unwrap_or(f64::NAN).powi(2) / seeds as f64;
+        measured += squared / seeds as f64;
+        bias += tilt / seeds as f64;
+    }
+    let (estimated, measured) = (root(estimated), root(measured));
+    Ok(Found { estimated, measured, bias, reference: converged.own_error() })
+}

@@ -1,0 +1,99 @@
+//! Against the renderers that one would take instead: relMSE over the object times CPU seconds, as they were measured.
+
+use crate::{
+    bench::{Bench, Shot},
+    configuration::{Configuration, FINE_NAME, MARBLE, Medium, SKIM_MILK, Subject, Subjects},
+    error::Error,
+    findings::{Findings, Target, count, table, three},
+    measure::Reference,
+    reference::{Quality, reference},
+};
+
+/// The best of the others on this scene, relMSE times CPU seconds, each against its own converged image: POV-Ray 3.7
+/// (dipole, 200 samples; biased) on the sphere, Cycles 4.5 (Burley) on the bunny; 128 x 128, on a like machine.
+const BEST_ON_SPHERE: (&str, f64) = ("POV-Ray 3.7, dipole", 0.0003);
+const BEST_ON_BUNNY: (&str, f64) = ("Cycles 4.5, Burley", 0.0085);
+
+/// Pixels of a side.
+const SIDE: u64 = 128;
+
+/// Means over the seeds of one choice of samples and paths.
+struct Point {
+    configuration: &'static str,
+    samples: u64,
+    spp: u64,
+    relative_mse: f64,
+    cpu: f64,
+}
+
+impl Point {
+    fn product(&self) -> f64 {
+        self.relative_mse * self.cpu
+    }
+}
+
+/// Both scenes, if they are there.
+pub fn peers(bench: &mut Bench, subjects: &Subjects) -> Result<Findings, Error> {
+    let mut findings = Findings::default();
+    let pairs =
+        [(&subjects.sphere_of_peers, SKIM_MILK, BEST_ON_SPHERE), (&subjects.bunny_of_peers, MARBLE, BEST_ON_BUNNY)];
+    let mut rows = Vec::new();
+    for (subject, medium, (peer, best)) in pairs {
+        let Some(subject) = subject else { continue };
+        let points = scene(bench, subject, medium)?;
+        let Some(ours) = points.iter().min_by(|a, b| a.product().total_cmp(&b.product())) else { continue };
+        let what = format!("{}, {}: {peer} over ours, relMSE x CPU s", subject.name, medium.name);
+        let basis = format!("theirs {} (measured before), ours {} (measured)", three(best), three(ours.product()));
+        findings.targets.push(Target::at_least(what, 10.0, Some(best / ours.product()), basis));
+        rows.extend(points.iter().map(|p| row(subject, medium, p)));
+    }
+    let header = ["scene", "medium", "configuration", "K", "paths a pixel", "relMSE", "CPU s", "product"];
+    let text = "Whole processes on one thread, sampling included; relMSE is the mean of (t - r)² / (r² + 0.01) over \
+                the object, 128 x 128, means over seeds of cloud and paths.\n\n";
+    findings.section("Beside other renderers", format!("{text}{}", table(&header, &rows)));
+    Ok(findings)
+}
+
+fn row(subject: &Subject, medium: Medium, p: &Point) -> Vec<String> {
+    let numbers = [p.relative_mse, p.cpu, p.product()].map(three);
+    let names = [subject.name.clone(), medium.name.into(), p.configuration.into(), count(p.samples), p.spp.to_string()];
+    names.into_iter().chain(numbers).collect()
+}
+
+/// Every choice of samples and paths on one scene.
+fn scene(bench: &mut Bench, subject: &Subject, medium: Medium) -> Result<Vec<Point>, Error> {
+    let effort = bench.effort;
+    let side = effort.of(32, SIDE, SIDE);
+    let configuration = bench.configuration(FINE_NAME).unwrap_or_else(|| bench.all());
+    let shot = Shot { size: [side; 2], threads: 1, ..bench.shot(subject, medium, configuration) };
+    let quality = Quality { clouds: 4, samples: effort.of(20_000, 4_000_000, 10_000_000), spp: effort.of(4, 64, 128) };
+    let converged = reference(bench, &shot, quality)?;
+    let rows = effort.of(vec![configuration], vec![configuration], vec![bench.all(), configuration]);
+    let mut points = Vec::new();
+    for samples in effort.of(vec![1_000], vec![300_000, 3_000_000], vec![10_000, 100_000, 1_000_000, 4_000_000]) {
+        for spp in effort.of(vec![1], vec![4, 16], vec![1, 4, 16, 64]) {
+            for configuration in &rows {
+                let shot = Shot { samples, spp, ..shot.clone() };
+                points.push(point(bench, &shot, *configuration, &converged)?);
+            }
+        }
+    }
+    bench.forget_clouds();
+    Ok(points)
+}
+
+fn point(bench: &mut Bench, shot: &Shot, configuration: Configuration, reference: &Reference) -> Result<Point, Error> {
+    let seeds = bench.effort.of(2, 3, 6);
+    bench.say(&format!("{} {}: K {}, {} paths", shot.subject.name, shot.medium.name, count(shot.samples), shot.spp));
+    let (mut error, mut cpu) = (0.0, 0.0);
+    for seed in 1..=seeds {
+        let one = Shot { configuration, cloud_seed: seed, gather_seed: seed, ..shot.clone() };
+        let taken = bench.take(&one)?;
+        error += reference.relative_mse(&taken.picture) / seeds as f64;
+        cpu += taken.cpu() / seeds as f64;
+    }
+    let (samples, spp) = (shot.samples, shot.spp);
+    // A mean below the reference's own noise is zero as far as can be told, which is no measurement.
+    let relative_mse = if error > 0.0 { error } else { f64::INFINITY };
+    Ok(Point { configuration: configuration.name, samples, spp, relative_mse, cpu })
+}

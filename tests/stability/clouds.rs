@@ -1,0 +1,142 @@
+//! Clouds that a tree can make little of: hardly any samples, all of them in one place, on a line, in one half.
+
+use crate::{
+    evaluate::assert_is,
+    scenes::{SKY, aimed_at, render},
+};
+use bssrdf::{Medium, Model};
+use formats::cloud::{Cloud, Sample};
+use gather::{Filter, Settings, estimator::Estimator};
+use glam::{DVec3, Vec3};
+use support::{
+    meshes::{Light, Part, World, quad, slab, world},
+    pipeline::{ESTIMATORS, Lit, MODELS, Point, cloud, grey, settings, stratified},
+    planted::{Halves, alternating, cloud_of},
+    random::Random,
+};
+
+/// What the program renders with if it is told nothing.
+fn default_settings(model: Model) -> Settings {
+    let estimator = Estimator::Cut { accuracy: 0.01 };
+    Settings { estimator, paths_per_pixel: 16, filter: Filter::Box, environment: SKY, ..settings(model, 8, 8) }
+}
+
+fn milky() -> Medium {
+    grey(100.0, 1000.0, 0.0, 1.3)
+}
+
+fn sunny_slab() -> World {
+    let sun = Light::Directional { towards: DVec3::new(0.36, 0.48, 0.8), irradiance: DVec3::ONE };
+    world(&[Part::translucent(slab(DVec3::new(5e-3, 5e-3, 2e-3), 2))], &[sun], DVec3::ZERO)
+}
+
+/// K = 1, 2, 3 by the defaults of both programs: every image is fit for a file, lit where a sample is, and says how little
+/// it knows. Half of the cloud may be empty, or hold all of it.
+#[test]
+fn one_two_and_three_samples() {
+    let world = sunny_slab();
+    let camera = aimed_at(DVec3::ZERO, DVec3::new(0.3, 0.2, 1.0), 4e-3);
+    for (samples, seed) in [1, 2, 3].into_iter().flat_map(|samples| (0..12).map(move |seed| (samples, seed))) {
+        let cloud = cloud(&world, &stratified(samples, seed));
+        for model in MODELS {
+            let rendered = render(&world, &cloud, &[milky()], &camera, &default_settings(model));
+            assert_eq!(rendered.counts.gathers > 0, !cloud.is_empty());
+            let sums: DVec3 = rendered.pixels.iter().map(|p| p.variance()).sum();
+            assert!(sums.is_finite() && sums.min_element() > 0.0, "paths meet the sky in and beside the slab");
+        }
+    }
+}
+
+/// Sums by every estimator; those that choose are unbiased, and the mean of many is close to the whole sum. How close, a
+/// factor four above what chance explains for these clouds, was measured.
+fn assert_sums(what: &str, halves: &Halves, points: &[Point], room: f64) {
+    let cloud = cloud_of(halves);
+    for model in MODELS {
+        let lit = Lit::new(&cloud, &milky(), model);
+        for point in points {
+            let whole = lit.radiance(Estimator::Exhaustive, *point, 0);
+            assert!(whole.is_finite() && whole.min_element() >= 0.0, "{what}: {whole}");
+            for estimator in ESTIMATORS.into_iter().filter(|e| matches!(e, Estimator::Cut { .. })) {
+                let mut random = Random(5);
+                let mean = (0..200).map(|_| lit.radiance(estimator, *point, random.bits())).sum::<DVec3>() / 200.0;
+                let error = (mean / whole - 1.0).abs().max_element();
+                assert!(mean == whole || error < room, "{what}, {estimator:?} at {point:?}: {mean} {whole}");
+            }
+        }
+    }
+}
+
+/// At the samples, beside them, and far away.
+fn around(position: DVec3) -> Vec<Point> {
+    let offsets = [DVec3::ZERO, DVec3::X * 1e-7, DVec3::X * 1e-4, DVec3::new(0.0, 2e-3, 0.0), DVec3::Y * 3e-2];
+    offsets.map(|offset| Point { position: position + offset, normal: DVec3::Z }).into()
+}
+
+fn sample(position: Vec3, flux: f32) -> Sample {
+    let direction = DVec3::new(0.3, 0.1, 1.0).normalize();
+    Sample { position, normal: DVec3::Z, direction, flux: Vec3::splat(flux) }
+}
+
+/// A node of no extent: the guards are its radius and spread of 0, at a distance of 0 from it too. Equal samples make every
+/// pick right.
+#[test]
+fn all_samples_in_one_point() {
+    let at = Vec3::new(1e-3, -2e-3, 0.0);
+    for count in [1, 16, 17, 1000] {
+        let equal = alternating((0..count).map(|_| sample(at, 2.0)));
+        assert_sums("equal samples in a point", &equal, &around(at.as_dvec3()), 1e-5);
+    }
+    let uneven = alternating((0..1000).map(|k| sample(at, 1.0 + (k % 7) as f32)));
+    assert_sums("uneven samples in a point", &uneven, &around(at.as_dvec3()), 0.1);
+}
+
+/// Boxes without a second side, evenly and ever more crowded: nodes whose middle is far from most of their samples.
+#[test]
+fn all_samples_on_a_line() {
+    let at = |x: f32| sample(Vec3::new(x, 0.0, 0.0), 1.0);
+    let even = alternating((0..3000).map(|k| at(k as f32 * 1e-5)));
+    assert_sums("evenly on a line", &even, &around(DVec3::new(0.015, 0.0, 0.0)), 0.2);
+    let crowded = alternating((0..3000).map(|k| at(0.03 * 0.99f32.powi(k))));
+    assert_sums("crowded on a line", &crowded, &around(DVec3::ZERO), 0.2);
+}
+
+/// Places on a square of 8 mm.
+fn scattered(count: usize) -> Vec<Sample> {
+    let mut random = Random(8);
+    let mut place = || Vec3::new(random.between(-4e-3, 4e-3) as f32, random.between(-4e-3, 4e-3) as f32, 0.0);
+    (0..count).map(|_| sample(place(), 1.0)).collect()
+}
+
+/// The point is a sample's own, to the last digit, in the middle of others.
+#[test]
+fn exit_point_exactly_at_a_sample_of_many() {
+    let samples = scattered(3000);
+    let points: Vec<Point> =
+        samples.iter().step_by(500).map(|s| Point { position: s.position.as_dvec3(), normal: DVec3::Z }).collect();
+    assert_sums("at a sample", &alternating(samples), &points, 0.1);
+}
+
+/// All samples in one of the halves: the paths of the other see nothing, and the pixel half of what they do.
+///
+/// Seen to catch: the other half taken where one is empty.
+#[test]
+fn all_samples_in_one_half() {
+    let world = world(&[Part::translucent(quad(5e-3, 0.0, 2))], &[], DVec3::ONE);
+    let samples = scattered(500);
+    let camera = aimed_at(DVec3::ZERO, DVec3::new(0.3, 0.2, 1.0), 2e-3);
+    let exact = Estimator::Cut { accuracy: 1e-5 };
+    for halves in [[samples.clone(), Vec::new()], [Vec::new(), samples]] {
+        let cloud: Cloud = cloud_of(&halves);
+        let image = |estimator: Estimator, paths_per_pixel: u32| {
+            let settings = Settings { estimator, paths_per_pixel, ..settings(Model::BetterDipole, 8, 8) };
+            render(&world, &cloud, &[milky()], &camera, &settings).pixels
+        };
+        let whole = image(Estimator::Exhaustive, 4);
+        for paths in [1, 2, 4] {
+            for (a, b) in image(exact, paths).iter().zip(&whole) {
+                assert_is("one half", a.beauty(), b.beauty(), 1e-3);
+                assert!(b.beauty().min_element() > 0.0 && a.variance().min_element() > 0.0);
+            }
+        }
+    }
+}

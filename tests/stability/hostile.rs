@@ -1,0 +1,267 @@
+//! Clouds that were damaged, or forged with the right checksums: they are refused, or do no harm. No panic, no hang.
+
+use crate::{forge::Forged, scenes::aimed_at};
+use bssrdf::Model;
+use formats::cloud::{Cloud, Meta};
+use gather::{
+    Input, Settings,
+    estimator::Estimator,
+    samples::{Exit, LitSamples},
+};
+use glam::DVec3;
+use scene::Camera;
+use std::{
+    fs,
+    panic::{AssertUnwindSafe, catch_unwind},
+    path::PathBuf,
+    time::{Duration, Instant},
+};
+use support::{
+    meshes::{Light, Part, World, quad, world},
+    pipeline::{ESTIMATORS, Scatterer, grey, sampled, settings, stratified, write},
+};
+
+/// Stored samples: five tiles in each half. Their trees have room for eight: nodes that hold nothing.
+const SAMPLES: u64 = 150;
+
+/// What floats and words are replaced with.
+const FLOATS: [f32; 9] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN, 1e30, -1.0, 0.0, 1e-45];
+
+struct Lab {
+    folder: tempfile::TempDir,
+    world: World,
+    camera: Camera,
+    scatterer: Scatterer,
+    good: Forged,
+}
+
+impl Lab {
+    fn new() -> Lab {
+        Lab::of(SAMPLES)
+    }
+
+    fn of(samples: u64) -> Lab {
+        let sun = Light::Directional { towards: DVec3::Z, irradiance: DVec3::ONE };
+        let world = world(&[Part::translucent(quad(5e-3, 0.0, 1))], &[sun], DVec3::ZERO);
+        let folder = tempfile::tempdir().expect("the temporary folder is writable");
+        let path = folder.path().join("good.cloud");
+        let drawn = sampled(&world, &stratified(samples, 1));
+        write(&drawn, &path);
+        let good = Forged(fs::read(&path).expect("the cloud was written"));
+        let camera = aimed_at(DVec3::ZERO, DVec3::new(0.3, 0.2, 1.0), 2e-3);
+        let scatterer = Scatterer::new(Model::StandardDipole, &grey(100.0, 1000.0, 0.0, 1.3));
+        Lab { folder, world, camera, scatterer, good }
+    }
+
+    fn path(&self) -> PathBuf {
+        self.folder.path().join("bad.cloud")
+    }
+
+    /// What `gather` does with a cloud, but for the checks of its facts against the scene's: true if it takes it.
+    fn takes(&self, forged: &Forged) -> bool {
+        fs::write(self.path(), &forged.0).expect("the temporary folder is writable");
+        let Ok(cloud) = Cloud::open(&self.path()) else {
+            return false;
+        };
+        if cloud.verify(&self.path()).is_err() {
+            return false;
+        }
+        for half in cloud.meta().materials.iter().flat_map(|m| m.halves) {
+            let samples = LitSamples::new(&cloud, &half, 1.3);
+            for x in [0.0, 5e-3, 1.0] {
+                let exit = Exit::new(DVec3::new(x, 0.0, 0.0), DVec3::Z, forged.0[20].into());
+                for estimator in ESTIMATORS {
+                    self.scatterer.sum(&samples, &exit, estimator);
+                }
+            }
+        }
+        true
+    }
+
+    /// One image of it, if it is taken.
+    fn renders(&self, forged: &Forged) {
+        if self.takes(forged)
+            && let Ok(cloud) = Cloud::open(&self.path())
+            && cloud.meta().materials.iter().all(|m| m.index == 0)
+        {
+            let media = vec![grey(100.0, 1000.0, 0.0, 1.3); cloud.meta().materials.len()];
+            let estimator = Estimator::Cut { accuracy: 0.01 };
+            let settings = Settings { estimator, paths_per_pixel: 2, ..settings(Model::StandardDipole, 2, 2) };
+            let (scene, rays) = (&self.world.scene, &self.world.rays);
+            let input = Input { scene, rays, cloud: &cloud, media: &media, camera: &self.camera };
+            gather::render(&input, &settings, |_| ());
+        }
+    }
+
+    /// Fails if one of the forgeries does harm; how many were taken.
+    fn harmless(&self, forgeries: impl Iterator<Item = (String, Forged)>) -> usize {
+        let (mut taken, mut harmful) = (0, Vec::new());
+        for (what, forged) in forgeries {
+            let start = Instant::now();
+            match catch_unwind(AssertUnwindSafe(|| self.takes(&forged))) {
+                Ok(takes) => taken += usize::from(takes),
+                Err(_) => harmful.push(format!("{what}: a panic")),
+            }
+            if start.elapsed() > Duration::from_secs(20) {
+                harmful.push(format!("{what}: hangs"));
+            }
+        }
+        assert!(harmful.is_empty(), "{} forgeries do harm: {:#?}", harmful.len(), &harmful[..harmful.len().min(20)]);
+        taken
+    }
+
+    /// A section with each of its words replaced by each of these.
+    fn replaced<'a>(&'a self, section: &'a str, words: &'a [u32]) -> impl Iterator<Item = (String, Forged)> + 'a {
+        let range = self.good.section(section);
+        range.clone().step_by(4).flat_map(move |at| {
+            words.iter().map(move |word| {
+                let mut forged = self.good.clone();
+                forged.put(at, &word.to_le_bytes());
+                let place = (at - range.start) / 4;
+                (format!("word {place} of {section} is {:e} ({word:x})", f32::from_bits(*word)), forged.sealed())
+            })
+        })
+    }
+}
+
+#[test]
+fn the_cloud_is_taken_as_it_is() {
+    let lab = Lab::new();
+    assert!(lab.takes(&lab.good) && lab.takes(&lab.good.clone().sealed()));
+    assert_eq!(lab.good.0, lab.good.clone().sealed().0, "the checksums are those of the format");
+}
+
+/// Every byte of header and table, with and without the right checksum.
+///
+/// Seen to catch: a header whose checksum is not checked.
+#[test]
+fn headers() {
+    let lab = Lab::new();
+    let changed = |at: usize, by: u8| {
+        let mut forged = lab.good.clone();
+        forged.0[at] ^= by;
+        forged
+    };
+    let all = || lab.good.head().flat_map(|at| [1, 0x80, 0xff].map(|by| (at, by)));
+    let damaged = all().map(|(at, by)| (format!("byte {at} ^ {by}"), changed(at, by)));
+    assert_eq!(lab.harmless(damaged), 0, "a damaged header is found");
+    let sealable = |f: &Forged| f.head().end <= f.0.len();
+    let forged = all().map(|(at, by)| (format!("byte {at} ^ {by}, sealed"), changed(at, by)));
+    let forged = forged.filter(|(_, f)| sealable(f)).map(|(what, f)| (what, f.sealed_head()));
+    let taken = lab.harmless(forged);
+    assert!(taken < 3 * 64, "{taken} changed headers taken");
+}
+
+/// Every byte of the facts, with the right checksums: their numbers, lengths of lists, and texts.
+#[test]
+fn facts() {
+    let lab = Lab::new();
+    let changed = |(at, by): (usize, u8)| {
+        let mut forged = lab.good.clone();
+        forged.0[at] ^= by;
+        (format!("byte {at} of the file ^ {by}"), forged.sealed())
+    };
+    let range = lab.good.section("meta");
+    lab.harmless(range.clone().flat_map(|at| [1, 0x7f, 0x80, 0xff].map(|by| (at, by))).map(changed));
+    let long = |at: usize| {
+        let mut forged = lab.good.clone();
+        forged.put(at, &u64::MAX.to_le_bytes());
+        (format!("eight bytes at {at}"), forged.sealed())
+    };
+    lab.harmless((range.start..range.end - 8).map(long));
+}
+
+/// Counts and places of groups, and K, that the file has no room for.
+///
+/// Seen to catch: groups that are not checked against the sections.
+#[test]
+fn groups() {
+    let lab = Lab::new();
+    let huge = [1, SAMPLES - 1, 1 << 36, 1 << 60, u64::MAX];
+    type Change = fn(&mut Meta, u64);
+    let changes: [(&str, Change); 8] = [
+        ("samples of the first half", |m, n| m.materials[0].halves[0].samples = n),
+        ("samples of the second half", |m, n| m.materials[0].halves[1].samples = n),
+        ("first tile", |m, n| m.materials[0].halves[1].first_tile = n),
+        ("first node", |m, n| m.materials[0].halves[1].first_node = n),
+        ("first tile of the first half", |m, n| m.materials[0].halves[0].first_tile = n),
+        ("K", |m, n| m.samples_drawn = n),
+        ("no material", |m, _| m.materials.clear()),
+        ("many materials", |m, n| m.materials = vec![m.materials[0].clone(); n as usize % 1000]),
+    ];
+    let cases = changes.iter().flat_map(|change| huge.map(|n| (change, n)));
+    let mut taken = Vec::new();
+    for ((what, change), n) in cases {
+        let mut drawn = sampled(&lab.world, &stratified(SAMPLES, 1));
+        change(&mut drawn.meta, n);
+        write(&drawn, &lab.path());
+        let forged = Forged(fs::read(lab.path()).expect("the cloud was written"));
+        if lab.harmless(std::iter::once((format!("{what}: {n}"), forged.clone()))) > 0 {
+            taken.push(*what);
+        }
+        lab.renders(&forged);
+    }
+    // A larger K is as good as any.
+    assert!(taken.iter().all(|what| ["K", "many materials"].contains(what)), "{taken:?}");
+}
+
+/// Every number of every sample.
+#[test]
+fn tiles() {
+    let lab = Lab::new();
+    let words = [FLOATS.map(f32::to_bits).as_slice(), &[u32::MAX, 0x8000_8000]].concat();
+    lab.harmless(lab.replaced("tile", &words));
+}
+
+/// Every number of every node: also of those that have no tiles, or no place in the file.
+///
+/// Seen to catch: a pick from a node beyond the last sample; a negative flux, which opens leaves beyond the last tile.
+#[test]
+fn nodes() {
+    for samples in [1, 2 * 37, SAMPLES] {
+        let lab = Lab::of(samples);
+        lab.harmless(lab.replaced("node", &FLOATS.map(f32::to_bits)));
+    }
+}
+
+/// A file of a hundred million samples, nearly all of it a hole: opened in milliseconds, since nothing of it is read.
+///
+/// Seen to catch: a file whose checksums are all checked when it is opened.
+#[test]
+fn opening_reads_no_samples() {
+    let lab = Lab::new();
+    let samples = 1u64 << 27;
+    let mut drawn = sampled(&lab.world, &stratified(SAMPLES, 1));
+    drawn.meta.samples_drawn = 2 * samples;
+    drawn.meta.materials[0].halves[0].samples = samples;
+    let group = drawn.meta.materials[0].halves[0];
+    let second = &mut drawn.meta.materials[0].halves[1];
+    (second.samples, second.first_tile, second.first_node) = (0, group.tiles(), group.nodes());
+    write(&drawn, &lab.path());
+    let mut forged = Forged(fs::read(lab.path()).expect("the cloud was written"));
+    let tiles = forged.section("tile").start as u64;
+    let nodes = tiles + group.tiles() * 512;
+    let end = nodes + group.nodes() * 32;
+    for (name, offset, bytes, elements) in
+        [("tile", tiles, nodes - tiles, group.tiles()), ("node", nodes, end - nodes, group.nodes())]
+    {
+        let entry = forged.entry(name);
+        [offset, bytes, bytes, elements]
+            .iter()
+            .enumerate()
+            .for_each(|(k, n)| forged.put(entry + 24 + 8 * k, &n.to_le_bytes()));
+    }
+    forged.put(16, &end.to_le_bytes());
+    forged.put(24, &samples.to_le_bytes());
+    let forged = forged.sealed_head();
+    fs::write(lab.path(), &forged.0).expect("the temporary folder is writable");
+    fs::OpenOptions::new().write(true).open(lab.path()).and_then(|f| f.set_len(end)).expect("files may have holes");
+    let open = |_| {
+        let start = Instant::now();
+        let cloud = Cloud::open(&lab.path()).expect("the header fits the file");
+        assert_eq!(cloud.len(), samples);
+        start.elapsed()
+    };
+    let fastest = (0..10).map(open).min().expect("ten times");
+    assert!(fastest < Duration::from_millis(5), "{fastest:?}");
+}

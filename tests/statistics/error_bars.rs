@@ -1,0 +1,109 @@
+//! The variance of a pixel is the variance that it has, over clouds, gathers and camera paths.
+
+use crate::means::{jelly, lamp, sun};
+use bssrdf::{Medium, Model, built_in};
+use gather::{Filter, Input, Settings, estimator::Estimator, film::Pixel};
+use glam::DVec3;
+use rayon::prelude::*;
+use support::{
+    EFFORT,
+    meshes::{Part, World, slab, world},
+    pipeline::{Sampling, by_area, cloud, grey, orthographic, settings, stratified},
+    z_test::{Estimate, assert_mean},
+};
+
+/// Pairs of images, each with a cloud and camera paths of its own.
+const PAIRS: u64 = 48 * EFFORT;
+/// So few that the cloud's part of the variance is about as large as that of the paths.
+const SAMPLES: u64 = 150;
+
+const CUT: Estimator = Estimator::Cut { accuracy: 0.1 };
+
+struct Scene {
+    world: World,
+    medium: Medium,
+    environment: DVec3,
+    /// Half of what the image shows, m.
+    half_height: f64,
+    sampling: fn(u64, u64) -> Sampling,
+}
+
+/// A body that fills a part of the image, before a sky that its edge pixels and its inside show.
+fn edge(medium: Medium) -> Scene {
+    let body = Part::translucent(slab(DVec3::new(3e-3, 2e-3, 1e-3), 4));
+    let environment = DVec3::splat(0.02);
+    let world = world(&[body], &[sun(DVec3::ONE), lamp()], environment);
+    Scene { world, medium, environment, half_height: 3.5e-3, sampling: stratified }
+}
+
+fn image(scene: &Scene, settings: &Settings, seed: u64) -> Vec<Pixel> {
+    let cloud = cloud(&scene.world, &(scene.sampling)(SAMPLES, seed));
+    let (media, camera) = ([scene.medium.clone()], orthographic(DVec3::new(1.0, 1.2, 1.5), scene.half_height));
+    let (scene_of, rays) = (&scene.world.scene, &scene.world.rays);
+    let input = Input { scene: scene_of, rays, cloud: &cloud, media: &media, camera: &camera };
+    gather::render(&input, &Settings { seed, ..settings.clone() }, |_| ()).pixels
+}
+
+/// The ratio of the estimated variance to the actual one, sums over pixels and channels, over pairs of images: two
+/// values of a pixel differ by twice their variance, squared and in the mean.
+fn assert_error_bars(what: &str, scene: &Scene, settings: &Settings, first: u64) {
+    let pair = |k: u64| {
+        let [a, b] = [0, 1].map(|j| image(scene, settings, first + 2 * k + j));
+        let actual = |(p, q): (&Pixel, &Pixel)| (p.beauty() - q.beauty()).length_squared() / 2.0;
+        let estimated = |(p, q): (&Pixel, &Pixel)| (p.variance() + q.variance()).element_sum() / 2.0;
+        [a.iter().zip(&b).map(actual).sum::<f64>(), a.iter().zip(&b).map(estimated).sum()]
+    };
+    let pairs: Vec<[f64; 2]> = (0..PAIRS).into_par_iter().map(pair).collect();
+    let actual = pairs.iter().map(|p| p[0]).sum::<f64>() / PAIRS as f64;
+    // The ratio's error to first order: that of the differences from its own value.
+    let ratio = pairs.iter().map(|p| p[1]).sum::<f64>() / PAIRS as f64 / actual;
+    let differences: Vec<f64> = pairs.iter().map(|[a, e]| (e - ratio * a) / actual).collect();
+    let estimate = Estimate { mean: ratio, ..Estimate::of(&differences) };
+    assert_mean(&format!("variance, {what}"), estimate, 1.0);
+    assert!(estimate.error < 0.2, "{what}: {estimate:?} is too rough to tell");
+}
+
+fn of_paths(estimator: Estimator, paths_per_pixel: u32) -> Settings {
+    // The directional dipole has outliers near edges (method.md section 8), which take many images to average.
+    let settings = settings(Model::StandardDipole, 10, 8);
+    Settings { estimator, paths_per_pixel, filter: Filter::Box, ..settings }
+}
+
+/// Seen to catch: half of the squared difference; both halves of the cloud drawn by one scramble; paths of both halves
+/// spread by one sequence; all paths gathering from the first half.
+#[test]
+fn of_the_cut() {
+    let scene = edge(built_in("marble").expect("a built-in medium"));
+    for (k, paths) in [2, 4, 5].into_iter().enumerate() {
+        let settings = Settings { environment: scene.environment, ..of_paths(CUT, paths) };
+        assert_error_bars(&format!("cut, {paths} paths"), &scene, &settings, 50_000 + 1000 * k as u64);
+    }
+}
+
+/// Every path gathers from both halves, the error bars take even paths with one and odd paths with the other: the same if
+/// the cloud's error is the same all over a pixel, so the medium is thin here. Otherwise the paths average over it, and
+/// the error bars, which know only half of them for each half, are somewhat wide.
+///
+/// Seen to catch: the same value of the cloud for both halves.
+#[test]
+fn of_the_whole_sum() {
+    // In so thin a medium independent samples, and a view without the body's edge, let the cloud's part be seen.
+    let scene = Scene { half_height: 6e-4, sampling: by_area, ..edge(grey(30.0, 300.0, 0.0, 1.3)) };
+    for (k, paths) in [2, 4].into_iter().enumerate() {
+        let settings = Settings { environment: scene.environment, ..of_paths(Estimator::Exhaustive, paths) };
+        assert_error_bars(&format!("whole sum, {paths} paths"), &scene, &settings, 60_000 + 1000 * k as u64);
+    }
+}
+
+/// One path through the centre of each pixel of a body of index 1 has no noise of its own: what is left is that of cloud
+/// and gather, and known.
+///
+/// Seen to catch: the mean of both halves taken for each.
+#[test]
+fn of_one_path_a_pixel() {
+    let scene = Scene { environment: DVec3::ZERO, ..edge(jelly()) };
+    for (k, estimator) in [CUT, Estimator::Exhaustive].into_iter().enumerate() {
+        let settings = Settings { filter: Filter::Point, ..of_paths(estimator, 1) };
+        assert_error_bars(&format!("{estimator:?}, one path"), &scene, &settings, 70_000 + 1000 * k as u64);
+    }
+}

@@ -1,0 +1,138 @@
+//! `--accuracy X` is the relative error that the cut adds to a pixel: what an image differs by from the whole sum over the
+//! same cloud, along the same camera paths.
+
+use bssrdf::{Medium, Model, built_in, built_in_names};
+use formats::cloud::Cloud;
+use gather::{Input, Settings, estimator::Estimator, film::Pixel};
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+use scene::{Camera, NormalKind, light::all_light_at};
+use std::path::Path;
+use support::{
+    EFFORT,
+    meshes::{World, repository_scene, scene_file},
+    pipeline::{cloud, orthographic, settings, stratified},
+};
+
+const ACCURACY: f64 = 0.01;
+const SIZE: usize = 32;
+
+/// A mesh with a cloud of it, and what a camera sees of it.
+struct View {
+    name: String,
+    world: World,
+    cloud: Cloud,
+    camera: Camera,
+    /// Pixels whose points light reaches, and those whose it does not.
+    pixels: [Vec<usize>; 2],
+}
+
+impl View {
+    /// Seen along the axis that shows most of both sides, the lit and the unlit one.
+    fn new(name: &str, world: World) -> View {
+        let cloud = cloud(&world, &stratified(60_000 * EFFORT.min(4), 1));
+        let cameras = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
+        let seen = |towards: DVec3| {
+            let camera = looking(&world, cloud.meta().materials[0].index, towards);
+            let pixels = sides(&world, cloud.meta().materials[0].index, &camera);
+            (pixels[0].len().min(pixels[1].len()), camera, pixels)
+        };
+        let (fewest, camera, pixels) = cameras.map(seen).max_by_key(|(fewest, ..)| *fewest).expect("six directions");
+        assert!(fewest >= 30, "{name}: {fewest} points of one side");
+        View { name: name.into(), world, cloud, camera, pixels }
+    }
+
+    fn image(&self, medium: &Medium, estimator: Estimator) -> Vec<Pixel> {
+        let (media, camera) = (std::slice::from_ref(medium), &self.camera);
+        let input = Input { scene: &self.world.scene, rays: &self.world.rays, cloud: &self.cloud, media, camera };
+        let settings = Settings { estimator, ..settings(Model::DirectionalDipole, SIZE, SIZE) };
+        gather::render(&input, &settings, |_| ()).pixels
+    }
+
+    /// Root mean square of the relative error over lit and over unlit points, as a multiple of the one asked for. Points
+    /// darker than a millionth of the brightest do not count.
+    fn errors(&self, medium: &Medium) -> [f64; 2] {
+        let [whole, cut] =
+            [Estimator::Exhaustive, Estimator::Cut { accuracy: ACCURACY }].map(|e| self.image(medium, e));
+        let brightest = whole.iter().map(|p| p.beauty().length()).fold(0.0, f64::max);
+        self.pixels.each_ref().map(|pixels| {
+            let bright = pixels.iter().filter(|k| whole[**k].beauty().length() > 1e-6 * brightest);
+            let squares: Vec<f64> = bright
+                .map(|k| (whole[*k].beauty().distance_squared(cut[*k].beauty())) / whole[*k].beauty().length_squared())
+                .collect();
+            (squares.iter().sum::<f64>() / squares.len() as f64).sqrt() / ACCURACY
+        })
+    }
+}
+
+/// A camera that looks from `towards` at all of one material.
+fn looking(world: &World, material: u16, towards: DVec3) -> Camera {
+    let mesh = &world.scene.mesh;
+    let own = (0..mesh.triangles.len()).filter(|k| mesh.triangles[*k].material == material);
+    let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (low, high) = own.flat_map(|k| mesh.corners(k)).fold(start, |(low, high), p| (low.min(p), high.max(p)));
+    let camera = orthographic(towards, 0.4 * (high - low).length());
+    // From just outside: nothing else of the scene is in between.
+    let position = world.scene.origin + (low + high) / 2.0 + towards * (high - low).length();
+    Camera { position, ..camera }
+}
+
+/// Pixels whose centre shows a point that light reaches, and one that it does not. Points seen so obliquely that the
+/// interface takes much of their light are left out: the cut may be that much worse there.
+fn sides(world: &World, material: u16, camera: &Camera) -> [Vec<usize>; 2] {
+    let (scene, rays) = (&world.scene, &world.rays);
+    let mut sides = [Vec::new(), Vec::new()];
+    for pixel in 0..SIZE * SIZE {
+        let at = DVec2::new((pixel % SIZE) as f64 + 0.5, (pixel / SIZE) as f64 + 0.5);
+        let (origin, direction) = camera.ray(at, DVec2::splat(SIZE as f64));
+        let Some(hit) = rays.closest(origin - scene.origin, direction, None) else {
+            continue;
+        };
+        let point = scene.mesh.point(hit.triangle, hit.weights, NormalKind::Geometric);
+        if point.material == material && point.normal.dot(direction) < -0.5 {
+            let light = all_light_at(&scene.lights, rays, &point, || [0.5; 2], &mut 0);
+            sides[usize::from(light == DVec3::ZERO)].push(pixel);
+        }
+    }
+    sides
+}
+
+/// Views of meshes that are there: the repository's, and others beside it.
+fn views() -> Vec<View> {
+    let mut views: Vec<View> = ["figure", "slivers"].map(|name| View::new(name, repository_scene(name))).into();
+    let others = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/scenes");
+    for name in ["bunny", "dragon"] {
+        let path = others.join(format!("{name}.glb"));
+        if path.exists() {
+            views.push(View::new(name, scene_file(&path, DVec3::ZERO)));
+        }
+    }
+    views
+}
+
+fn media() -> Vec<Medium> {
+    let few = ["marble", "skin1", "ketchup", "espresso", "spectralon", "skimmilk"];
+    let names: Vec<&str> = if EFFORT == 1 { few.into() } else { built_in_names().collect() };
+    names.into_iter().map(|name| built_in(name).expect("a built-in medium")).collect()
+}
+
+/// Seen to catch: three times the accuracy asked for.
+#[test]
+fn the_cut_is_as_accurate_as_asked_for() {
+    let media = media();
+    let mut failures = Vec::new();
+    for view in views() {
+        let errors: Vec<[f64; 2]> = media.par_iter().map(|medium| view.errors(medium)).collect();
+        for (half, kind) in ["lit", "unlit"].into_iter().enumerate() {
+            let own = || media.iter().zip(errors.iter().map(|e| e[half])).filter(|(_, e)| e.is_finite());
+            let mean = (own().map(|(_, e)| e.ln()).sum::<f64>() / own().count() as f64).exp();
+            let (worst, most) = own().max_by(|a, b| a.1.total_cmp(&b.1)).expect("a medium that is not black");
+            let what = format!("{}, {kind}: error {mean:.2} X, worst {most:.2} X ({})", view.name, worst.name);
+            println!("{what}");
+            if !(1.0 / 1.5..=1.5).contains(&mean) || most > 2.5 {
+                failures.push(what);
+            }
+        }
+    }
+    assert!(failures.is_empty(), "the error of a cut is not what was asked for: {failures:#?}");
+}

@@ -1,0 +1,96 @@
+//! What the cut picks from the nodes that it leaves closed.
+
+use bssrdf::Model;
+use formats::cloud::{Cloud, Sample};
+use gather::{
+    estimator::{Estimator, Sum},
+    samples::{Exit, LitSamples},
+};
+use glam::{DVec3, Vec3};
+use support::{
+    EFFORT,
+    chi_square::assert_fits,
+    pipeline::{Scatterer, grey},
+    planted::cloud_of,
+    random::Random,
+};
+
+/// So loose that a node is closed wherever it may be.
+const LOOSE: Estimator = Estimator::Cut { accuracy: 1e9 };
+
+/// Samples in a point, each known by its flux: 1, 2, 3 and so on.
+fn numbered(x: f32, count: usize, colour: Vec3) -> impl Iterator<Item = Sample> {
+    let position = Vec3::new(x, 0.0, 0.0);
+    (1..=count).map(move |k| Sample { position, normal: DVec3::Z, direction: DVec3::Z, flux: colour * k as f32 })
+}
+
+/// All samples in the first half of a cloud.
+fn in_one_half(samples: impl Iterator<Item = Sample>) -> Cloud {
+    cloud_of(&[samples.collect(), Vec::new()])
+}
+
+struct Experiment {
+    scatterer: Scatterer,
+    random: Random,
+}
+
+impl Experiment {
+    fn new(seed: u64) -> Experiment {
+        let scatterer = Scatterer::new(Model::StandardDipole, &grey(1.0, 10.0, 0.0, 1.3));
+        Experiment { scatterer, random: Random(seed) }
+    }
+
+    /// A sum at `x`, by fresh random numbers.
+    fn sum(&mut self, cloud: &Cloud, x: f64) -> Sum {
+        let samples = LitSamples::new(cloud, &cloud.meta().materials[0].halves[0], 1.3);
+        let exit = Exit::new(DVec3::new(x, 0.0, 0.0), DVec3::Z, self.random.bits());
+        self.scatterer.sum(&samples, &exit, LOOSE)
+    }
+}
+
+/// The whole number that `x` is, to rounding.
+fn whole(x: f64) -> usize {
+    assert!((x - x.round()).abs() < 1e-3, "{x} is the number of no sample");
+    x.round() as usize
+}
+
+/// A tree of one closed node gives one of its samples, each as often as the others, for all of them. Neither the number of
+/// samples nor that of tiles is a power of two, and the last tile is not full.
+///
+/// Seen to catch: picks from all lanes of the last tile; a last sample that is never picked.
+#[test]
+fn a_closed_node_picks_its_samples_evenly() {
+    const COUNT: usize = 333;
+    let (many, one) = (in_one_half(numbered(0.0, COUNT, Vec3::ONE)), in_one_half(numbered(0.0, 1, Vec3::ONE)));
+    let mut experiment = Experiment::new(21);
+    let unit = experiment.sum(&one, 1.0).radiance.x;
+    let mut observed = vec![0; COUNT];
+    let draws = 60_000 * EFFORT;
+    for _ in 0..draws {
+        let picked = experiment.sum(&many, 1.0);
+        assert_eq!(picked.evaluations, 1);
+        observed[whole(picked.radiance.x / unit / COUNT as f64) - 1] += 1;
+    }
+    assert_fits("picks of one node", &observed, &vec![draws as f64 / COUNT as f64; COUNT]);
+}
+
+/// Two nodes, red and green, on both sides of the exitant point: every pair of picks is as frequent as any other.
+///
+/// Seen to catch: one random number for all nodes of a sum.
+#[test]
+fn nodes_pick_independently() {
+    const COUNT: usize = 256;
+    let sides = numbered(-1.0, COUNT, Vec3::X).chain(numbered(1.0, COUNT, Vec3::Y));
+    let (both, one) = (in_one_half(sides), in_one_half(numbered(-1.0, 1, Vec3::ONE)));
+    let mut experiment = Experiment::new(22);
+    let unit = experiment.sum(&one, 0.0).radiance.x * COUNT as f64;
+    let mut observed = vec![0; 256];
+    let draws = 60_000 * EFFORT;
+    for _ in 0..draws {
+        let picked = experiment.sum(&both, 0.0);
+        assert_eq!(picked.evaluations, 2);
+        let [red, green] = [picked.radiance.x, picked.radiance.y].map(|x| (whole(x / unit) - 1) / 16);
+        observed[16 * red + green] += 1;
+    }
+    assert_fits("pairs of picks", &observed, &vec![draws as f64 / 256.0; 256]);
+}
