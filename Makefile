@@ -11,9 +11,9 @@ OUT     ?= out
 THREADS ?= $(shell nproc)
 SUBMIT  ?=
 CARGO   ?= cargo
-SAMPLES ?= 100k
+SAMPLES ?= 1M
 SEED    ?= 0
-SPP     ?= 4
+SPP     ?= 16
 MODEL   ?= directional-dipole
 
 BIN := target/release
