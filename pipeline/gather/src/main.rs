@@ -400,7 +400,8 @@ fn finish(arguments: &Arguments, facts: &Facts, rendered: &Rendered) -> Result<(
     let share = |n: u64| 100.0 * n as f64 / counts.paths as f64;
     if counts.cut_by_depth > 0 {
         let limit = facts.settings.max_depth;
-        let line = format!("{:.3} % of the paths were cut off at --max-depth {limit}", share(counts.cut_by_depth));
+        let line =
+            format!("of 100 paths {:.3} branches were cut off at --max-depth {limit}", share(counts.cut_by_depth));
         arguments.common.say(line);
     }
     if counts.escaped_inside > 0 {
