@@ -178,12 +178,12 @@ mod tests {
 
     #[test]
     fn flags_say_what_the_row_says() {
-        let [note, .., all, coarse] = CONFIGURATIONS;
+        let [note, .., all, fine] = CONFIGURATIONS;
         assert_eq!(note.gather_flags(&MEDIA[2]), ["--estimator", "roulette", "--roulette", "mixture"]);
         assert_eq!(note.gather_flags(&MARBLE)[3], "mean");
         assert_eq!(all.sample_flags(), ["--choice", "area", "--pattern", "stratified"]);
         assert_eq!(all.gather_flags(&MARBLE), ["--estimator", "cut"]);
-        assert_eq!(coarse.gather_flags(&MARBLE), ["--estimator", "cut", "--accuracy", "0.1"]);
+        assert_eq!(fine.gather_flags(&MARBLE), ["--estimator", "cut", "--accuracy", "0.003"]);
     }
 
     #[test]
