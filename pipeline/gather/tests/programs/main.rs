@@ -4,3 +4,4 @@ mod bad_input;
 mod hostile;
 mod pipeline;
 mod support;
+mod targets;
