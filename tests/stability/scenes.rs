@@ -2,7 +2,7 @@
 
 use bssrdf::Medium;
 use formats::cloud::Cloud;
-use gather::{Input, Rendered, Settings, film, path::Counts};
+use gather::{Input, Rendered, Settings, counts::Counts, film};
 use glam::DVec3;
 use scene::Camera;
 use support::{

@@ -4,7 +4,9 @@
 //! sum, so the image is the same for any number of threads.
 
 mod calibration;
+pub mod counts;
 pub mod film;
+mod gathering;
 pub mod media;
 mod passes;
 pub mod path;
@@ -16,11 +18,11 @@ use bssrdf::{
     Medium, Model,
     lanes::{BetterLanes, DirectionalLanes, StandardLanes},
 };
+use counts::Counts;
 use estimator::Estimator;
 use film::{Errors, Pixel};
 use formats::cloud::Cloud;
 use passes::Passes;
-use path::Counts;
 use scene::{Camera, DVec3, NormalKind, Rays, Scene};
 
 /// Over what part of a pixel its paths are spread.

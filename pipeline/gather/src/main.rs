@@ -1,23 +1,23 @@
 //! `gather CLOUD SCENE -o IMAGE.exr`: arguments and files; the phase itself is the library.
 
 mod arguments;
+mod choices;
 mod report;
+mod rounds;
 
-use arguments::{Arguments, EstimatorName, FilterName, ModelName, RuleName};
-use bssrdf::{Medium, Model, built_in, built_in_names};
+use arguments::Arguments;
+use bssrdf::{Medium, built_in, built_in_names};
+use choices::{camera, estimator, settings};
 use clap::Parser;
-use cli::{Common, Failure, Progress};
+use cli::Failure;
 use formats::{
     atomic::{self, Output},
     cloud::Cloud,
 };
-use gather::{
-    Filter, Input, Rendered, Settings,
-    estimator::{Estimator, Rule},
-    film, media, preview, render, start,
-};
+use gather::{Input, Rendered, Settings, film, media, preview};
 use report::{Facts, Seconds};
-use scene::{Camera, Rays, Scene, View};
+use rounds::{render_all, render_to};
+use scene::{Rays, Scene};
 use std::{
     fmt::Write as _,
     io::Write as _,
@@ -91,64 +91,6 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     finish(arguments, &facts, &rendered)
 }
 
-fn render_all(input: &Input, settings: &Settings, common: &Common) -> Rendered {
-    let progress = Progress::start(common, "gathering", (settings.width * settings.height) as u64, "pixels");
-    let rendered = render(input, settings, |n| progress.add(n));
-    progress.finish();
-    rendered
-}
-
-/// Doubles the paths until the error is the target, or the cloud's own error is most of it, or there are enough.
-fn render_to(target: f64, input: &Input, settings: &Settings, common: &Common) -> Rendered {
-    let most = settings.paths_per_pixel;
-    let mut paths = FIRST_PATHS.min(most);
-    let mut session = start(input, &Settings { paths_per_pixel: paths, ..settings.clone() });
-    let pixels = (settings.width * settings.height) as u64;
-    let (mut done, mut before) = (0, f64::INFINITY);
-    loop {
-        let progress = Progress::start(common, "gathering", pixels, &format!("pixels, paths {} to {paths}", done + 1));
-        session.pass(paths - done, &|n| progress.add(n));
-        progress.finish();
-        let errors = session.errors();
-        if errors.total <= target {
-            break;
-        }
-        let cloud_error = errors.cloud.max(lasting(errors.total, before, settings.estimator));
-        before = errors.total;
-        if cloud_error > CLOUD_LIMITS * target {
-            // The error of well-spread samples falls at least as their number to the power 3/4.
-            let drawn = input.cloud.meta().samples_drawn as f64;
-            let needed = drawn * (cloud_error / (CLOUD_LIMITS * target)).powf(4.0 / 3.0);
-            let percent = 100.0 * cloud_error;
-            common.warn(format_args!(
-                "the cloud alone has an error of {percent:.2} %: sample it again with --samples {needed:.1e}"
-            ));
-            break;
-        }
-        if paths >= most {
-            common.warn(format_args!("--target-error is not met with {most} paths a pixel; --spp allows more"));
-            break;
-        }
-        done = paths;
-        paths = (2 * paths).min(most);
-    }
-    session.finish()
-}
-
-/// What remains of an error that was `before` with half the paths and is `now`, if the variance of well-spread paths falls
-/// as their number to the power 3/2; what the cut may add does not fall, because it is asked of the pixel.
-fn lasting(now: f64, before: f64, estimator: Estimator) -> f64 {
-    let fall = 2f64.powf(1.5);
-    let added = if let Estimator::Cut { accuracy } = estimator { accuracy } else { 0.0 };
-    ((fall * now * now - before * before) / (fall - 1.0) - added * added).max(0.0).sqrt()
-}
-
-/// Paths of the first pass of `--target-error`: two for each half of the cloud.
-const FIRST_PATHS: u32 = 4;
-
-/// The cloud limits if it alone takes this share of the wanted error, half its square.
-const CLOUD_LIMITS: f64 = 0.7;
-
 /// Clouds of fewer bytes are checked before the work, in milliseconds; larger ones beside it, before anything is written.
 const VERIFIED_FIRST: u64 = 1 << 26;
 
@@ -156,32 +98,6 @@ fn paths(arguments: &Arguments) -> Result<(&Path, &Path), Failure> {
     match (&arguments.cloud, &arguments.scene) {
         (Some(cloud), Some(scene)) => Ok((cloud, scene)),
         _ => Err(Failure::usage("give CLOUD and SCENE; see --help")),
-    }
-}
-
-/// Default of `--accuracy`.
-const ACCURACY: f64 = 0.01;
-
-/// Default of `--spp`, and of the most paths that `--target-error` may take.
-const PATHS: u32 = 16;
-const MOST_PATHS: u32 = 4096;
-
-fn estimator(arguments: &Arguments) -> Result<Estimator, Failure> {
-    if arguments.accuracy.is_some() && arguments.estimator != EstimatorName::Cut {
-        return Err(Failure::usage("--accuracy: only --estimator cut has an accuracy; leave it out"));
-    }
-    match arguments.estimator {
-        EstimatorName::Cut => {
-            // What the cut adds may be half of the error asked for: a quarter of its square.
-            let default = arguments.target_error.map_or(ACCURACY, |target| 0.5 * target);
-            Ok(Estimator::Cut { accuracy: arguments.accuracy.unwrap_or(default) })
-        }
-        EstimatorName::Exhaustive => Ok(Estimator::Exhaustive),
-        EstimatorName::Roulette => Ok(Estimator::Roulette(match arguments.roulette {
-            RuleName::Mixture => Rule::Mixture,
-            RuleName::Mean => Rule::Mean,
-            RuleName::Min => Rule::Min,
-        })),
     }
 }
 
@@ -225,94 +141,6 @@ fn check_fit(
         cloud_path.display(),
         scene_path.display()
     )))
-}
-
-/// A camera, and the size of image that its view file asks for.
-struct Chosen {
-    camera: Camera,
-    width: Option<u32>,
-    height: Option<u32>,
-}
-
-fn camera(arguments: &Arguments, scene: &Scene, scene_path: &Path) -> Result<Chosen, Failure> {
-    if let Some(path) = &arguments.view {
-        let (view, camera) = View::read(path)?;
-        return Ok(Chosen { camera, width: view.width, height: view.height });
-    }
-    let cameras = &scene.cameras;
-    let names = || cameras.iter().map(|c| format!("`{}`", c.name)).collect::<Vec<_>>().join(", ");
-    if cameras.is_empty() {
-        let message = format!("{}: no camera; give one with --view FILE.json", scene_path.display());
-        return Err(Failure::usage(message));
-    }
-    let found = match &arguments.camera {
-        None => cameras.first(),
-        Some(wanted) => cameras
-            .iter()
-            .find(|c| c.name == *wanted)
-            .or_else(|| cameras.iter().find(|c| c.node == *wanted))
-            .or_else(|| wanted.parse::<usize>().ok().and_then(|index| cameras.get(index))),
-    };
-    let camera = found.cloned().ok_or_else(|| {
-        let wanted = arguments.camera.as_deref().unwrap_or_default();
-        Failure::usage(format!("--camera: {} has no `{wanted}`; it has {}", scene_path.display(), names()))
-    })?;
-    Ok(Chosen { camera, width: None, height: None })
-}
-
-/// Most pixels of an image.
-const MAX_PIXELS: u64 = 1 << 28;
-
-fn settings(arguments: &Arguments, chosen: &Chosen, estimator: Estimator) -> Result<Settings, Failure> {
-    let (width, height) = size(arguments, chosen)?;
-    if width as u64 * height as u64 > MAX_PIXELS {
-        return Err(Failure::usage(format!("--width, --height: {width} x {height} is more than {MAX_PIXELS} pixels")));
-    }
-    let wanted = chosen.camera.aspect.filter(|a| (a * height as f64 / width as f64 - 1.0).abs() > 0.01);
-    if let Some(aspect) = wanted {
-        arguments.common.warn(format_args!(
-            "the camera's aspect is {aspect:.3}, the image's {:.3}: its vertical field of view is kept",
-            width as f64 / height as f64
-        ));
-    }
-    let model = match arguments.bssrdf {
-        ModelName::Directional => Model::DirectionalDipole,
-        ModelName::Better => Model::BetterDipole,
-        ModelName::Standard => Model::StandardDipole,
-    };
-    Ok(Settings {
-        width,
-        height,
-        paths_per_pixel: arguments.spp.unwrap_or(if arguments.target_error.is_some() { MOST_PATHS } else { PATHS }),
-        filter: match arguments.filter {
-            FilterName::Box => Filter::Box,
-            FilterName::Point => Filter::Point,
-        },
-        estimator,
-        model,
-        normals: arguments.scene_args.normal_kind(),
-        environment: arguments.scene_args.radiance(),
-        max_depth: arguments.max_depth,
-        seed: arguments.common.seed,
-    })
-}
-
-/// Width and height: flags beat the view file, what is missing follows from the aspect.
-fn size(arguments: &Arguments, chosen: &Chosen) -> Result<(usize, usize), Failure> {
-    let given = (arguments.width, arguments.height);
-    let (width, height) = if given == (None, None) { (chosen.width, chosen.height) } else { given };
-    let aspect = chosen.camera.aspect.unwrap_or(1.0);
-    let (width, height) = match (width, height) {
-        (Some(w), Some(h)) => (f64::from(w), f64::from(h)),
-        (Some(w), None) => (f64::from(w), (f64::from(w) / aspect).round()),
-        (None, Some(h)) => ((f64::from(h) * aspect).round(), f64::from(h)),
-        (None, None) => (512.0, (512.0 / aspect).round()),
-    };
-    let good = |x: f64| (1.0..=65536.0).contains(&x);
-    if good(width) && good(height) {
-        return Ok((width as usize, height as usize));
-    }
-    Err(Failure::usage(format!("--width, --height: {width} x {height} pixels; each must lie between 1 and 65536")))
 }
 
 /// Refuses what cannot fit before any work is done: the image thrice. The cloud is mapped.

@@ -2,9 +2,11 @@
 
 use crate::{
     Filter, Input, Rendered, Session, Settings, calibration,
+    counts::Counts,
     estimator::{Estimator, Radial},
     film::{Errors, Pixel, PixelSum},
-    path::{Body, Counts, Method, PathIndex, Renderer, Worker},
+    gathering::{Body, Method},
+    path::{PathIndex, Renderer, Worker},
     samples::LitSamples,
 };
 use bssrdf::lanes::LaneModel;

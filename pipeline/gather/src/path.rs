@@ -1,37 +1,18 @@
 //! note: [split] One camera path: Fresnel roulette at the interfaces, and `L_o = L_e + L_t + L_r` where light leaves.
 
 use crate::{
-    estimator::{Cut, Estimator, Exhaustive, Radial, Rates, Roulette, Scratch, Sum},
+    counts::Counts,
+    estimator::{Estimator, Scratch},
     film::{Guide, Layer, Layers},
-    samples::{Exit, LitSamples},
+    gathering::Body,
 };
-use bssrdf::{Medium, fresnel, lanes::LaneModel, simd};
+use bssrdf::{fresnel, lanes::LaneModel};
 use scene::{
     Camera, DVec3, Hit, NormalKind, Rays, Scene, SurfacePoint,
     light::all_light_at,
     random::{Item, Stream},
 };
 use std::f64::consts::PI;
-
-/// A translucent material with its medium and its samples.
-pub struct Body<'a, M> {
-    pub medium: Medium,
-    pub model: M,
-    /// `σ̃_t` of light that is not scattered, 1/m.
-    pub unscattered: [f64; 3],
-    pub method: Method,
-    /// What the accuracy asked of the cut is multiplied by, see [`crate::calibration`].
-    pub calibration: f64,
-    /// The two independent halves of the cloud.
-    pub halves: [LitSamples<'a>; 2],
-}
-
-/// How the samples of a body are summed.
-pub enum Method {
-    Exhaustive,
-    Roulette(Rates),
-    Cut(Radial),
-}
 
 /// Everything a path needs; shared by all threads.
 pub struct Renderer<'a, M> {
@@ -67,7 +48,7 @@ pub struct PathIndex {
 pub struct Worker {
     pub counts: Counts,
     /// One for each material.
-    scratch: Vec<Scratch>,
+    pub(crate) scratch: Vec<Scratch>,
 }
 
 impl Worker {
@@ -89,59 +70,24 @@ pub struct PathLight {
     pub halves: [DVec3; 2],
 }
 
-/// What happened on the paths of an image.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Counts {
-    pub paths: u64,
-    pub rays: u64,
-    pub shadow_rays: u64,
-    pub gathers: u64,
-    pub evaluations: u64,
-    /// Nodes of the samples' trees that were looked at.
-    pub nodes: u64,
-    /// Paths ended by the depth limit: their light is missing.
-    pub cut_by_depth: u64,
-    /// Paths that left a medium without meeting its surface: the mesh is open.
-    pub escaped_inside: u64,
-    /// Outer surfaces met from inside a medium, passed straight: objects overlap.
-    pub nested: u64,
-    /// Points where the interpolated normal contradicts the triangle, whose own normal was taken.
-    pub geometric_normals: u64,
-}
-
-impl Counts {
-    pub fn add(&mut self, other: &Counts) {
-        self.paths += other.paths;
-        self.rays += other.rays;
-        self.shadow_rays += other.shadow_rays;
-        self.gathers += other.gathers;
-        self.evaluations += other.evaluations;
-        self.nodes += other.nodes;
-        self.cut_by_depth += other.cut_by_depth;
-        self.escaped_inside += other.escaped_inside;
-        self.nested += other.nested;
-        self.geometric_normals += other.geometric_normals;
-    }
-}
-
 /// A path on its way.
 #[derive(Clone, Copy)]
-struct Walker {
+pub(crate) struct Walker {
     origin: DVec3,
     direction: DVec3,
     /// The triangle that the ray starts on.
     from: Option<u32>,
     /// The material whose medium the ray is in.
     inside: Option<u16>,
-    throughput: DVec3,
+    pub throughput: DVec3,
     /// The layer of all further light, once there was an event.
     layer: Option<Layer>,
     events: u32,
     /// Which half of the cloud it gathers from, if it is one.
-    half: usize,
+    pub half: usize,
     random: Item,
-    dimension: u64,
-    key: Item,
+    pub dimension: u64,
+    pub key: Item,
 }
 
 impl Walker {
@@ -164,7 +110,7 @@ impl PathLight {
         self.add_halves(walker, layer, radiance, [radiance; 2]);
     }
 
-    fn add_halves(&mut self, walker: &Walker, layer: Layer, radiance: DVec3, halves: [DVec3; 2]) {
+    pub(crate) fn add_halves(&mut self, walker: &Walker, layer: Layer, radiance: DVec3, halves: [DVec3; 2]) {
         self.layers[walker.layer.unwrap_or(layer) as usize] += walker.throughput * radiance;
         self.halves.iter_mut().zip(halves).for_each(|(sum, half)| *sum += walker.throughput * half);
     }
@@ -172,9 +118,6 @@ impl PathLight {
 
 /// Dimensions of the random numbers that one branch of a path may use.
 const BRANCH: u64 = 1 << 32;
-
-/// A gather is never asked for more than this: beyond, the cut's prediction of its own error means nothing.
-const LOOSEST: f64 = 0.5;
 
 impl<M: LaneModel> Renderer<'_, M> {
     /// Light that arrives at the camera along one path. At its first interface the path splits in two.
@@ -400,76 +343,6 @@ impl<M: LaneModel> Renderer<'_, M> {
         }
         walker.leave(point, mirrored, Layer::Transmission);
         true
-    }
-
-    /// note: [reflectance] `L_r` at an exitant point: the mean over all drawn samples (method.md 6.7), or over those of
-    /// the path's half of the cloud.
-    fn gather(
-        &self,
-        walker: &Walker,
-        body: &Body<M>,
-        point: &SurfacePoint,
-        normal: DVec3,
-        light: &mut PathLight,
-        worker: &mut Worker,
-    ) {
-        if body.medium.is_clear() || body.halves.iter().all(|h| h.is_empty()) {
-            return;
-        }
-        worker.counts.gathers += 1;
-        let drawn = self.samples_drawn;
-        let mean = |half: usize, sum: &Sum| sum.radiance / drawn[half].max(1) as f64;
-        let mut of_half = |half: usize| {
-            let key = walker.key.bits(2 * walker.dimension + half as u64);
-            let exit = Exit::new(point.position, normal, key);
-            let share = walker.throughput.max_element();
-            let sum = self.sum(body, half, &exit, share, &mut worker.scratch[point.material as usize]);
-            worker.counts.evaluations += sum.evaluations;
-            worker.counts.nodes += sum.nodes;
-            sum
-        };
-        // The second half is empty if one sample was drawn.
-        let half = if drawn[1] == 0 { 0 } else { walker.half };
-        if drawn[1] == 0 || self.alternates() {
-            let value = mean(half, &of_half(half));
-            light.add_halves(walker, Layer::Subsurface, value, [value; 2]);
-        } else {
-            let sums = [of_half(0), of_half(1)];
-            let value = (sums[0].radiance + sums[1].radiance) / (drawn[0] + drawn[1]) as f64;
-            light.add_halves(walker, Layer::Subsurface, value, [mean(0, &sums[0]), mean(1, &sums[1])]);
-        }
-    }
-
-    /// Whether the paths of a pixel gather from the halves of the cloud in turn, instead of each from both.
-    fn alternates(&self) -> bool {
-        matches!(self.estimator, Estimator::Cut { .. }) && self.paths_per_pixel > 1
-    }
-
-    /// The accuracy of one sum of which the `share` arrives at the camera: so many sums make a pixel.
-    pub fn accuracy(&self, share: f64) -> f64 {
-        match self.estimator {
-            Estimator::Cut { accuracy } => {
-                let sums = f64::from(self.paths_per_pixel.max(2));
-                (accuracy * sums.sqrt() / share.max(1e-3)).min(LOOSEST)
-            }
-            Estimator::Exhaustive | Estimator::Roulette(_) => 0.0,
-        }
-    }
-
-    /// The sum over one half of the samples of `body`.
-    pub fn sum(&self, body: &Body<M>, half: usize, exit: &Exit, share: f64, scratch: &mut Scratch) -> Sum {
-        let (model, samples) = (&body.model, &body.halves[half]);
-        if samples.is_empty() {
-            return Sum::default();
-        }
-        match &body.method {
-            Method::Exhaustive => simd::dispatch(Exhaustive { model, samples, exit }),
-            Method::Roulette(rates) => simd::dispatch(Roulette { model, samples, exit, rates: *rates }),
-            Method::Cut(radial) => {
-                let accuracy = (self.accuracy(share) * body.calibration) as f32;
-                simd::dispatch(Cut { model, samples, radial, exit, accuracy, scratch })
-            }
-        }
     }
 
     /// What the ray meets first.

@@ -4,9 +4,8 @@
 //! away (method.md section 9).
 
 use super::{
-    Block, LANES, Lane, LaneModel,
+    Block, Lane, LaneModel, by_distance,
     dipole::Distances,
-    each,
     exp::{decay2, exp2_negative},
 };
 use crate::Medium;
@@ -60,13 +59,7 @@ impl LaneModel for BetterLanes {
 
     #[inline(always)]
     fn bare(&self, block: &Block, _normal_out: [f32; 3]) -> [Lane; 3] {
-        let [x, y, z] = &block.offset;
-        let r2 = each(|i| x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
-        let mut values = [[0.0; LANES]; 3];
-        for (c, values) in self.channels.into_iter().zip(&mut values) {
-            *values = each(|i| c.bare(r2[i]));
-        }
-        values
+        by_distance(block, self.channels, Channel::bare)
     }
 }
 

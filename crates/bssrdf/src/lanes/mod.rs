@@ -55,6 +55,18 @@ fn each(f: impl Fn(usize) -> f32) -> Lane {
     lane
 }
 
+/// The values of a model that looks at the squared distance alone, m².
+#[inline(always)]
+fn by_distance<C: Copy>(block: &Block, channels: [C; 3], bare: impl Fn(&C, f32) -> f32) -> [Lane; 3] {
+    let [x, y, z] = &block.offset;
+    let r2 = each(|i| x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
+    let mut values = [[0.0; LANES]; 3];
+    for (c, values) in channels.into_iter().zip(&mut values) {
+        *values = each(|i| bare(&c, r2[i]));
+    }
+    values
+}
+
 /// `a·b`.
 #[inline(always)]
 fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {

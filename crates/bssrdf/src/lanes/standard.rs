@@ -1,6 +1,6 @@
 //! The standard dipole on blocks; see `standard_dipole.rs` for the model.
 
-use super::{Block, LANES, Lane, LaneModel, each, exp::exp2_negative};
+use super::{Block, Lane, LaneModel, by_distance, exp::exp2_negative};
 use crate::Medium;
 use std::f64::consts::{LOG2_E, PI};
 
@@ -41,13 +41,7 @@ impl LaneModel for StandardLanes {
 
     #[inline(always)]
     fn bare(&self, block: &Block, _normal_out: [f32; 3]) -> [Lane; 3] {
-        let [x, y, z] = &block.offset;
-        let r2 = each(|i| x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
-        let mut values = [[0.0; LANES]; 3];
-        for (c, values) in self.channels.into_iter().zip(&mut values) {
-            *values = each(|i| c.bare(r2[i]));
-        }
-        values
+        by_distance(block, self.channels, Channel::bare)
     }
 }
 

@@ -1,0 +1,125 @@
+//! From arguments to a camera, a size, and how to render.
+
+use crate::arguments::{Arguments, EstimatorName, FilterName, ModelName, RuleName};
+use bssrdf::Model;
+use cli::Failure;
+use gather::{
+    Filter, Settings,
+    estimator::{Estimator, Rule},
+};
+use scene::{Camera, Scene, View};
+use std::path::Path;
+
+/// Default of `--accuracy`.
+const ACCURACY: f64 = 0.01;
+
+/// Default of `--spp`, and of the most paths that `--target-error` may take.
+const PATHS: u32 = 16;
+const MOST_PATHS: u32 = 4096;
+
+pub fn estimator(arguments: &Arguments) -> Result<Estimator, Failure> {
+    if arguments.accuracy.is_some() && arguments.estimator != EstimatorName::Cut {
+        return Err(Failure::usage("--accuracy: only --estimator cut has an accuracy; leave it out"));
+    }
+    match arguments.estimator {
+        EstimatorName::Cut => {
+            // What the cut adds may be half of the error asked for: a quarter of its square.
+            let default = arguments.target_error.map_or(ACCURACY, |target| 0.5 * target);
+            Ok(Estimator::Cut { accuracy: arguments.accuracy.unwrap_or(default) })
+        }
+        EstimatorName::Exhaustive => Ok(Estimator::Exhaustive),
+        EstimatorName::Roulette => Ok(Estimator::Roulette(match arguments.roulette {
+            RuleName::Mixture => Rule::Mixture,
+            RuleName::Mean => Rule::Mean,
+            RuleName::Min => Rule::Min,
+        })),
+    }
+}
+
+/// A camera, and the size of image that its view file asks for.
+pub struct Chosen {
+    pub camera: Camera,
+    width: Option<u32>,
+    height: Option<u32>,
+}
+
+pub fn camera(arguments: &Arguments, scene: &Scene, scene_path: &Path) -> Result<Chosen, Failure> {
+    if let Some(path) = &arguments.view {
+        let (view, camera) = View::read(path)?;
+        return Ok(Chosen { camera, width: view.width, height: view.height });
+    }
+    let cameras = &scene.cameras;
+    let names = || cameras.iter().map(|c| format!("`{}`", c.name)).collect::<Vec<_>>().join(", ");
+    if cameras.is_empty() {
+        let message = format!("{}: no camera; give one with --view FILE.json", scene_path.display());
+        return Err(Failure::usage(message));
+    }
+    let found = match &arguments.camera {
+        None => cameras.first(),
+        Some(wanted) => cameras
+            .iter()
+            .find(|c| c.name == *wanted)
+            .or_else(|| cameras.iter().find(|c| c.node == *wanted))
+            .or_else(|| wanted.parse::<usize>().ok().and_then(|index| cameras.get(index))),
+    };
+    let camera = found.cloned().ok_or_else(|| {
+        let wanted = arguments.camera.as_deref().unwrap_or_default();
+        Failure::usage(format!("--camera: {} has no `{wanted}`; it has {}", scene_path.display(), names()))
+    })?;
+    Ok(Chosen { camera, width: None, height: None })
+}
+
+/// Most pixels of an image.
+const MAX_PIXELS: u64 = 1 << 28;
+
+pub fn settings(arguments: &Arguments, chosen: &Chosen, estimator: Estimator) -> Result<Settings, Failure> {
+    let (width, height) = size(arguments, chosen)?;
+    if width as u64 * height as u64 > MAX_PIXELS {
+        return Err(Failure::usage(format!("--width, --height: {width} x {height} is more than {MAX_PIXELS} pixels")));
+    }
+    let wanted = chosen.camera.aspect.filter(|a| (a * height as f64 / width as f64 - 1.0).abs() > 0.01);
+    if let Some(aspect) = wanted {
+        arguments.common.warn(format_args!(
+            "the camera's aspect is {aspect:.3}, the image's {:.3}: its vertical field of view is kept",
+            width as f64 / height as f64
+        ));
+    }
+    let model = match arguments.bssrdf {
+        ModelName::Directional => Model::DirectionalDipole,
+        ModelName::Better => Model::BetterDipole,
+        ModelName::Standard => Model::StandardDipole,
+    };
+    Ok(Settings {
+        width,
+        height,
+        paths_per_pixel: arguments.spp.unwrap_or(if arguments.target_error.is_some() { MOST_PATHS } else { PATHS }),
+        filter: match arguments.filter {
+            FilterName::Box => Filter::Box,
+            FilterName::Point => Filter::Point,
+        },
+        estimator,
+        model,
+        normals: arguments.scene_args.normal_kind(),
+        environment: arguments.scene_args.radiance(),
+        max_depth: arguments.max_depth,
+        seed: arguments.common.seed,
+    })
+}
+
+/// Width and height: flags beat the view file, what is missing follows from the aspect.
+fn size(arguments: &Arguments, chosen: &Chosen) -> Result<(usize, usize), Failure> {
+    let given = (arguments.width, arguments.height);
+    let (width, height) = if given == (None, None) { (chosen.width, chosen.height) } else { given };
+    let aspect = chosen.camera.aspect.unwrap_or(1.0);
+    let (width, height) = match (width, height) {
+        (Some(w), Some(h)) => (f64::from(w), f64::from(h)),
+        (Some(w), None) => (f64::from(w), (f64::from(w) / aspect).round()),
+        (None, Some(h)) => ((f64::from(h) * aspect).round(), f64::from(h)),
+        (None, None) => (512.0, (512.0 / aspect).round()),
+    };
+    let good = |x: f64| (1.0..=65536.0).contains(&x);
+    if good(width) && good(height) {
+        return Ok((width as usize, height as usize));
+    }
+    Err(Failure::usage(format!("--width, --height: {width} x {height} pixels; each must lie between 1 and 65536")))
+}

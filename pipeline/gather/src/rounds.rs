@@ -1,0 +1,62 @@
+//! How many paths: as many as asked for, or as an error takes.
+
+use cli::{Common, Progress};
+use gather::{Input, Rendered, Settings, estimator::Estimator, render, start};
+
+pub fn render_all(input: &Input, settings: &Settings, common: &Common) -> Rendered {
+    let progress = Progress::start(common, "gathering", (settings.width * settings.height) as u64, "pixels");
+    let rendered = render(input, settings, |n| progress.add(n));
+    progress.finish();
+    rendered
+}
+
+/// Doubles the paths until the error is the target, or the cloud's own error is most of it, or there are enough.
+pub fn render_to(target: f64, input: &Input, settings: &Settings, common: &Common) -> Rendered {
+    let most = settings.paths_per_pixel;
+    let mut paths = FIRST_PATHS.min(most);
+    let mut session = start(input, &Settings { paths_per_pixel: paths, ..settings.clone() });
+    let pixels = (settings.width * settings.height) as u64;
+    let (mut done, mut before) = (0, f64::INFINITY);
+    loop {
+        let progress = Progress::start(common, "gathering", pixels, &format!("pixels, paths {} to {paths}", done + 1));
+        session.pass(paths - done, &|n| progress.add(n));
+        progress.finish();
+        let errors = session.errors();
+        if errors.total <= target {
+            break;
+        }
+        let cloud_error = errors.cloud.max(lasting(errors.total, before, settings.estimator));
+        before = errors.total;
+        if cloud_error > CLOUD_LIMITS * target {
+            // The error of well-spread samples falls at least as their number to the power 3/4.
+            let drawn = input.cloud.meta().samples_drawn as f64;
+            let needed = drawn * (cloud_error / (CLOUD_LIMITS * target)).powf(4.0 / 3.0);
+            let percent = 100.0 * cloud_error;
+            common.warn(format_args!(
+                "the cloud alone has an error of {percent:.2} %: sample it again with --samples {needed:.1e}"
+            ));
+            break;
+        }
+        if paths >= most {
+            common.warn(format_args!("--target-error is not met with {most} paths a pixel; --spp allows more"));
+            break;
+        }
+        done = paths;
+        paths = (2 * paths).min(most);
+    }
+    session.finish()
+}
+
+/// What remains of an error that was `before` with half the paths and is `now`, if the variance of well-spread paths falls
+/// as their number to the power 3/2; what the cut may add does not fall, because it is asked of the pixel.
+fn lasting(now: f64, before: f64, estimator: Estimator) -> f64 {
+    let fall = 2f64.powf(1.5);
+    let added = if let Estimator::Cut { accuracy } = estimator { accuracy } else { 0.0 };
+    ((fall * now * now - before * before) / (fall - 1.0) - added * added).max(0.0).sqrt()
+}
+
+/// Paths of the first pass of `--target-error`: two for each half of the cloud.
+const FIRST_PATHS: u32 = 4;
+
+/// The cloud limits if it alone takes this share of the wanted error, half its square.
+const CLOUD_LIMITS: f64 = 0.7;
