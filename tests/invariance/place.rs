@@ -53,7 +53,7 @@ fn placed_as(original: &World, world: &World, shot: &Shot) -> Cloud {
     let choice = TriangleChoice::new(mesh, sampling.choice, |m| m == facts.materials[0].index);
     let numbers = Numbers::new(sampling.pattern, sampling.seed, sampling.samples);
     let mut halves = Halves::default();
-    for (half, place) in numbers.places(mesh, &choice, 0..sampling.samples) {
+    for (half, place) in numbers.places(&choice, 0..sampling.samples) {
         if let Drawn::Lit { sample, .. } = draw(&world.scene, &world.rays, shot.normals, &place, &mut 0) {
             halves[half].push(sample);
         }

@@ -47,7 +47,8 @@ fn powers_of_two_give_the_same_bits() {
 /// Other factors round every coordinate anew to float32, by 3·10⁻⁸ of 0.05 m, which is 10⁻⁶ of a mean free path: light
 /// changes by that much where one sample outshines the others, less where many add up. The uniform choice picks the
 /// same triangles; the choice by area can take a neighbour where the sum of areas rounds across the number drawn.
-/// Such a sample, and pixels that one sample outshines, are the few exceptions.
+/// Pixels that one sample outshines are the few exceptions; with this seed no sum of areas rounds across, which would
+/// change many.
 ///
 /// Seen to catch: the same.
 #[test]
@@ -56,10 +57,10 @@ fn other_factors_give_the_same_image() {
     for scale in [1e-3, 1e-2, 10.0, 1e3] {
         let worlds = [larger(scale), figure().brighter(scale * scale).world_in(scale)];
         for world in &worlds {
-            let shot = Shot::new(2).choosing(Choice::Uniform);
+            let shot = Shot::new(20).choosing(Choice::Uniform);
             let images = [shot.of(&original), shot.clone().scaled(scale).of(world)];
             assert_close(&format!("{scale}, uniform"), [&images[0], &images[1]], 1e-5, 4);
-            let shot = Shot::new(3);
+            let shot = Shot::new(20);
             let images = [shot.of(&original), shot.clone().scaled(scale).of(world)];
             assert_close(&format!("{scale}, by area"), [&images[0], &images[1]], 1e-5, 4);
         }

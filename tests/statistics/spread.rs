@@ -4,10 +4,11 @@
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use sample_surface::{Choice, Numbers, Pattern, Place, TriangleChoice};
+use scene::NormalKind;
 use support::{
     EFFORT,
     chi_square::assert_fits,
-    meshes::{Mesh, Part, World, graded_disc, slab, world},
+    meshes::{Mesh, Part, World, graded_disc, repository_scene, slab, world},
     random::Random,
     significance,
     z_test::Estimate,
@@ -22,7 +23,7 @@ fn places(world: &World, rule: Choice, samples: u64, index: impl Fn(u64) -> u64 
     let choice = TriangleChoice::new(mesh, rule, |_| true);
     let place = |seed: u64| {
         let numbers = Numbers::new(Pattern::Stratified, seed, samples);
-        let (half, place) = numbers.places(mesh, &choice, index(seed)..index(seed) + 1).next().expect("one place");
+        let (half, place) = numbers.places(&choice, index(seed)..index(seed) + 1).next().expect("one place");
         assert_eq!(half as u64, index(seed) % 2);
         place
     };
@@ -76,7 +77,7 @@ fn samples_stand_for_the_area_they_are_drawn_from() {
         let mut shares = vec![vec![0.0; seeds as usize]; mesh.triangles.len()];
         for seed in 0..seeds {
             let numbers = Numbers::new(Pattern::Stratified, seed, samples);
-            for (_, place) in numbers.places(mesh, &choice, 0..samples) {
+            for (_, place) in numbers.places(&choice, 0..samples) {
                 let triangle = place.triangle as usize;
                 shares[triangle][seed as usize] += 1.0 / (samples as f64 * place.pdf_area * mesh.area(triangle));
             }
@@ -89,6 +90,34 @@ fn samples_stand_for_the_area_they_are_drawn_from() {
         let least = shares.iter().map(p_value).fold(1.0, f64::min) * shares.len() as f64;
         println!("{} rule, {samples} samples: p = {least:.2e}", rule.name());
         assert!(least >= significance(), "{} rule, {samples} samples: p = {least:.2e}", rule.name());
+    }
+}
+
+/// The lattice of the samples is whole where ribbons are: a small step along them is a small step on the surface, but for
+/// the ends of ribbons.
+///
+/// Seen to catch: a ribbon that forgets that it sees a cell from its other side; a second half with two corners exchanged.
+#[test]
+fn ribbons_are_continuous() {
+    let world = repository_scene("figure");
+    let mesh = &world.scene.mesh;
+    let choice = TriangleChoice::new(mesh, Choice::Uniform, |_| true);
+    let steps = 40 * mesh.triangles.len();
+    let longest = |triangle: u32| {
+        let [a, b, c] = mesh.corners(triangle as usize);
+        (b - a).length().max((c - b).length()).max((a - c).length())
+    };
+    for across in [0.1, 0.5, 0.9] {
+        let point = |k: usize| {
+            let (chosen, weights) = choice.on_ribbon((k as f64 + 0.5) / steps as f64, across);
+            (chosen.triangle, mesh.point(chosen.triangle, weights, NormalKind::Geometric).position)
+        };
+        let points: Vec<(u32, DVec3)> = (0..steps).map(point).collect();
+        // A cell is 80 steps: one step crosses less than a quarter of an edge, even near the corner of a half alone.
+        let jumps = points.windows(2).filter(|p| p[0].1.distance(p[1].1) > 0.25 * longest(p[0].0)).count();
+        println!("{jumps} jumps among {} triangles", mesh.triangles.len());
+        // A ribbon is eight triangles long in the mean.
+        assert!(jumps < mesh.triangles.len() / 6, "across at {across}: {jumps} jumps");
     }
 }
 

@@ -67,13 +67,18 @@ impl Item {
 
     /// Uniform number in [0, 1) with 53 random bits.
     pub fn uniform(self, dimension: u64) -> f64 {
-        (self.bits(dimension) >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
+        unit(self.bits(dimension))
     }
+}
+
+/// The number in [0, 1) that 64 bits stand for, to 53 of them.
+pub fn unit(bits: u64) -> f64 {
+    (bits >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
 }
 
 /// A bijection of 64 bits that leaves no visible structure: two rounds of multiply and xor-shift (the SplitMix64
 /// finaliser of Steele, Lea and Flood 2014, with the constants of Stafford's variant 13).
-pub(crate) fn mix(mut z: u64) -> u64 {
+pub fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     z ^ (z >> 31)

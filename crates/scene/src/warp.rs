@@ -10,23 +10,23 @@ pub fn triangle(xi: [f64; 2]) -> [f64; 3] {
     [1.0 - root, (1.0 - xi[1]) * root, xi[1] * root]
 }
 
-/// The corners, as barycentric weights, of the piece at `along` in [0, 1) of a curve that fills a triangle: Sierpiński's,
-/// which halves the triangle from its third corner to the middle of the opposite edge, `levels` times, and leads from the
-/// first corner to the second. All pieces have one area, and what is near on the curve is near on the triangle.
-pub fn triangle_piece(along: f64, levels: u32) -> [DVec3; 3] {
-    let (mut a, mut b, mut c) = (DVec3::X, DVec3::Y, DVec3::Z);
-    let mut rest = along;
-    for _ in 0..levels {
-        let middle = (a + b) * 0.5;
-        rest *= 2.0;
-        if rest < 1.0 {
-            (b, c) = (c, middle);
-        } else {
-            rest -= 1.0;
-            (a, c) = (c, middle);
-        }
+/// A point of the unit square that is cut from (1, 0) to (0, 1) into two triangles, which stand for these `shares` of
+/// what is to be covered: `[x, y]`, and whether it lies in the second one. Each is covered evenly, and both in proportion
+/// to their shares; `x` grows with the first number, and at each `x`, `y` grows with the second. With a share of 0 the
+/// second triangle is empty.
+pub fn halved_square(xi: [f64; 2], shares: [f64; 2]) -> ([f64; 2], bool) {
+    // The column at x holds 2 s₀ (1−x) + 2 s₁ x, so with q = (s₁−s₀)/(s₀+s₁) its integral q x² + (1−q) x is ξ₀.
+    let total = shares[0] + shares[1];
+    let q = (shares[1] - shares[0]) / total;
+    let p = 1.0 - q;
+    let x = (2.0 * xi[0] / (p + (p * p + 4.0 * q * xi[0]).max(0.0).sqrt())).min(1.0);
+    let (first, second) = (shares[0] * (1.0 - x), shares[1] * x);
+    let cut = first / (first + second);
+    if xi[1] < cut || second == 0.0 {
+        ([x, xi[1] / cut * (1.0 - x)], false)
+    } else {
+        ([x, 1.0 - x + (xi[1] - cut) / (1.0 - cut) * x], true)
     }
-    [a, b, c]
 }
 
 /// The numbers that [`triangle`] maps to these weights.
@@ -62,22 +62,32 @@ mod tests {
         }
     }
 
-    /// Planted: pieces in the wrong order leave a jump, a lost half leaves an empty place.
+    /// Planted: shares exchanged; a column cut in the middle.
     #[test]
-    fn the_curve_is_continuous_and_fills_the_triangle_evenly() {
-        let levels = 12;
-        let n = 1 << levels;
-        let points: Vec<DVec3> = (0..n)
-            .map(|k| triangle_piece((f64::from(k) + 0.5) / f64::from(n), levels))
-            .map(|[a, b, c]| (a + b + c) / 3.0)
-            .collect();
-        // Pieces of area 2^-12 of a triangle with edges √2: neighbours are within twice their diameter.
-        assert!(points.windows(2).all(|p| (p[1] - p[0]).length() < 0.07));
-        let mean: DVec3 = points.iter().sum::<DVec3>() / f64::from(n);
-        assert!((mean - DVec3::splat(1.0 / 3.0)).length() < 1e-3);
-        let corner = points.iter().filter(|p| p.x > 0.5).count();
-        assert!((corner as f64 / f64::from(n) - 0.25).abs() < 2e-3);
-        assert!(points.iter().all(|p| p.min_element() >= 0.0 && (p.element_sum() - 1.0).abs() < 1e-12));
+    fn the_halves_of_the_square_are_covered_evenly_and_by_their_shares() {
+        let n = 400;
+        let grid = |k: usize| (k as f64 + 0.5) / n as f64;
+        for shares in [[1.0, 1.0], [1.0, 3.0], [5.0, 1.0], [2.0, 0.0], [0.0, 2.0]] {
+            let points: Vec<_> = (0..n * n).map(|k| halved_square([grid(k / n), grid(k % n)], shares)).collect();
+            let side = |beyond: bool| if beyond { 1.0 } else { -1.0 };
+            assert!(points.iter().all(|([x, y], beyond)| (x + y - 1.0) * side(*beyond) > -1e-12 && x.max(*y) <= 1.0));
+            let total = shares[0] + shares[1];
+            for (half, side) in [(false, 0.0), (true, 1.0)] {
+                let own: Vec<[f64; 2]> = points.iter().filter(|p| p.1 == half).map(|p| p.0).collect();
+                let share = shares[usize::from(half)] / total;
+                assert!((own.len() as f64 / points.len() as f64 - share).abs() < 2e-3, "{shares:?}: {}", own.len());
+                if share > 0.0 {
+                    // A triangle of legs 1 has its centroid at 1/3 of them and the second moments 1/6 about the corner.
+                    let mean = |f: &dyn Fn(f64, f64) -> f64| {
+                        let sum: f64 = own.iter().map(|[x, y]| f((side - x).abs(), (side - y).abs())).sum();
+                        sum / own.len() as f64
+                    };
+                    assert!((mean(&|x, _| x) - 1.0 / 3.0).abs() < 2e-3 && (mean(&|_, y| y) - 1.0 / 3.0).abs() < 2e-3);
+                    assert!((mean(&|x, _| x * x) - 1.0 / 6.0).abs() < 2e-3);
+                    assert!((mean(&|x, y| x * y) - 1.0 / 12.0).abs() < 2e-3);
+                }
+            }
+        }
     }
 
     #[test]

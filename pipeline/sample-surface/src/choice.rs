@@ -1,8 +1,11 @@
 //! note: [choice] Which triangle, and with what density.
 
-use crate::curve;
+use crate::{
+    curve,
+    ribbon::{Link, Part, ribbons},
+};
 use clap::ValueEnum;
-use scene::Mesh;
+use scene::{Mesh, warp};
 
 /// The rule that triangles are chosen by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -28,21 +31,16 @@ pub struct Chosen {
     /// note: [pdf] Density `pdf(x)` of a uniform point on it per area of the whole surface, 1/m² (method.md 6.3):
     /// `1/(N A_j)` for the note's rule, `1/A` by area.
     pub pdf_area: f64,
-    pub probability: f64,
-    /// Probability of all triangles before it in the order.
-    pub before: f64,
-    /// Where in its interval the number lay that chose it: uniform in [0, 1).
-    pub rest: f64,
 }
 
-/// The triangles to choose from, in the order of a curve that fills space.
+/// The triangles to choose from, on ribbons that follow a curve that fills space.
 pub struct TriangleChoice {
     rule: Choice,
-    triangles: Vec<u32>,
+    links: Vec<Link>,
     /// m².
     areas: Vec<f64>,
-    /// Area of each triangle and all before it, m².
-    area_so_far: Vec<f64>,
+    /// Sum of [`Self::share`] of each triangle and all before it.
+    shares_so_far: Vec<f64>,
 }
 
 impl TriangleChoice {
@@ -51,43 +49,73 @@ impl TriangleChoice {
         let mut triangles: Vec<u32> =
             (0..mesh.triangles.len()).filter(|k| wanted(mesh.triangles[*k].material)).map(|k| k as u32).collect();
         curve::sort(mesh, &mut triangles);
-        let areas: Vec<f64> = triangles.iter().map(|k| mesh.area(*k as usize)).collect();
+        let links = ribbons(mesh, &triangles);
+        let areas: Vec<f64> = links.iter().map(|link| mesh.area(link.triangle as usize)).collect();
+        let mut choice = TriangleChoice { rule, links, areas, shares_so_far: Vec::new() };
         let mut total = 0.0;
-        let add = |area: &f64| {
-            total += area;
-            total
-        };
-        let area_so_far = areas.iter().map(add).collect();
-        TriangleChoice { rule, triangles, areas, area_so_far }
+        for k in 0..choice.links.len() {
+            total += choice.share(k);
+            choice.shares_so_far.push(total);
+        }
+        choice
     }
 
     /// Area of all triangles, m².
     pub fn area(&self) -> f64 {
-        self.area_so_far.last().copied().unwrap_or(0.0)
+        self.areas.iter().sum()
+    }
+
+    /// What the probability of a triangle is proportional to.
+    fn share(&self, place: usize) -> f64 {
+        match self.rule {
+            Choice::Area => self.areas[place],
+            Choice::Uniform => 1.0,
+        }
+    }
+
+    /// Place of the triangle that the uniform number `xi` chooses, and the share up to there that it stands for.
+    fn find(&self, xi: f64) -> (usize, f64) {
+        let target = xi * self.shares_so_far.last().copied().unwrap_or(0.0);
+        let place = self.shares_so_far.partition_point(|share| *share <= target);
+        (place.min(self.links.len() - 1), target)
+    }
+
+    fn chosen(&self, place: usize) -> Chosen {
+        let total = self.shares_so_far.last().copied().unwrap_or(0.0);
+        let pdf_area = match self.rule {
+            Choice::Area => 1.0 / total,
+            Choice::Uniform => 1.0 / (total * self.areas[place]),
+        };
+        Chosen { triangle: self.links[place].triangle, pdf_area }
     }
 
     /// The triangle that the uniform number `xi` chooses.
     pub fn choose(&self, xi: f64) -> Chosen {
-        let last = self.triangles.len() - 1;
-        match self.rule {
-            Choice::Uniform => {
-                let n = self.triangles.len() as f64;
-                let j = ((xi * n) as usize).min(last);
-                let rest = (xi * n - j as f64).clamp(0.0, BELOW_ONE);
-                let pdf_area = 1.0 / (n * self.areas[j]);
-                Chosen { triangle: self.triangles[j], pdf_area, probability: 1.0 / n, before: j as f64 / n, rest }
-            }
-            Choice::Area => {
-                let area = self.area();
-                let target = xi * area;
-                let j = self.area_so_far.partition_point(|a| *a <= target).min(last);
-                let before = if j == 0 { 0.0 } else { self.area_so_far[j - 1] };
-                let own = self.area_so_far[j] - before;
-                let rest = if own > 0.0 { ((target - before) / own).clamp(0.0, BELOW_ONE) } else { 0.0 };
-                let (probability, before) = (own / area, before / area);
-                Chosen { triangle: self.triangles[j], pdf_area: 1.0 / area, probability, before, rest }
-            }
+        self.chosen(self.find(xi).0)
+    }
+
+    /// The point at `along` of the ribbons and at `across` of their width, both in [0, 1): triangle and barycentric
+    /// weights. Uniform numbers make uniform points of triangles that the rule chose; what is near in both is near on
+    /// the surface.
+    pub fn on_ribbon(&self, along: f64, across: f64) -> (Chosen, [f64; 3]) {
+        let (place, target) = self.find(along);
+        let first = place - usize::from(self.links[place].part == Part::Second);
+        let second = match self.links[first].part {
+            Part::First => self.share(first + 1),
+            _ => 0.0,
+        };
+        let shares = [self.share(first), second];
+        let before = if first == 0 { 0.0 } else { self.shares_so_far[first - 1] };
+        let within = ((target - before) / (shares[0] + shares[1])).clamp(0.0, BELOW_ONE);
+        let across = if self.links[first].mirrored { BELOW_ONE - across } else { across };
+        let ([x, y], beyond) = warp::halved_square([within, across], shares);
+        let place = first + usize::from(beyond);
+        let own = if beyond { [x + y - 1.0, 1.0 - y, 1.0 - x] } else { [1.0 - x - y, x, y] };
+        let mut weights = [0.0; 3];
+        for (corner, weight) in self.links[place].corners.into_iter().zip(own) {
+            weights[corner as usize] = weight.max(0.0);
         }
+        (self.chosen(place), weights)
     }
 }
 

@@ -67,7 +67,7 @@ pub fn relative_error(scene: &Scene, sampled: &Sampled, settings: &Settings, pla
     let choice = TriangleChoice::new(&scene.mesh, settings.choice, |m| plan.materials.contains(&m));
     // The points have nothing to do with the samples: another seed.
     let numbers = Numbers::new(Pattern::Stratified, !settings.options.seed, POINTS);
-    let places: Vec<Place> = numbers.places(&scene.mesh, &choice, 0..POINTS).map(|(_, place)| place).collect();
+    let places: Vec<Place> = numbers.places(&choice, 0..POINTS).map(|(_, place)| place).collect();
     let measure = |(index, place): (usize, &Place)| {
         let point = scene.mesh.point(place.triangle, place.weights, settings.normals);
         let sum = |half| radiance(sampled, half, &point, index as u64, (&model, &radial, goal));

@@ -7,6 +7,7 @@ mod curve;
 mod enough;
 pub mod hierarchy;
 mod pattern;
+mod ribbon;
 mod sample;
 
 pub use choice::{Choice, Chosen, TriangleChoice};
@@ -148,7 +149,7 @@ pub fn sample(
     let portion = |chunk: u64| {
         let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(settings.samples);
         progress(range.end - range.start);
-        draw_portion(scene, rays, settings.normals, plan, numbers.places(&scene.mesh, &choice, range))
+        draw_portion(scene, rays, settings.normals, plan, numbers.places(&choice, range))
     };
     let portions: Vec<Portion> = (0..settings.samples.div_ceil(CHUNK)).into_par_iter().map(portion).collect();
     let not_finite = portions.iter().map(|p| p.not_finite).sum();
