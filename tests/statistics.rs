@@ -7,6 +7,8 @@
 
 #[path = "statistics/cut.rs"]
 mod cut;
+#[path = "statistics/edges.rs"]
+mod edges;
 #[path = "statistics/error_bars.rs"]
 mod error_bars;
 #[path = "statistics/knob.rs"]

@@ -19,17 +19,17 @@ const SAMPLES: u64 = 150;
 
 const CUT: Estimator = Estimator::Cut { accuracy: 0.1 };
 
-struct Scene {
-    world: World,
-    medium: Medium,
+pub struct Scene {
+    pub world: World,
+    pub medium: Medium,
     environment: DVec3,
     /// Half of what the image shows, m.
-    half_height: f64,
-    sampling: fn(u64, u64) -> Sampling,
+    pub half_height: f64,
+    pub sampling: fn(u64, u64) -> Sampling,
 }
 
 /// A body that fills a part of the image, before a sky that its edge pixels and its inside show.
-fn edge(medium: Medium) -> Scene {
+pub fn edge(medium: Medium) -> Scene {
     let body = Part::translucent(slab(DVec3::new(3e-3, 2e-3, 1e-3), 4));
     let environment = DVec3::splat(0.02);
     let world = world(&[body], &[sun(DVec3::ONE), lamp()], environment);
@@ -63,7 +63,7 @@ fn assert_error_bars(what: &str, scene: &Scene, settings: &Settings, first: u64)
     assert!(estimate.error < 0.2, "{what}: {estimate:?} is too rough to tell");
 }
 
-fn of_paths(estimator: Estimator, paths_per_pixel: u32) -> Settings {
+pub fn of_paths(estimator: Estimator, paths_per_pixel: u32) -> Settings {
     // The directional dipole has outliers near edges (method.md section 8), which take many images to average.
     let settings = settings(Model::StandardDipole, 10, 8);
     Settings { estimator, paths_per_pixel, filter: Filter::Box, ..settings }

@@ -14,6 +14,8 @@ pub enum Purpose {
     Gather,
     /// Where paths pass through their pixel.
     Pixel,
+    /// Rays that tell how much gets through to an edge's pixel.
+    Edge,
     /// Points that phase two measures its own error at.
     Calibration,
     /// Scrambles of the sequences of phase one.
@@ -25,6 +27,7 @@ pub enum Purpose {
 impl Purpose {
     fn number(self) -> u64 {
         match self {
+            Purpose::Edge => 0,
             Purpose::Surface => 1,
             Purpose::CameraPath => 2,
             Purpose::Gather => 3,

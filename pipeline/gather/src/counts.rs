@@ -18,6 +18,10 @@ pub struct Counts {
     pub nested: u64,
     /// Points where the interpolated normal contradicts the triangle, whose own normal was taken.
     pub geometric_normals: u64,
+    /// Pixels whose share of light that gets through is known from more rays than paths.
+    pub edge_pixels: u64,
+    /// Those rays, and the ones that look for such pixels.
+    pub edge_rays: u64,
 }
 
 impl Counts {
@@ -32,5 +36,7 @@ impl Counts {
         self.escaped_inside += other.escaped_inside;
         self.nested += other.nested;
         self.geometric_normals += other.geometric_normals;
+        self.edge_pixels += other.edge_pixels;
+        self.edge_rays += other.edge_rays;
     }
 }

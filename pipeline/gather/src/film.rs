@@ -1,6 +1,6 @@
 //! Pixels: layers, mean and variance, and the channels of the image.
 
-use crate::path::PathLight;
+use crate::{edge::Edge, path::PathLight};
 use formats::{Channel, Image};
 use scene::DVec3;
 
@@ -53,20 +53,32 @@ impl PixelSum {
 
     /// Variance of the pixel by what its halves differ by, and by what the paths of each half do: the second has the
     /// paths' part of the first as its mean if they are independent, and more if they are well spread.
-    fn variances(&self) -> [DVec3; 2] {
-        let [even, odd] = [0, 1].map(|half| self.halves[half] / self.counts[half]);
+    fn variances(&self, edge: Option<&Edge>) -> [DVec3; 2] {
+        let mean = |half: usize| self.halves[half] / self.counts[half];
+        let [even, odd] = [0, 1].map(|half| mean(half) + edge.map_or(DVec3::ZERO, |e| e.correction(half)));
         let within = [0, 1].map(|half| {
-            let (n, mean) = (self.counts[half], self.halves[half] / self.counts[half]);
-            (self.squares[half] / n - mean * mean).max(DVec3::ZERO) / (n - 1.0).max(1.0)
+            let n = self.counts[half];
+            let (of_mean, of_square) = edge.map_or((DVec3::ZERO, DVec3::ZERO), |e| e.removed(half));
+            let rest = mean(half) - of_mean;
+            (self.squares[half] / n - of_square - rest * rest).max(DVec3::ZERO) / (n - 1.0).max(1.0)
         });
         [(even - odd) * (even - odd) / 4.0, (within[0] + within[1]) / 4.0]
     }
 
+    /// Light in each layer.
+    fn layers(&self, edge: Option<&Edge>) -> Layers {
+        let mut layers = self.layers.map(|sum| sum / self.count);
+        if let Some(edge) = edge {
+            let corrections = [0, 1].map(|half| edge.correction(half) * self.counts[half] / self.count);
+            layers[Layer::Subsurface as usize] += corrections[0] + corrections[1];
+        }
+        layers
+    }
+
     /// The finished pixel. The halves are independent and have one mean, so a quarter of the square of their difference
     /// has the variance of their mean as its mean.
-    pub fn pixel(&self, guide: Guide) -> Pixel {
-        let layers = self.layers.map(|sum| sum / self.count);
-        Pixel { layers, variance: self.variances()[0], guide }
+    pub fn pixel(&self, edge: Option<&Edge>, guide: Guide) -> Pixel {
+        Pixel { layers: self.layers(edge), variance: self.variances(edge)[0], guide }
     }
 }
 
@@ -81,11 +93,11 @@ pub struct Errors {
 
 impl Errors {
     /// 0 of a black image.
-    pub fn of(sums: &[PixelSum]) -> Errors {
+    pub fn of<'a>(pixels: impl Iterator<Item = (&'a PixelSum, Option<&'a Edge>)>) -> Errors {
         let (mut power, mut total, mut paths) = (0.0, 0.0, 0.0);
-        for sum in sums {
-            let value: DVec3 = sum.layers.iter().sum::<DVec3>() / sum.count;
-            let [between, within] = sum.variances();
+        for (sum, edge) in pixels {
+            let value: DVec3 = sum.layers(edge).iter().sum();
+            let [between, within] = sum.variances(edge);
             power += value.length_squared();
             total += between.element_sum();
             paths += within.element_sum();
@@ -193,7 +205,7 @@ mod tests {
             path.layers[Layer::Subsurface as usize] = DVec3::splat(x);
             sum.add(index as u32, false, &path);
         }
-        let pixel = sum.pixel(Guide::default());
+        let pixel = sum.pixel(None, Guide::default());
         assert_eq!(pixel.beauty(), DVec3::splat(3.0));
         // Even paths have the mean 2, odd ones, by their half, −4.
         assert_eq!(pixel.variance(), DVec3::splat(9.0));
@@ -203,7 +215,7 @@ mod tests {
     fn one_path_knows_the_clouds_error() {
         let mut sum = PixelSum::default();
         sum.add(0, true, &PathLight { halves: [DVec3::splat(2.0), DVec3::splat(3.0)], ..PathLight::default() });
-        assert_eq!(sum.pixel(Guide::default()).variance(), DVec3::splat(0.25));
+        assert_eq!(sum.pixel(None, Guide::default()).variance(), DVec3::splat(0.25));
     }
 
     #[test]

@@ -5,6 +5,7 @@
 
 mod calibration;
 pub mod counts;
+mod edge;
 pub mod film;
 mod gathering;
 pub mod media;

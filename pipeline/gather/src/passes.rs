@@ -3,6 +3,7 @@
 use crate::{
     Filter, Input, Rendered, Session, Settings, calibration,
     counts::Counts,
+    edge::{self, Edge},
     estimator::{Estimator, Radial},
     film::{Errors, Pixel, PixelSum},
     gathering::{Body, Method},
@@ -30,11 +31,17 @@ pub struct Passes<'a, M> {
     renderer: Renderer<'a, M>,
     settings: Settings,
     sums: Vec<PixelSum>,
+    /// Of the pixels that are one.
+    edges: Vec<Option<Box<Edge>>>,
     /// Paths of each pixel so far.
     paths: u32,
     counts: Counts,
     pixel_stream: Stream,
+    edge_stream: Stream,
 }
+
+/// Of one pixel, and what it has if it is an edge.
+type Sums = (PixelSum, Option<Box<Edge>>);
 
 impl<'a, M: LaneModel> Passes<'a, M> {
     pub fn new(input: &Input<'a>, settings: &Settings) -> Self {
@@ -54,14 +61,44 @@ impl<'a, M: LaneModel> Passes<'a, M> {
             gathers: Stream::new(settings.seed, Purpose::Gather),
         };
         calibration::calibrate(&mut renderer, size(settings), settings.seed);
-        Passes {
+        let mut passes = Passes {
             renderer,
             settings: settings.clone(),
+            edges: vec![None; settings.width * settings.height],
             sums: vec![PixelSum::default(); settings.width * settings.height],
             paths: 0,
             counts: Counts::default(),
             pixel_stream: Stream::new(settings.seed, Purpose::Pixel),
+            edge_stream: Stream::new(settings.seed, Purpose::Edge),
+        };
+        passes.find_edges();
+        passes
+    }
+
+    /// Looks at the corners of all pixels for edges. One path a pixel has no second half to take a factor from, and all
+    /// rays through pixel centres are alike.
+    fn find_edges(&mut self) {
+        if self.settings.paths_per_pixel == 1 || self.settings.filter == Filter::Point {
+            return;
         }
+        let (width, height) = (self.settings.width, self.settings.height);
+        let row = |y: usize| {
+            let mut counts = Counts::default();
+            let corner = |x: usize, counts: &mut Counts| {
+                let (origin, direction) = self.ray_at(DVec2::new(x as f64, y as f64));
+                self.renderer.through(origin, direction, counts)
+            };
+            ((0..=width).map(|x| corner(x, &mut counts)).collect::<Vec<f64>>(), counts)
+        };
+        let rows: Vec<(Vec<f64>, Counts)> = (0..=height).into_par_iter().map(row).collect();
+        for place in 0..width * height {
+            let (x, y) = (place % width, place / width);
+            let corners = [rows[y].0[x], rows[y].0[x + 1], rows[y + 1].0[x], rows[y + 1].0[x + 1]];
+            let spread = corners.into_iter().fold(0.0, f64::max) - corners.into_iter().fold(1.0, f64::min);
+            self.edges[place] = (spread > edge::LEAST).then(Box::default);
+        }
+        rows.iter().for_each(|(_, counts)| self.counts.add(counts));
+        self.counts.edge_pixels = self.edges.iter().flatten().count() as u64;
     }
 
     /// The pixels of a tile, row by row.
@@ -79,14 +116,20 @@ impl<'a, M: LaneModel> Passes<'a, M> {
     /// The ray through a point of a pixel, `offset` pixels from its corner.
     fn ray(&self, place: usize, offset: DVec2) -> (DVec3, DVec3) {
         let corner = DVec2::new((place % self.settings.width) as f64, (place / self.settings.width) as f64);
-        let (origin, direction) = self.renderer.camera.ray(corner + offset, size(&self.settings));
+        self.ray_at(corner + offset)
+    }
+
+    /// The ray through a point of the image, pixels.
+    fn ray_at(&self, point: DVec2) -> (DVec3, DVec3) {
+        let (origin, direction) = self.renderer.camera.ray(point, size(&self.settings));
         (origin - self.renderer.scene.origin, direction)
     }
 
-    fn add_paths(&self, place: usize, paths: Range<u32>, worker: &mut Worker) -> PixelSum {
+    fn add_paths(&self, place: usize, paths: Range<u32>, worker: &mut Worker) -> Sums {
         // Even and odd paths are spread by a sequence each, so that they stay independent.
-        let key = |half| self.pixel_stream.item(2 * place as u64 + half);
-        let spread = [0, 1].map(|half| Sequence::new(key(half), self.pixel_stream));
+        let spread_by = |stream: Stream| [0, 1].map(|half| Sequence::new(stream.item(2 * place as u64 + half), stream));
+        let spread = spread_by(self.pixel_stream);
+        let mut edge = self.edges[place].clone().map(|edge| (edge, spread_by(self.edge_stream)));
         let alone = self.settings.paths_per_pixel == 1;
         let mut sum = self.sums[place];
         for path in paths {
@@ -100,13 +143,22 @@ impl<'a, M: LaneModel> Passes<'a, M> {
             let (origin, direction) = self.ray(place, offset);
             let light = self.renderer.trace(PathIndex { pixel: place as u64, path }, origin, direction, worker);
             sum.add(path, alone, &light);
+            if let Some((edge, spread)) = &mut edge {
+                let half = path as usize % 2;
+                edge.add_path(half, &light);
+                for ray in 0..edge::RAYS {
+                    let [x, y, ..] = spread[half].point(path / 2 * edge::RAYS + ray);
+                    let (origin, direction) = self.ray(place, DVec2::new(x, y));
+                    edge.add_ray(half, self.renderer.through(origin, direction, &mut worker.counts));
+                }
+            }
         }
-        sum
+        (sum, edge.map(|(edge, _)| edge))
     }
 
     fn pixel(&self, place: usize) -> Pixel {
         let (origin, direction) = self.ray(place, DVec2::splat(0.5));
-        self.sums[place].pixel(self.renderer.guide(origin, direction))
+        self.sums[place].pixel(self.edges[place].as_deref(), self.renderer.guide(origin, direction))
     }
 }
 
@@ -117,20 +169,20 @@ impl<M: LaneModel> Session for Passes<'_, M> {
         let tile = |tile: usize| {
             let mut worker = Worker::new(self.renderer.bodies.len());
             let add = |place: usize| (place, self.add_paths(place, range.clone(), &mut worker));
-            let sums: Vec<(usize, PixelSum)> = self.places(tile).map(add).collect();
+            let sums: Vec<(usize, Sums)> = self.places(tile).map(add).collect();
             progress(sums.len() as u64);
             (sums, worker.counts)
         };
         let tiles: Vec<_> = (0..self.tiles()).into_par_iter().map(tile).collect();
         for (sums, counts) in tiles {
             self.counts.add(&counts);
-            sums.into_iter().for_each(|(place, sum)| self.sums[place] = sum);
+            sums.into_iter().for_each(|(place, sum)| (self.sums[place], self.edges[place]) = sum);
         }
         self.paths = range.end;
     }
 
     fn errors(&self) -> Errors {
-        Errors::of(&self.sums)
+        Errors::of(self.sums.iter().zip(self.edges.iter().map(Option::as_deref)))
     }
 
     fn finish(self: Box<Self>) -> Rendered {

@@ -68,6 +68,8 @@ pub struct PathLight {
     pub layers: Layers,
     /// All of it as each half of the cloud alone has it; of a half that the path did not gather from, what is left.
     pub halves: [DVec3; 2],
+    /// Which share of the light below the first interface gets through to the camera; 0 without such an interface.
+    pub through: f64,
 }
 
 /// A path on its way.
@@ -289,6 +291,7 @@ impl<M: LaneModel> Renderer<'_, M> {
                 counts.cut_by_depth += u64::from(mirrored.is_none());
             }
             walker.throughput *= transmittance;
+            light.through = transmittance;
         }
         let emission = self.scene.materials[point.material as usize].emission;
         light.add(walker, Layer::Emission, emission);
@@ -343,6 +346,23 @@ impl<M: LaneModel> Renderer<'_, M> {
         }
         walker.leave(point, mirrored, Layer::Transmission);
         true
+    }
+
+    /// [`PathLight::through`] of a path along this ray.
+    pub fn through(&self, origin: DVec3, direction: DVec3, counts: &mut Counts) -> f64 {
+        counts.edge_rays += 1;
+        let Some(hit) = self.rays.closest(origin, direction, None) else {
+            return 0.0;
+        };
+        let point = self.scene.mesh.point(hit.triangle, hit.weights, self.normals);
+        let view = -direction;
+        match &self.bodies[point.material as usize] {
+            Some(body) if view.dot(point.geometric_normal) > 0.0 => {
+                let normal = facing_normal(point.normal, point.geometric_normal, view, counts);
+                fresnel::transmittance(normal.dot(view), body.medium.eta)
+            }
+            _ => 0.0,
+        }
     }
 
     /// What the ray meets first.

@@ -110,6 +110,8 @@ impl Facts<'_> {
             "paths_escaped_inside": counts.escaped_inside,
             "nested_surfaces_passed": counts.nested,
             "geometric_normals_taken": counts.geometric_normals,
+            "edge_pixels": counts.edge_pixels,
+            "edge_rays": counts.edge_rays,
             "estimated_relative_error": film::relative_error(&rendered.pixels),
             "estimated_relative_error_covers": self.covers(),
             "non_finite": rendered.non_finite_count,

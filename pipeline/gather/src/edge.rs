@@ -1,0 +1,99 @@
+//! Pixels where translucent surfaces end or turn away: how much of the light below gets through to the camera varies
+//! more there than the light itself, and costs only a ray to know.
+//!
+//! A path's scattered light is `f = g s`: `g` its share that gets through the first interface, 0 where the path meets
+//! something else, and `s` the light below. Of `g` a pixel has many more values than of `f`, with the mean `G`, so
+//! `f̄ + c (G − ḡ)` has the mean of `f` for any `c` that does not look at the same paths (a control variate). Each half
+//! of a pixel takes its `c` from the other half, and has rays of its own.
+
+use crate::{film::Layer, path::PathLight};
+use scene::DVec3;
+
+/// A pixel is an edge if `g` at its corners differs by more.
+pub const LEAST: f64 = 0.1;
+
+/// Rays for each path.
+pub const RAYS: u32 = 16;
+
+/// Sums over the paths and rays of one such pixel, by halves.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Edge([Half; 2]);
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Half {
+    paths: f64,
+    /// Of `f`.
+    scattered: DVec3,
+    /// Of `g`, `g²`, and `g` times all light of the path.
+    through: f64,
+    squares: f64,
+    products: DVec3,
+    rays: f64,
+    /// Of `g` of the rays.
+    through_rays: f64,
+}
+
+impl Edge {
+    /// Adds a path of one half.
+    pub fn add_path(&mut self, half: usize, path: &PathLight) {
+        let sum = &mut self.0[half];
+        sum.paths += 1.0;
+        sum.scattered += path.layers[Layer::Subsurface as usize];
+        sum.through += path.through;
+        sum.squares += path.through * path.through;
+        sum.products += path.through * path.halves[half];
+    }
+
+    /// Adds a ray of one half.
+    pub fn add_ray(&mut self, half: usize, through: f64) {
+        self.0[half].rays += 1.0;
+        self.0[half].through_rays += through;
+    }
+
+    /// `c` of one half, from the other.
+    fn factor(&self, half: usize) -> DVec3 {
+        let other = &self.0[1 - half];
+        if other.through > 0.0 { other.scattered / other.through } else { DVec3::ZERO }
+    }
+
+    /// `c (G − ḡ)` of one half.
+    pub fn correction(&self, half: usize) -> DVec3 {
+        let own = &self.0[half];
+        if own.rays == 0.0 {
+            return DVec3::ZERO;
+        }
+        self.factor(half) * (own.through_rays / own.rays - own.through / own.paths)
+    }
+
+    /// What `c g` takes from the mean and the mean square of the light of a half's paths.
+    pub fn removed(&self, half: usize) -> (DVec3, DVec3) {
+        let (own, factor) = (&self.0[half], self.factor(half));
+        let (mean, square) = (factor * own.through, factor * (2.0 * own.products - factor * own.squares));
+        (mean / own.paths, square / own.paths)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Planted: the mean square without the square of `g`.
+    #[test]
+    fn where_the_light_below_is_even_only_the_rays_decide() {
+        let below = DVec3::new(3.0, 2.0, 1.0);
+        let mut edge = Edge::default();
+        for (half, through) in [(0, 0.9), (1, 0.0), (0, 0.5), (1, 0.8)] {
+            let mut path = PathLight { halves: [below * through; 2], through, ..PathLight::default() };
+            path.layers[Layer::Subsurface as usize] = below * through;
+            edge.add_path(half, &path);
+        }
+        [(0, 0.6), (0, 0.8), (1, 0.7), (1, 0.3)].into_iter().for_each(|(half, g)| edge.add_ray(half, g));
+        let means = [below * 0.7, below * 0.4];
+        let squares = [below * below * 0.53, below * below * 0.32];
+        for (half, rays) in [0.7, 0.5].into_iter().enumerate() {
+            assert!((means[half] + edge.correction(half)).abs_diff_eq(below * rays, 1e-12));
+            let (of_mean, of_square) = edge.removed(half);
+            assert!(of_mean.abs_diff_eq(means[half], 1e-12) && of_square.abs_diff_eq(squares[half], 1e-12));
+        }
+    }
+}

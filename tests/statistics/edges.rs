@@ -1,0 +1,48 @@
+//! Pixels at edges know from rays how much light gets through: that takes noise away and leaves the mean.
+
+use crate::error_bars::{Scene, edge, of_paths};
+use gather::{Input, Settings, estimator::Estimator, film::Pixel};
+use glam::DVec3;
+use rayon::prelude::*;
+use support::{
+    EFFORT,
+    pipeline::{cloud, grey, orthographic},
+    z_test::{Estimate, assert_equal},
+};
+
+/// Images of each mean.
+const IMAGES: u64 = 4000 * EFFORT;
+
+/// Brightness of the whole image, over gathers and camera paths.
+fn brightness(scene: &Scene, paths_per_pixel: u32) -> Estimate {
+    let cloud = cloud(&scene.world, &(scene.sampling)(20, 1));
+    let (media, camera) = ([scene.medium.clone()], orthographic(DVec3::new(1.0, 1.2, 1.5), scene.half_height));
+    let input =
+        Input { scene: &scene.world.scene, rays: &scene.world.rays, cloud: &cloud, media: &media, camera: &camera };
+    let settings = of_paths(Estimator::Exhaustive, paths_per_pixel);
+    let image = |seed: u64| {
+        let rendered = gather::render(&input, &Settings { seed, ..settings.clone() }, |_| ());
+        assert_eq!(rendered.counts.edge_pixels > 10, paths_per_pixel > 1);
+        rendered.pixels.iter().map(|p: &Pixel| p.beauty().element_sum()).sum()
+    };
+    let first = 1_000_000 * u64::from(paths_per_pixel);
+    Estimate::of(&(first..first + IMAGES).into_par_iter().map(image).collect::<Vec<f64>>())
+}
+
+/// One path a pixel is alone, and its pixel no edge: that is the mean without any of it.
+///
+/// Seen to catch: a factor from the half's own paths; rays that miss not counted.
+#[test]
+fn the_mean_is_that_of_paths_alone() {
+    // So thin a medium that the light below varies little within a pixel.
+    let scene = edge(grey(30.0, 300.0, 0.0, 1.3));
+    let alone = brightness(&scene, 1);
+    // Measured without the rays: 0.50, 0.22 and 0.029 of one path's variance.
+    for (paths, most) in [(2, 0.43), (3, 0.15), (8, 0.01)] {
+        let known = brightness(&scene, paths);
+        assert_equal(&format!("{paths} paths"), known, alone);
+        let variance = (known.error / alone.error).powi(2);
+        println!("{paths} paths: variance {variance:.3} of one path's");
+        assert!(variance < most, "{paths} paths: variance {variance:.3} of one path's");
+    }
+}
