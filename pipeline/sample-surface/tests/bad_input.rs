@@ -140,7 +140,8 @@ fn scenes_without_what_is_needed() {
 #[test]
 fn features_that_are_not_supported_are_named() {
     let bench = Bench::new();
-    for extension in ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_mesh_quantization", "VENDOR_thing"]
+    for extension in
+        ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "EXT_mesh_gpu_instancing", "VENDOR_thing"]
     {
         let scene = bench.scene(|root| {
             root["extensionsRequired"] = json!([extension]);

@@ -1,6 +1,6 @@
 //! Accessors with every range checked before anything is read.
 
-use super::{Fault, container::Document, get};
+use super::{Fault, container::Document, get, number::Number};
 use glam::Vec3;
 use gltf::json::{
     Accessor, Index,
@@ -13,6 +13,8 @@ use gltf::json::{
 pub(super) struct Column<'a> {
     /// Where the file names it, for messages.
     field: String,
+    /// What an element is made of.
+    number: Number,
     elements: Elements<'a>,
     changes: Option<Changes<'a>>,
 }
@@ -39,44 +41,55 @@ impl<'a> Elements<'a> {
 }
 
 impl<'a> Column<'a> {
-    /// A list of float32 vectors.
+    /// A list of vectors, of float32 or quantised (KHR_mesh_quantization).
     pub fn vectors(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self, Fault> {
         let accessor = get(&document.root.accessors, index, &field)?;
-        let float = component(accessor) == Some(ComponentType::F32);
-        if !float && component(accessor).is_some() || accessor.normalized {
-            let quantised = "quantised (KHR_mesh_quantization), not 32-bit float; export again without quantisation";
-            return Err(format!("{field}: the accessor is {quantised}"));
+        let number = component(accessor).and_then(|c| Number::of_vector(c, accessor.normalized));
+        match number {
+            Some(number) if accessor.type_ == Checked::Valid(Type::Vec3) => {
+                Column::new(document, accessor, number, 3, field)
+            }
+            _ => Err(format!("{field}: the accessor must hold VEC3 of 32-bit float, or of 8 or 16-bit integers")),
         }
-        if !float || accessor.type_ != Checked::Valid(Type::Vec3) {
-            return Err(format!("{field}: the accessor must hold VEC3 of 32-bit float"));
-        }
-        Column::new(document, accessor, 12, field)
     }
 
     /// A list of vertex indices.
     pub fn indices(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self, Fault> {
         let accessor = get(&document.root.accessors, index, &field)?;
-        let size = component(accessor).and_then(unsigned_size);
-        match size {
-            Some(size) if accessor.type_ == Checked::Valid(Type::Scalar) && !accessor.normalized => {
-                Column::new(document, accessor, size, field)
+        let number = component(accessor).and_then(Number::of_index);
+        match number {
+            Some(number) if accessor.type_ == Checked::Valid(Type::Scalar) && !accessor.normalized => {
+                Column::new(document, accessor, number, 1, field)
             }
             _ => Err(format!("{field}: the accessor must hold SCALAR unsigned integers, not normalized")),
         }
     }
 
-    fn new(document: &'a Document, accessor: &Accessor, size: usize, field: String) -> Result<Self, Fault> {
-        let Some(view) = &accessor.buffer_view else {
-            let way_out = "compressed geometry? export again without compression";
-            return Err(format!("{field}: the accessor has no bufferView ({way_out})"));
-        };
+    /// Elements of `width` numbers.
+    fn new(
+        document: &'a Document,
+        accessor: &Accessor,
+        number: Number,
+        width: usize,
+        field: String,
+    ) -> Result<Self, Fault> {
         let fault = |e: Fault| format!("{field}: {e}");
-        let offset = accessor.byte_offset.map_or(0, |o| o.0);
-        let run = Run { view, offset, count: accessor.count.0, size };
-        let elements = run.elements(document).map_err(fault)?;
-        let changes = accessor.sparse.as_ref().map(|s| Changes::new(document, s, size)).transpose();
+        let (count, unit) = (accessor.count.0, number.size());
+        let size = width * unit;
+        let elements = match &accessor.buffer_view {
+            Some(view) => {
+                let offset = accessor.byte_offset.map_or(0, |o| o.0);
+                Run { view, offset, count, size, unit }.elements(document)
+            }
+            None if accessor.sparse.is_some() => zeros(count, size),
+            None => {
+                Err("the accessor has no bufferView (compressed geometry? export again without compression)".into())
+            }
+        };
+        let elements = elements.map_err(fault)?;
+        let changes = accessor.sparse.as_ref().map(|s| Changes::new(document, s, size, unit)).transpose();
         let changes = changes.map_err(|e| fault(format!("sparse: {e}")))?;
-        Ok(Column { field, elements, changes })
+        Ok(Column { field, number, elements, changes })
     }
 
     pub fn len(&self) -> usize {
@@ -85,9 +98,10 @@ impl<'a> Column<'a> {
 
     /// The vectors, every component finite.
     pub fn read_vectors(&self) -> Result<Vec<Vec3>, Fault> {
+        let (number, size) = (self.number, self.number.size());
         let vectors = self.read(|bytes| {
-            let at = |i: usize| f32::from_le_bytes([bytes[i], bytes[i + 1], bytes[i + 2], bytes[i + 3]]);
-            Vec3::new(at(0), at(4), at(8))
+            let at = |c: usize| number.real(&bytes[c * size..(c + 1) * size]);
+            Vec3::new(at(0), at(1), at(2))
         })?;
         match vectors.iter().enumerate().find(|(_, v)| !v.is_finite()) {
             Some((k, v)) => {
@@ -99,7 +113,7 @@ impl<'a> Column<'a> {
 
     /// The indices, each below `vertices`.
     pub fn read_indices(&self, vertices: usize) -> Result<Vec<u32>, Fault> {
-        let indices = self.read(unsigned)?;
+        let indices = self.read(Number::unsigned)?;
         match indices.iter().enumerate().find(|(_, i)| **i as usize >= vertices) {
             Some((k, i)) => {
                 Err(format!("{}: index {i} at {k} is out of range, there are {vertices} vertices", self.field))
@@ -112,7 +126,7 @@ impl<'a> Column<'a> {
         let mut list: Vec<T> = self.elements.iter().map(&decode).collect();
         let Some(changes) = &self.changes else { return Ok(list) };
         for (place, value) in changes.places.iter().zip(changes.values.iter()) {
-            let k = unsigned(place) as usize;
+            let k = Number::unsigned(place) as usize;
             let slot = list.get_mut(k).ok_or_else(|| format!("{}: sparse index {k} is out of range", self.field))?;
             *slot = decode(value);
         }
@@ -121,16 +135,17 @@ impl<'a> Column<'a> {
 }
 
 impl<'a> Changes<'a> {
-    fn new(document: &'a Document, sparse: &Sparse, size: usize) -> Result<Self, Fault> {
+    fn new(document: &'a Document, sparse: &Sparse, size: usize, unit: usize) -> Result<Self, Fault> {
         let count = sparse.count.0;
         let (indices, values) = (&sparse.indices, &sparse.values);
         let index_size = match &indices.component_type {
-            Checked::Valid(c) => unsigned_size(c.0),
+            Checked::Valid(c) => Number::of_index(c.0).map(Number::size),
             Checked::Invalid => None,
         };
         let index_size = index_size.ok_or("the indices must be unsigned integers")?;
-        let places = Run { view: &indices.buffer_view, offset: indices.byte_offset.0, count, size: index_size };
-        let values = Run { view: &values.buffer_view, offset: values.byte_offset.0, count, size };
+        let offset = indices.byte_offset.0;
+        let places = Run { view: &indices.buffer_view, offset, count, size: index_size, unit: index_size };
+        let values = Run { view: &values.buffer_view, offset: values.byte_offset.0, count, size, unit };
         Ok(Changes { places: places.elements(document)?, values: values.elements(document)? })
     }
 }
@@ -141,6 +156,8 @@ struct Run<'a> {
     offset: u64,
     count: u64,
     size: usize,
+    /// Bytes of one of the numbers that an element is made of.
+    unit: usize,
 }
 
 impl Run<'_> {
@@ -151,7 +168,7 @@ impl Run<'_> {
         let data = document.buffer(buffer).ok_or_else(|| format!("bufferView.buffer {buffer} is out of range"))?;
         let (size, count) = (self.size, self.count);
         let stride = view.byte_stride.map_or(size, |s| s.0);
-        if stride < size || stride % size.min(4) != 0 {
+        if stride < size || stride % self.unit != 0 {
             return Err(format!("byteStride {stride} does not fit elements of {size} bytes"));
         }
         let (start, length) = (view.byte_offset.map_or(0, |o| o.0), view.byte_length.0);
@@ -169,6 +186,18 @@ impl Run<'_> {
     }
 }
 
+/// Most elements that no byte of the file bears out.
+const MAX_ZEROS: u64 = 1 << 22;
+
+/// What a sparse accessor without a buffer view starts from.
+fn zeros(count: u64, size: usize) -> Result<Elements<'static>, Fault> {
+    const ZEROS: [u8; 12] = [0; 12];
+    if count > MAX_ZEROS {
+        return Err(format!("{count} elements without a bufferView, at most {MAX_ZEROS} are read"));
+    }
+    Ok(Elements { bytes: &ZEROS, count: count as usize, stride: 0, size })
+}
+
 fn part(data: &[u8], start: u64, length: u64) -> Option<&[u8]> {
     let end = start.checked_add(length)?;
     data.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?)
@@ -179,18 +208,4 @@ fn component(accessor: &Accessor) -> Option<ComponentType> {
         Checked::Valid(c) => Some(c.0),
         Checked::Invalid => None,
     }
-}
-
-fn unsigned_size(component: ComponentType) -> Option<usize> {
-    match component {
-        ComponentType::U8 => Some(1),
-        ComponentType::U16 => Some(2),
-        ComponentType::U32 => Some(4),
-        _ => None,
-    }
-}
-
-/// Little-endian.
-fn unsigned(bytes: &[u8]) -> u32 {
-    bytes.iter().rev().fold(0, |sum, b| sum << 8 | u32::from(*b))
 }

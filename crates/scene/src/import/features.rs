@@ -2,22 +2,27 @@
 
 use super::{Fault, nodes::Placed};
 use gltf::json;
+use std::collections::BTreeSet;
 
 /// Extensions that a file may require.
 const SUPPORTED: &[&str] = &[
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
+    "KHR_materials_scatter",
     "KHR_materials_transmission",
     "KHR_materials_volume",
+    "KHR_materials_volume_scatter",
+    "KHR_mesh_quantization",
 ];
 
-/// Extensions that change geometry: without them the mesh is not there, required or not.
+/// Extensions that change what is there: without them the picture would be wrong, required or not.
 const GEOMETRY: &[(&str, &str)] = &[
     ("KHR_draco_mesh_compression", "export again without compression"),
     ("EXT_meshopt_compression", "export again without compression"),
-    ("KHR_mesh_quantization", "export again without quantisation"),
+    ("KHR_meshopt_compression", "export again without compression"),
     ("EXT_mesh_gpu_instancing", "export again with instances as nodes"),
+    ("KHR_node_visibility", "delete what is hidden and export again"),
 ];
 
 /// Refuses what is required and unknown; returns warnings.
@@ -33,8 +38,10 @@ pub(super) fn check(root: &json::Root) -> Result<Vec<String>, Fault> {
             return Err(format!("extensionsUsed: {name} is not supported; {hint}"));
         }
     }
-    let unknown = root.extensions_used.iter().filter(|n| !SUPPORTED.contains(&n.as_str()));
-    Ok(unknown.map(|n| format!("extension {n} is not used")).collect())
+    let unknown: BTreeSet<&str> = root.extensions_used.iter().map(String::as_str).collect();
+    let unknown: Vec<&str> = unknown.into_iter().filter(|n| !SUPPORTED.contains(n)).collect();
+    let warning = || format!("of its extensions, these are not used: {}", unknown.join(", "));
+    Ok((!unknown.is_empty()).then(warning).into_iter().collect())
 }
 
 /// Refuses poses that are not in the mesh itself: skins, morph targets, animations of anything above a mesh.

@@ -13,6 +13,7 @@ mod geometry;
 mod lights;
 mod materials;
 mod nodes;
+mod number;
 mod primitive;
 
 use crate::{Material, Scene, SceneError, light::Light};

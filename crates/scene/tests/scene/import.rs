@@ -110,6 +110,30 @@ fn sparse_accessors_replace_some_elements() {
     assert_eq!(high - low, DVec3::new(1.0, 1.0, 5.0));
 }
 
+/// Without a buffer view, a sparse accessor starts from zeros.
+#[test]
+fn sparse_accessors_of_zeros() {
+    let mut asset = tetrahedron();
+    let places = asset.indices(&[1, 2, 3]);
+    let values = asset.vectors(&TETRAHEDRON[1..]);
+    let sparse = json!({
+        "count": 3,
+        "indices": { "bufferView": places, "componentType": 5123 },
+        "values": { "bufferView": values },
+    });
+    asset.set("/accessors/0", json!({ "componentType": 5126, "type": "VEC3", "count": 4, "sparse": sparse }));
+    assert_eq!(corners(&import(&asset)), corners(&import(&tetrahedron())));
+}
+
+#[test]
+fn extensions_that_are_not_used_are_listed_once() {
+    let mut asset = tetrahedron();
+    asset.set("/extensionsUsed", json!(["ACME_wings", "KHR_materials_clearcoat", "ACME_wings", "KHR_lights_punctual"]));
+    let warnings = import(&asset).warnings;
+    let [only] = &warnings[..] else { panic!("{warnings:?}") };
+    assert!(only.ends_with("not used: ACME_wings, KHR_materials_clearcoat"), "{only}");
+}
+
 fn placed(node: Value) -> Scene {
     let mut asset = tetrahedron();
     asset.set("/nodes/0", node);

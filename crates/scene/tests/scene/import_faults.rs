@@ -1,6 +1,8 @@
 //! Every fault of a glTF file is an error that names the file, the place and, where there is one, the way out.
 
-use crate::asset::{Asset, FLOAT, Folder, OPTIONS, UNSIGNED_SHORT, container, fault, import_bytes, tetrahedron};
+use crate::asset::{
+    Asset, FLOAT, Folder, OPTIONS, UNSIGNED_INT, UNSIGNED_SHORT, container, fault, import_bytes, tetrahedron,
+};
 use scene::Scene;
 use serde_json::{Value, json};
 
@@ -33,12 +35,12 @@ fn types_of_accessors() {
             (&format!("{PRIMITIVE}/attributes"), json!({}), "no POSITION"),
             (&format!("{PRIMITIVE}/mode"), json!(7), "unknown mode"),
             (&format!("{PRIMITIVE}/indices"), json!(0), "indices&unsigned"),
-            (&attribute("POSITION"), json!(2), "POSITION&quantised&export again"),
-            ("/accessors/0/componentType", json!(UNSIGNED_SHORT), "KHR_mesh_quantization"),
+            (&attribute("POSITION"), json!(2), "POSITION&VEC3"),
+            ("/accessors/0/componentType", json!(UNSIGNED_INT), "16-bit integers"),
             ("/accessors/0/componentType", json!(5130), "32-bit float"),
             ("/accessors/0/type", json!("VEC2"), "VEC3"),
-            ("/accessors/0/normalized", json!(true), "quantised"),
-            ("/accessors/1/normalized", json!(true), "NORMAL&quantised"),
+            ("/accessors/0/normalized", json!(true), "POSITION&32-bit float"),
+            ("/accessors/1/normalized", json!(true), "NORMAL&32-bit float"),
             ("/accessors/2/normalized", json!(true), "indices&normalized"),
             ("/accessors/2/componentType", json!(FLOAT), "indices&unsigned"),
             ("/accessors/2/componentType", json!(5122), "indices&unsigned"),
@@ -97,9 +99,14 @@ fn sparse_accessors() {
             ("/accessors/0/sparse/indices/componentType", json!(FLOAT), "unsigned"),
             ("/accessors/0/sparse/values/bufferView", json!(99), "out of range"),
             ("/accessors/0/sparse/indices/byteOffset", json!(u64::MAX), "do not fit"),
-            ("/accessors/0/bufferView", Value::Null, "no bufferView"),
         ],
     );
+    let of_zeros = || {
+        let mut asset = sparse();
+        asset.set("/accessors/0/bufferView", Value::Null);
+        asset
+    };
+    assert_faults(of_zeros, &[("/accessors/0/count", json!(1u64 << 40), "POSITION&without a bufferView&at most")]);
     let mut asset = sparse();
     let at = asset.json["bufferViews"][3]["byteOffset"].as_u64().expect("a number") as usize;
     asset.binary[at] = 4;
@@ -219,7 +226,8 @@ fn materials_and_extensions() {
             ("/materials", json!(vec![json!({}); 65536]), "materials: 65536"),
             ("/extensionsRequired", json!(["KHR_draco_mesh_compression"]), "KHR_draco&without compression"),
             ("/extensionsUsed", json!(["EXT_meshopt_compression"]), "EXT_meshopt&without compression"),
-            ("/extensionsRequired", json!(["KHR_mesh_quantization"]), "KHR_mesh_quantization&without quantisation"),
+            ("/extensionsUsed", json!(["KHR_meshopt_compression"]), "KHR_meshopt&without compression"),
+            ("/extensionsUsed", json!(["KHR_node_visibility"]), "KHR_node_visibility&hidden"),
             ("/extensionsUsed", json!(["EXT_mesh_gpu_instancing"]), "instances as nodes"),
             ("/extensionsRequired", json!(["ACME_wings"]), "ACME_wings&without it"),
         ],

@@ -7,6 +7,7 @@ mod import_faults;
 mod import_files;
 mod import_lights;
 mod import_mutations;
+mod import_quantised;
 mod lights;
 mod meshes;
 mod rays;
