@@ -2,7 +2,7 @@
 //! that is not finite in what was read.
 
 use crate::document::{Folder, binary, document};
-use bssrdf::{Medium, MediumFile};
+use bssrdf::{Medium, MediumFile, Optics};
 use compare::compare;
 use formats::{
     Attribute, Channel, Image,
@@ -129,25 +129,37 @@ fn view() {
     }
 }
 
+/// In each of the three ways to give a medium.
 #[test]
 fn medium() {
-    let medium = json!({
-        "name": "test", "unit": "1/m", "sigma_a": [1, 1, 1], "sigma_s": [1, 1, 1], "g": [0, 0, 0], "eta": 1.3
-    });
-    Medium::from_json(&medium.to_string()).expect("the medium is valid");
-    let mut paths = Vec::new();
-    numbers(&medium, "", &mut paths);
-    assert_eq!(paths.len(), 10);
-    for path in &paths {
-        for number in NO_NUMBERS.into_iter().chain(["1e300", "-1"]) {
-            assert!(Medium::from_json(&replaced(&medium, path, number)).is_err(), "{path} is {number}");
+    let ways = [("1/m", ["sigma_a", "sigma_s"]), ("mm", ["albedo", "mean_free_path"]), ("m", ["color", "radius"])];
+    for (unit, [one, other]) in ways {
+        let medium = json!({
+            "name": "test", "unit": unit, one: [0.5, 0.5, 0.5], other: [1, 1, 1], "g": [0, 0, 0], "eta": 1.3
+        });
+        Medium::from_json(&medium.to_string()).expect("the medium is valid");
+        let mut paths = Vec::new();
+        numbers(&medium, "", &mut paths);
+        assert_eq!(paths.len(), 10);
+        for path in &paths {
+            // No medium scatters within 1e-300 of a length, but one within 1e300 is clear.
+            let huge = if path.contains("mean_free_path") || path.contains("radius") { "1e-300" } else { "1e300" };
+            for number in NO_NUMBERS.into_iter().chain([huge, "-1"]) {
+                assert!(Medium::from_json(&replaced(&medium, path, number)).is_err(), "{path} is {number}");
+            }
         }
-    }
-    let file: MediumFile = serde_json::from_value(medium).expect("the medium is valid");
-    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        assert!(Medium::new(MediumFile { eta: bad, ..file.clone() }).is_err());
-        assert!(Medium::new(MediumFile { sigma_a: [1.0, bad, 1.0], ..file.clone() }).is_err());
-        assert!(Medium::new(MediumFile { sigma_s: [1.0, 1.0, bad], ..file.clone() }).is_err());
+        let file: MediumFile = serde_json::from_value(medium).expect("the medium is valid");
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            assert!(Medium::new(MediumFile { eta: bad, ..file.clone() }).is_err());
+            for (one, other) in [([1.0, bad, 1.0], [1.0; 3]), ([0.5; 3], [1.0, 1.0, bad])] {
+                let optics = match file.optics {
+                    Optics::Coefficients { .. } => Optics::Coefficients { sigma_a: one, sigma_s: other },
+                    Optics::Albedo { .. } => Optics::Albedo { albedo: one, mean_free_path: other },
+                    Optics::Color { .. } => Optics::Color { color: one, radius: other },
+                };
+                assert!(Medium::new(MediumFile { optics, ..file.clone() }).is_err());
+            }
+        }
     }
 }
 

@@ -4,7 +4,7 @@
 #[derive(Debug, thiserror::Error)]
 pub enum MediumError {
     #[error(
-        "not a medium: {0}; expected {{\"name\", \"unit\": \"1/mm\" or \"1/m\", \"sigma_a\": [r,g,b], \"sigma_s\": [r,g,b], \"g\", \"eta\", \"source\"}}"
+        "not a medium: {0}; expected {{\"name\", \"unit\": \"1/mm\" or \"1/m\", \"sigma_a\": [r,g,b], \"sigma_s\": [r,g,b], \"g\", \"eta\", \"source\"}}, or \"unit\": \"mm\" or \"m\" with \"albedo\" and \"mean_free_path\", or with \"color\" and \"radius\""
     )]
     Json(#[from] serde_json::Error),
     #[error("field `{field}`: {value} is {fault}")]

@@ -13,6 +13,7 @@
 //! by the choice between reflection and refraction at the exitant point, so the sum over samples uses `S_gather`.
 
 mod accuracy;
+mod albedo;
 mod better_dipole;
 mod directional_dipole;
 mod error;
@@ -20,16 +21,19 @@ pub mod fresnel;
 pub mod lanes;
 mod media;
 mod medium;
+mod medium_file;
 pub mod simd;
 mod standard_dipole;
 
 pub use accuracy::GOOD;
+pub use albedo::single_scattering_albedo;
 pub use better_dipole::BetterDipole;
 pub use directional_dipole::DirectionalDipole;
 pub use error::MediumError;
 pub use glam::DVec3;
 pub use media::{built_in, built_in_names};
-pub use medium::{Coefficients, ETA_MAX, ETA_MIN, Interface, Medium, MediumFile};
+pub use medium::{Coefficients, ETA_MAX, ETA_MIN, Interface, Medium};
+pub use medium_file::{MediumFile, Optics, Unit};
 pub use standard_dipole::StandardDipole;
 
 /// Where light enters: position (m), outward unit normal, unit direction towards the light.

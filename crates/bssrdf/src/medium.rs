@@ -1,55 +1,15 @@
 //! Optical coefficients of a medium and every quantity derived from them, computed once and nowhere else.
 
-use crate::{error::MediumError, fresnel};
-use serde::{Deserialize, Serialize};
+use crate::{
+    error::MediumError,
+    fresnel,
+    medium_file::{MediumFile, Unit, check},
+};
 
 /// Smallest relative index the Fresnel fits hold for (exclusive): 1/η ≤ 2.5.
 pub const ETA_MIN: f64 = 0.4;
 /// Largest relative index the Fresnel fits hold for: beyond it `A_C` turns negative (method.md section 2).
 pub const ETA_MAX: f64 = 2.5;
-
-/// A medium as it stands in a JSON file.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MediumFile {
-    pub name: String,
-    pub unit: Unit,
-    pub sigma_a: [f64; 3],
-    pub sigma_s: [f64; 3],
-    #[serde(default)]
-    pub g: Asymmetry,
-    #[serde(default = "default_eta")]
-    pub eta: f64,
-    #[serde(default)]
-    pub source: String,
-}
-
-fn default_eta() -> f64 {
-    1.3
-}
-
-/// Unit of the coefficients in a file.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize, PartialEq, Eq)]
-pub enum Unit {
-    #[serde(rename = "1/mm")]
-    PerMillimetre,
-    #[serde(rename = "1/m")]
-    PerMetre,
-}
-
-/// Mean cosine of the phase function: one number, or one per channel.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum Asymmetry {
-    Same(f64),
-    PerChannel([f64; 3]),
-}
-
-impl Default for Asymmetry {
-    fn default() -> Self {
-        Asymmetry::Same(0.0)
-    }
-}
 
 /// Coefficients of one colour channel, 1/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -147,24 +107,14 @@ impl Medium {
     /// Checks ranges and converts to 1/m: the one place where a unit is changed.
     pub fn new(file: MediumFile) -> Result<Medium, MediumError> {
         let scale = match file.unit {
-            Unit::PerMillimetre => 1000.0,
-            Unit::PerMetre => 1.0,
+            Unit::Millimetre => 1000.0,
+            Unit::Metre => 1.0,
         };
-        let g = match file.g {
-            Asymmetry::Same(g) => [g; 3],
-            Asymmetry::PerChannel(g) => g,
-        };
-        for c in 0..3 {
-            check_coefficient("sigma_a", file.sigma_a[c])?;
-            check_coefficient("sigma_s", file.sigma_s[c])?;
-            check("g", g[c], g[c] > -1.0 && g[c] < 1.0, "outside (-1, 1)")?;
-        }
+        file.g.iter().try_for_each(|g| check("g", *g, *g > -1.0 && *g < 1.0, "outside (-1, 1)"))?;
         check("eta", file.eta, file.eta > ETA_MIN && file.eta <= ETA_MAX, "outside (0.4, 2.5], where the models hold")?;
-        let channel = |c: usize| Coefficients {
-            sigma_a: file.sigma_a[c] * scale,
-            sigma_s: file.sigma_s[c] * scale,
-            asymmetry: g[c],
-        };
+        let (sigma_a, sigma_s) = file.coefficients()?;
+        let channel =
+            |c: usize| Coefficients { sigma_a: sigma_a[c] * scale, sigma_s: sigma_s[c] * scale, asymmetry: file.g[c] };
         let interface = Interface::new(file.eta);
         let channels = [channel(0), channel(1), channel(2)];
         Ok(Medium { name: file.name, source: file.source, channels, eta: file.eta, interface })
@@ -199,18 +149,4 @@ impl Interface {
             reflection_egan: (1.0 + diffuse) / (1.0 - diffuse),
         }
     }
-}
-
-/// Largest coefficient accepted, in the file's unit: a mean free path below 10⁻⁹ of it is no medium of diffuse light,
-/// and squares of it must stay finite in float32.
-const COEFFICIENT_MAX: f64 = 1e9;
-
-fn check_coefficient(field: &'static str, value: f64) -> Result<(), MediumError> {
-    check(field, value, value.is_finite(), "not a finite number")?;
-    check(field, value, value >= 0.0, "negative; coefficients are zero or more")?;
-    check(field, value, value <= COEFFICIENT_MAX, "above 1e9; is the unit right?")
-}
-
-fn check(field: &'static str, value: f64, good: bool, fault: &'static str) -> Result<(), MediumError> {
-    if good { Ok(()) } else { Err(MediumError::Field { field, value, fault }) }
 }

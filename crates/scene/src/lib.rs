@@ -4,6 +4,7 @@
 //! to [`Scene::origin`], the centre of the mesh in float64: an object far from the origin loses no digits.
 
 mod error;
+mod health;
 pub mod import;
 pub mod light;
 mod mesh;
@@ -11,14 +12,17 @@ pub mod random;
 mod rays;
 pub mod sequence;
 mod view;
+mod volume;
 pub mod warp;
 
 pub use error::SceneError;
 pub use glam::{DVec3, Vec3};
+pub use health::Health;
 pub use import::{ImportOptions, LightUnit};
 pub use mesh::{Mesh, NormalKind, SurfacePoint, Triangle};
 pub use rays::{Hit, Rays};
 pub use view::{Camera, Projection, View};
+pub use volume::{Draft, Scatter, Volume};
 
 /// What a surface looks like to light, apart from any medium below it.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +34,8 @@ pub struct Material {
     pub emission: DVec3,
     /// The file marks the surface as the boundary of a volume.
     pub volume: bool,
+    /// What the file says of that volume, if it does.
+    pub medium: Option<Volume>,
     /// Emits to both sides.
     pub double_sided: bool,
 }
@@ -58,6 +64,18 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// Materials whose surfaces bound media if nobody says which: those the file marks as volumes, or else all that do
+    /// not emit; those only that cover a triangle, by index. True with them if the file marks none.
+    pub fn translucent(&self) -> (Vec<u16>, bool) {
+        let mut used = vec![false; self.materials.len()];
+        self.mesh.triangles.iter().for_each(|t| used[t.material as usize] = true);
+        let select = |accept: fn(&Material) -> bool| -> Vec<u16> {
+            (0..used.len()).filter(|k| used[*k] && accept(&self.materials[*k])).map(|k| k as u16).collect()
+        };
+        let marked = select(|m| m.volume);
+        if marked.is_empty() { (select(|m| !m.emits()), true) } else { (marked, false) }
+    }
+
     /// Adds light of the same radiance (W/(m² sr)) from all around.
     pub fn add_environment(&mut self, radiance: DVec3) {
         if radiance != DVec3::ZERO {

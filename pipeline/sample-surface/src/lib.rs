@@ -109,12 +109,10 @@ fn translucent_materials(scene: &Scene, names: &[String]) -> Result<(Vec<u16>, b
     if !names.is_empty() {
         return Ok((select(&|m| names.contains(&m.name)), false));
     }
-    let marked = select(&|m| m.volume);
-    if !marked.is_empty() {
-        return Ok((marked, false));
+    match scene.translucent() {
+        (none, _) if none.is_empty() => Err(SampleError::NoSurface),
+        some => Ok(some),
     }
-    let all = select(&|m| !m.emits());
-    if all.is_empty() { Err(SampleError::NoSurface) } else { Ok((all, true)) }
 }
 
 /// A cloud in memory.

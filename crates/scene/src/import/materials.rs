@@ -1,6 +1,6 @@
 //! The file's materials.
 
-use super::{Fault, ImportOptions, Material};
+use super::{Fault, ImportOptions, Material, volumes};
 use glam::DVec3;
 use gltf::json::{self, Root, material::AlphaMode, validation::Checked};
 
@@ -28,6 +28,7 @@ pub(super) fn default() -> Material {
         base_color: DVec3::splat(0.8),
         emission: DVec3::ZERO,
         volume: false,
+        medium: None,
         double_sided: false,
     }
 }
@@ -55,14 +56,7 @@ fn material(
     ];
     warnings.extend(unused.iter().filter(|u| u.0).map(|(_, what)| format!("material `{name}`: {what}")));
     let emission = emission * options.light_unit.watts();
-    Ok(Material { name, base_color, emission, volume: is_volume(m), double_sided: m.double_sided })
-}
-
-/// The file says that the surface bounds a medium.
-fn is_volume(m: &json::Material) -> bool {
-    const SCATTERS: [&str; 2] = ["KHR_materials_volume_scatter", "KHR_materials_scatter"];
-    m.extensions.as_ref().is_some_and(|e| {
-        e.volume.as_ref().is_some_and(|v| v.thickness_factor.0 > 0.0)
-            || SCATTERS.iter().any(|s| e.others.contains_key(*s))
-    })
+    let note = |what| warnings.push(format!("material `{name}`: {what}"));
+    let medium = volumes::read(m, options.metres_per_unit, note)?;
+    Ok(Material { name, base_color, emission, volume: volumes::is_marked(m), medium, double_sided: m.double_sided })
 }

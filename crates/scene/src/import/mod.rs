@@ -15,6 +15,7 @@ mod materials;
 mod nodes;
 mod number;
 mod primitive;
+mod volumes;
 
 use crate::{Material, Scene, SceneError, light::Light};
 use container::Document;

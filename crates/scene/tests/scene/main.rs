@@ -2,12 +2,14 @@
 
 mod asset;
 mod exactness;
+mod health;
 mod import;
 mod import_faults;
 mod import_files;
 mod import_lights;
 mod import_mutations;
 mod import_quantised;
+mod import_volumes;
 mod lights;
 mod meshes;
 mod rays;

@@ -1,0 +1,181 @@
+//! What is wrong with a mesh that is to hold a medium: it should be closed, wound outwards, and there once.
+
+use crate::mesh::Mesh;
+use glam::{DVec3, Vec3};
+use std::fmt;
+
+/// Faults of the surfaces that bound media. Vertices at the same place are one, whatever their normals.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Health {
+    /// Edges where the surface ends.
+    pub open_edges: u64,
+    /// Edges whose two triangles are wound against each other.
+    pub flipped_edges: u64,
+    /// Closed parts that are wound inwards; cavities are meant to be.
+    pub inward_parts: u64,
+    /// Triangles that are there already, wound either way: each is one more surface, and lets in light of its own.
+    pub duplicate_triangles: u64,
+    /// Triangles without area; they were left out.
+    pub degenerate_triangles: u64,
+}
+
+impl Health {
+    pub fn is_good(&self) -> bool {
+        *self == Health::default()
+    }
+
+    /// Names as statistics have them, in order.
+    pub fn counts(&self) -> [(&'static str, u64); 5] {
+        [
+            ("open_edges", self.open_edges),
+            ("flipped_edges", self.flipped_edges),
+            ("inward_parts", self.inward_parts),
+            ("duplicate_triangles", self.duplicate_triangles),
+            ("degenerate_triangles", self.degenerate_triangles),
+        ]
+    }
+}
+
+/// What there is to complain of, as one line.
+impl fmt::Display for Health {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let found = self.counts().into_iter().filter(|(_, count)| *count > 0);
+        let found: Vec<String> = found.map(|(name, count)| format!("{count} {}", name.replace('_', " "))).collect();
+        f.write_str(&if found.is_empty() { "no faults".into() } else { found.join(", ") })
+    }
+}
+
+impl Mesh {
+    /// Examines the triangles whose material `belongs`, all together: a body may have several materials. `degenerate`
+    /// triangles without area were left out before. Sorts, so takes n log n of n triangles.
+    pub fn health(&self, belongs: impl Fn(u16) -> bool, degenerate: u64) -> Health {
+        let (places, points) = self.weld();
+        let own = self.triangles.iter().filter(|t| belongs(t.material));
+        let mut triangles: Vec<[u32; 3]> = own.map(|t| t.vertices.map(|i| places[i as usize])).collect();
+        let count = triangles.len();
+        // Of triangles at one place the first of the mesh is kept.
+        triangles.sort_by_key(sorted);
+        triangles.dedup_by_key(|t| sorted(t));
+        let mut parts = Parts::new(&points, &triangles);
+        let [open_edges, flipped_edges] = unmatched_edges(&triangles, |place| parts.open(place));
+        Health {
+            open_edges,
+            flipped_edges,
+            inward_parts: parts.inward(),
+            duplicate_triangles: (count - triangles.len()) as u64,
+            degenerate_triangles: degenerate,
+        }
+    }
+
+    /// The place of every vertex, and where the places are.
+    fn weld(&self) -> (Vec<u32>, Vec<DVec3>) {
+        // Zero has two signs.
+        let key = |p: &Vec3| p.to_array().map(|x| (x + 0.0).to_bits());
+        let mut order: Vec<([u32; 3], u32)> = self.positions.iter().map(key).zip(0..).collect();
+        order.sort_unstable();
+        let (mut places, mut points) = (vec![0; order.len()], Vec::new());
+        for group in order.chunk_by(|a, b| a.0 == b.0) {
+            group.iter().for_each(|(_, vertex)| places[*vertex as usize] = points.len() as u32);
+            points.push(self.positions[group[0].1 as usize].as_dvec3());
+        }
+        (places, points)
+    }
+}
+
+fn sorted(triangle: &[u32; 3]) -> [u32; 3] {
+    let mut places = *triangle;
+    places.sort_unstable();
+    places
+}
+
+/// Edges where the surface ends, and edges whose triangles are wound against each other: those of an odd number of
+/// triangles, and those that are passed more often in one direction than in the other. `tell` hears of a corner of each.
+fn unmatched_edges(triangles: &[[u32; 3]], mut tell: impl FnMut(u32)) -> [u64; 2] {
+    // The edge's two places, the lower one first, and in the last bit the direction.
+    let edge = |a: u32, b: u32| u64::from(a.min(b)) << 33 | u64::from(a.max(b)) << 1 | u64::from(a > b);
+    let mut edges: Vec<u64> =
+        triangles.iter().flat_map(|[a, b, c]| [edge(*a, *b), edge(*b, *c), edge(*c, *a)]).collect();
+    edges.sort_unstable();
+    let (mut open, mut flipped) = (0, 0);
+    for group in edges.chunk_by(|a, b| a >> 1 == b >> 1) {
+        let back = group.iter().filter(|e| *e & 1 == 1).count();
+        let surplus = group.len().abs_diff(2 * back) as u64;
+        if surplus > 0 {
+            open += surplus % 2;
+            flipped += surplus / 2;
+            tell((group[0] >> 33) as u32);
+        }
+    }
+    [open, flipped]
+}
+
+/// A part of the surface that hangs together.
+#[derive(Clone, Copy)]
+struct Part {
+    closed: bool,
+    /// Of what it encloses, m³; negative if it is wound inwards.
+    volume: f64,
+    /// m².
+    area: f64,
+    low: DVec3,
+    high: DVec3,
+}
+
+struct Parts {
+    /// For each place, its part.
+    of_place: Vec<u32>,
+    list: Vec<Part>,
+}
+
+impl Parts {
+    fn new(points: &[DVec3], triangles: &[[u32; 3]]) -> Parts {
+        let mut parents: Vec<u32> = (0..points.len() as u32).collect();
+        for [a, b, c] in triangles {
+            for other in [b, c] {
+                let (one, other) = (root(&mut parents, *a), root(&mut parents, *other));
+                parents[one as usize] = other;
+            }
+        }
+        let of_place: Vec<u32> = (0..points.len() as u32).map(|k| root(&mut parents, k)).collect();
+        let empty = Part { closed: true, volume: 0.0, area: 0.0, low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
+        let mut list = vec![empty; points.len()];
+        for triangle in triangles {
+            let part = &mut list[of_place[triangle[0] as usize] as usize];
+            let [a, b, c] = triangle.map(|k| points[k as usize]);
+            part.volume += a.dot(b.cross(c)) / 6.0;
+            part.area += 0.5 * (b - a).cross(c - a).length();
+            part.low = part.low.min(a).min(b).min(c);
+            part.high = part.high.max(a).max(b).max(c);
+        }
+        Parts { of_place, list }
+    }
+
+    /// The part of this place is not closed.
+    fn open(&mut self, place: u32) {
+        self.list[self.of_place[place as usize] as usize].closed = false;
+    }
+
+    /// Closed parts wound inwards that are no cavities. A cavity is one whose box lies in that of a body wound outwards;
+    /// only the largest bodies are asked, so that many parts take no longer.
+    fn inward(&self) -> u64 {
+        const BODIES: usize = 256;
+        // A sheet of two sides encloses nothing, on either side of rounding.
+        let inside_out = |p: &&Part| p.closed && p.volume < -1e-6 * p.area.powf(1.5);
+        let mut bodies: Vec<&Part> = self.list.iter().filter(|p| p.volume > 0.0).collect();
+        bodies.sort_by(|a, b| b.volume.total_cmp(&a.volume));
+        bodies.truncate(BODIES);
+        let within = |p: &Part, body: &Part| body.low.cmplt(p.low).all() && body.high.cmpgt(p.high).all();
+        let no_cavity = |p: &&Part| !bodies.iter().any(|body| within(p, body));
+        self.list.iter().filter(inside_out).filter(no_cavity).count() as u64
+    }
+}
+
+/// The place that stands for a part; ways are halved as they are gone.
+fn root(parents: &mut [u32], mut place: u32) -> u32 {
+    while parents[place as usize] != place {
+        let above = parents[parents[place as usize] as usize];
+        parents[place as usize] = above;
+        place = above;
+    }
+    place
+}

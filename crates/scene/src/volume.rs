@@ -1,0 +1,42 @@
+//! What a file says of the matter below a surface.
+
+use glam::DVec3;
+
+/// The matter below a surface, as glTF describes it: KHR_materials_volume, KHR_materials_ior and the drafts for
+/// scattering.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Volume {
+    /// `σ_t` per channel, 1/m: absorption and scattering together.
+    pub extinction: DVec3,
+    /// Relative index, inside over outside.
+    pub ior: f64,
+    /// None if it only absorbs.
+    pub scatter: Option<Scatter>,
+}
+
+/// How much of what is met scatters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scatter {
+    pub draft: Draft,
+    /// The colour after multiple scattering, 0 to 1.
+    pub color: DVec3,
+    /// Mean cosine of the phase function, between -1 and 1.
+    pub asymmetry: f64,
+}
+
+/// The two drafts give different albedos for the same numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Draft {
+    VolumeScatter,
+    Scatter,
+}
+
+impl Draft {
+    /// The extension's name.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Draft::VolumeScatter => "KHR_materials_volume_scatter",
+            Draft::Scatter => "KHR_materials_scatter",
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! What a file says of the medium below a surface: both drafts, both spellings, every default.
+
+use crate::asset::{OPTIONS, fault, import_bytes, tetrahedron};
+use scene::{DVec3, Draft, ImportOptions, Material, Scatter, Volume};
+use serde_json::{Value, json};
+
+/// The tetrahedron's material with these extensions, and what the import says of it.
+fn material(extensions: Value) -> (Material, Vec<String>) {
+    let mut asset = tetrahedron();
+    asset.set("/materials/0/extensions", extensions);
+    asset.set("/materials/0/pbrMetallicRoughness", json!({ "baseColorFactor": [1, 1, 1, 1] }));
+    let scene = asset.import().expect("a good file");
+    (scene.materials[0].clone(), scene.warnings)
+}
+
+/// Numbers of a file go through float32.
+fn assert_close(a: DVec3, b: DVec3) {
+    assert!(a.distance(b) <= 1e-6 * b.length(), "{a} for {b}");
+}
+
+/// A volume that transmits `0.5, 0.25, 1` over two units.
+fn volume() -> Value {
+    json!({ "thicknessFactor": 1, "attenuationDistance": 2, "attenuationColor": [0.5, 0.25, 1] })
+}
+
+const EXTINCTION: DVec3 = DVec3::new(0.5 * std::f64::consts::LN_2, std::f64::consts::LN_2, 0.0);
+
+/// The scattering that the file gives by these extensions, and the warnings.
+fn scatter_of(draft: Draft, scatter: Value) -> (Option<Scatter>, Vec<String>) {
+    let extensions = json!({
+        "KHR_materials_volume": volume(),
+        "KHR_materials_transmission": { "transmissionFactor": 1 },
+        draft.extension(): scatter,
+    });
+    let (material, warnings) = material(extensions);
+    let medium = material.medium.expect("a medium");
+    assert_close(medium.extinction, EXTINCTION);
+    assert_eq!((material.volume, medium.ior), (true, 1.5));
+    (medium.scatter, warnings)
+}
+
+/// Planted: the older draft's default colour for the newer.
+#[test]
+fn both_drafts_with_their_defaults_and_spellings() {
+    let both = [Draft::VolumeScatter, Draft::Scatter];
+    for draft in both {
+        let asked = Scatter { draft, color: DVec3::new(0.25, 0.5, 1.0), asymmetry: 0.0 };
+        for spelling in ["multiscatterColorFactor", "multiscatterColor"] {
+            let fields = json!({ spelling: [0.25, 0.5, 1], "scatterStrengthFactor": 1 });
+            assert_eq!(scatter_of(draft, fields), (Some(asked.clone()), vec![]), "{spelling}");
+        }
+        let fields = json!({ "multiscatterColorFactor": [1, 1, 1], "multiscatterColor": [0, 0, 0],
+            "scatterAnisotropy": -0.75, "scatterStrengthFactor": 0.5 });
+        let (found, warnings) = scatter_of(draft, fields);
+        // Only the newer draft has a strength.
+        let share = if draft == Draft::Scatter { 0.5 } else { 1.0 };
+        assert_eq!(found, Some(Scatter { draft, color: DVec3::splat(share), asymmetry: -0.75 }));
+        assert!(warnings.is_empty(), "{warnings:?}");
+    }
+    // Their defaults: black, or white but switched off.
+    let [(older, said), (newer, too)] = both.map(|draft| scatter_of(draft, json!({})));
+    assert_eq!((older, newer), (None, None));
+    assert!(said[0].contains("multiscatterColorFactor is 0") && too[0].contains("scatterStrengthFactor is 0"));
+    let (white, _) = scatter_of(Draft::Scatter, json!({ "scatterStrengthFactor": 1 }));
+    assert_eq!(white.map(|s| s.color), Some(DVec3::ONE));
+}
+
+/// Absorption alone is a medium if light enters.
+#[test]
+fn transmission_lets_light_in() {
+    let transmission = json!({ "transmissionFactor": 1 });
+    let ior = json!({ "ior": 1.25 });
+    let all = json!({
+        "KHR_materials_volume": volume(), "KHR_materials_transmission": transmission, "KHR_materials_ior": ior,
+    });
+    let (glass, warnings) = material(all);
+    let Some(Volume { extinction, ior, scatter }) = glass.medium else { panic!("a medium") };
+    assert_close(extinction, EXTINCTION);
+    assert_eq!((ior, scatter, warnings.len()), (1.25, None, 0));
+    assert_eq!(material(json!({ "KHR_materials_volume": volume() })).0.medium, None);
+    // Thin-walled.
+    let thin = json!({ "attenuationDistance": 2, "attenuationColor": [0.5, 0.25, 1] });
+    let walls = json!({ "KHR_materials_volume": thin, "KHR_materials_transmission": transmission });
+    let (walls, _) = material(walls);
+    assert_eq!((walls.medium, walls.volume), (None, false));
+    // The newer draft needs it, the older does not.
+    for (draft, has_medium) in [(Draft::Scatter, false), (Draft::VolumeScatter, true)] {
+        let scatter = json!({ "multiscatterColorFactor": [1, 1, 1], "scatterStrengthFactor": 1 });
+        let (m, warnings) = material(json!({ "KHR_materials_volume": volume(), draft.extension(): scatter }));
+        assert_eq!((m.medium.is_some(), m.volume), (has_medium, true));
+        assert_eq!(warnings.iter().any(|w| w.contains("without KHR_materials_transmission")), !has_medium);
+    }
+}
+
+#[test]
+fn what_is_missing_or_taken_otherwise_is_said() {
+    let said = |base: Value, volume: Value, transmission: f64, extension: &str, scatter: Value| {
+        let mut asset = tetrahedron();
+        let transmission = json!({ "transmissionFactor": transmission });
+        let extensions =
+            json!({ "KHR_materials_volume": volume, "KHR_materials_transmission": transmission, extension: scatter });
+        asset.set("/materials/0/extensions", extensions);
+        asset.set("/materials/0/pbrMetallicRoughness", json!({ "baseColorFactor": base }));
+        let scene = asset.import().expect("a good file");
+        (scene.materials[0].medium.clone(), scene.warnings.join("; "))
+    };
+    let (white, older) = (json!([1, 1, 1, 1]), "KHR_materials_volume_scatter");
+    let color = || json!({ "multiscatterColorFactor": [1, 1, 1] });
+    let (endless, text) = said(white.clone(), json!({ "thicknessFactor": 1 }), 1.0, older, color());
+    assert!(endless.is_none() && text.contains("`wax`") && text.contains("gives no medium"), "{text}");
+    let thin = json!({ "attenuationDistance": 2, "attenuationColor": [0.5, 0, 1] });
+    let (medium, text) = said(json!([1, 0.5, 1, 1]), thin, 0.5, older, color());
+    assert_eq!(medium.map(|m| (m.extinction.y * 2.0 * 1e6).round()), Some(9_210_340.0), "-ln(1e-4)");
+    for word in ["no less than 0.0001", "thicknessFactor", "transmissionFactor is taken as 1", "tint"] {
+        assert!(text.contains(word), "{word}: {text}");
+    }
+    let textured = json!({ "multiscatterColorFactor": [1, 1, 1], "multiscatterColorTexture": { "index": 0 } });
+    assert!(said(white.clone(), volume(), 1.0, older, textured).1.contains("textures"));
+    let (none, text) = material(json!({ older: color() }));
+    assert!(none.medium.is_none() && text[0].contains("without KHR_materials_volume:"), "{text:?}");
+    let (newer, text) = material(json!({
+        "KHR_materials_volume": volume(),
+        "KHR_materials_transmission": { "transmissionFactor": 1 },
+        older: color(),
+        "KHR_materials_scatter": { "scatterStrengthFactor": 1 },
+    }));
+    assert_eq!(newer.medium.and_then(|m| m.scatter).map(|s| s.draft), Some(Draft::Scatter));
+    assert!(text[0].contains("KHR_materials_volume_scatter is not used"), "{text:?}");
+}
+
+/// The distance is the world's: nodes do not scale it, units do.
+#[test]
+fn attenuation_is_in_units_of_the_world() {
+    let mut asset = tetrahedron();
+    let transmission = json!({ "transmissionFactor": 1 });
+    let extensions = json!({ "KHR_materials_volume": volume(), "KHR_materials_transmission": transmission });
+    asset.set("/materials/0/extensions", extensions);
+    asset.set("/nodes/0/scale", json!([10, 10, 10]));
+    let options = ImportOptions { metres_per_unit: 0.001, ..OPTIONS };
+    let scene = import_bytes("small.glb", &asset.glb(), &options).expect("a good file");
+    let medium = scene.materials[0].medium.clone().expect("a medium");
+    assert_close(medium.extinction, 1000.0 * EXTINCTION);
+}
+
+#[test]
+fn numbers_out_of_range_are_faults() {
+    let message = |volume: Value, scatter: Value| {
+        let mut asset = tetrahedron();
+        let extensions = json!({ "KHR_materials_volume": volume, "KHR_materials_volume_scatter": scatter });
+        asset.set("/materials/0/extensions", extensions);
+        fault(&asset)
+    };
+    let with = |key: &str, value: Value| {
+        let mut volume = volume();
+        volume[key] = value;
+        message(volume, json!({}))
+    };
+    for (text, word) in [
+        (with("attenuationDistance", json!(0)), "attenuationDistance 0"),
+        (with("attenuationDistance", json!(-1)), "attenuationDistance -1"),
+        (with("attenuationColor", json!([2, 0, 0])), "attenuationColor"),
+        (message(volume(), json!({ "multiscatterColor": [0, 1.5, 0] })), "multiscatterColorFactor"),
+        (message(volume(), json!({ "multiscatterColor": [0, 1] })), "KHR_materials_volume_scatter"),
+        (message(volume(), json!({ "scatterAnisotropy": 1 })), "scatterAnisotropy 1"),
+    ] {
+        assert!(text.contains("`wax`") && text.contains(word), "{word}: {text}");
+    }
+}
