@@ -67,14 +67,15 @@ endef
 $(foreach g,$(GALLERY),$(foreach v,$(notdir $(basename $(wildcard data/views/$(word 1,$(subst :, ,$(g)))/*.json))),\
 $(eval $(call picture,$(word 1,$(subst :, ,$(g))),$(word 2,$(subst :, ,$(g))),$(v)))))
 
-# A user's own file: make SCENE=path.glb MEDIUM=marble [SAMPLES=4M], one image for each of its cameras.
+# A user's own file: make SCENE=path.glb MEDIUM=marble [SAMPLES=4M], one image for each of its cameras; with an empty
+# MEDIUM= the file's own media.
 ifdef SCENE
 MEDIUM ?= marble
 OWN := $(OUT)/$(notdir $(basename $(SCENE)))/$(RUN_NAME)
-OWN_IMAGES := $(OWN)/$(notdir $(basename $(MEDIUM)))-$(MODEL)
+OWN_IMAGES := $(OWN)/$(or $(notdir $(basename $(MEDIUM))),own)-$(MODEL)
 
 own: build
-	@$(MAKE) --no-print-directory own-images CAMERAS="$$($(GATHER) --list-cameras --quiet '$(SCENE)' | cut -f1 | tr '\n' ' ')"
+	@$(MAKE) --no-print-directory own-images CAMERAS="$$($(GATHER) --list-cameras --quiet '$(SCENE)' | sed 1d | cut -d ' ' -f1 | tr '\n' ' ')"
 	@echo "The pictures are in $(OWN_IMAGES)/: one .png and one OpenEXR image for each camera, by its number."
 
 own-images: $(foreach c,$(CAMERAS),$(OWN_IMAGES)/camera$(c).exr)
@@ -85,7 +86,7 @@ $(OWN).cloud: $(SCENE) crates/formats/cloud-version | $(SAMPLE)
 
 $(OWN_IMAGES)/camera%.exr: $(OWN).cloud $(wildcard $(MEDIUM)) | $(GATHER)
 	@mkdir -p $(@D)
-	$(SUBMIT) $(GATHER) --threads $(THREADS) --seed $(SEED) --spp $(SPP) --bssrdf $(MODEL) --medium $(MEDIUM) --camera $* \
+	$(SUBMIT) $(GATHER) --threads $(THREADS) --seed $(SEED) --spp $(SPP) --bssrdf $(MODEL) $(if $(MEDIUM),--medium $(MEDIUM)) --camera $* \
 	  --preview $(basename $@).png --exposure $(or $(EXPOSURE),0) $< '$(SCENE)' -o $@
 endif
 
@@ -100,9 +101,10 @@ test:
 	$(CARGO) test --workspace --quiet
 
 ## slow: statistical and stability tests at full sample counts
-slow:
+slow: build
 	$(CARGO) test --release --package bssrdf --test lanes -- --nocapture
 	$(CARGO) test --release --package pipeline-tests --features slow
+	$(CARGO) test --release --package gather --features slow --test programs mutations
 
 ## accuracy: what the models are worth, against random walks: docs/accuracy.md and its pictures (minutes)
 accuracy:

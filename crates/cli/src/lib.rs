@@ -6,13 +6,15 @@ mod medium;
 mod progress;
 mod rgb;
 mod scene_args;
+mod tables;
 
 pub use count::parse_count;
 pub use failure::{Failure, run};
-pub use medium::{ReadMediumError, read_medium};
+pub use medium::{ReadMediumError, read_medium, scene_medium};
 pub use progress::Progress;
 pub use rgb::parse_rgb;
 pub use scene_args::{LightUnit, Normals, SceneArgs};
+pub use tables::{camera_table, material_table};
 
 use clap::{Args, ValueEnum};
 use std::io::{self, ErrorKind, Write};

@@ -1,6 +1,7 @@
-//! Media as they are named on a command line.
+//! Media as they are named on a command line, or described by a scene's file.
 
-use bssrdf::{Medium, MediumError, built_in};
+use bssrdf::{Medium, MediumError, MediumFile, Optics, Unit, built_in, single_scattering_albedo};
+use scene::{Draft, Material};
 use std::fs;
 
 /// Why there is no such medium.
@@ -12,6 +13,8 @@ pub enum ReadMediumError {
     File { path: String, source: MediumError },
     #[error("{path}: cannot read: {source}")]
     Read { path: String, source: std::io::Error },
+    #[error("material `{material}` of SCENE (eta is its KHR_materials_ior): {source}; give --medium {material}=NAME")]
+    Scene { material: String, source: MediumError },
 }
 
 /// A medium by its built-in name, or from a file, whose name ends in `.json` or has a slash.
@@ -22,4 +25,31 @@ pub fn read_medium(name: &str) -> Result<Medium, ReadMediumError> {
     }
     let text = fs::read_to_string(name).map_err(|source| ReadMediumError::Read { path: name.into(), source })?;
     Medium::from_json(&text).map_err(|source| ReadMediumError::File { path: name.into(), source })
+}
+
+/// The medium that the scene's file gives a material; none if it gives no coefficients.
+pub fn scene_medium(material: &Material) -> Result<Option<Medium>, ReadMediumError> {
+    let Some(volume) = &material.medium else { return Ok(None) };
+    let scatter = volume.scatter.as_ref();
+    let asymmetry = scatter.map_or(0.0, |s| s.asymmetry);
+    let (extension, albedo) = match scatter {
+        None => ("KHR_materials_volume", [0.0; 3]),
+        Some(s) => {
+            // The older draft leaves g out of its albedo.
+            let g = if s.draft == Draft::Scatter { asymmetry } else { 0.0 };
+            (s.draft.extension(), s.color.to_array().map(|color| single_scattering_albedo(color, g)))
+        }
+    };
+    let extinction = volume.extinction.to_array();
+    let share = |of: fn(f64) -> f64| [0, 1, 2].map(|c| extinction[c] * of(albedo[c]));
+    let file = MediumFile {
+        name: extension.into(),
+        unit: Unit::Metre,
+        optics: Optics::Coefficients { sigma_a: share(|albedo| 1.0 - albedo), sigma_s: share(|albedo| albedo) },
+        g: [asymmetry; 3],
+        eta: volume.ior,
+        source: "the scene's file".into(),
+    };
+    let fault = |source| ReadMediumError::Scene { material: material.name.clone(), source };
+    Medium::new(file).map(Some).map_err(fault)
 }

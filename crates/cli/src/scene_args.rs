@@ -2,7 +2,7 @@
 
 use crate::{Common, Failure, parse_rgb};
 use clap::{Args, ValueEnum};
-use scene::{DVec3, ImportOptions, NormalKind, Scene};
+use scene::{DVec3, Health, ImportOptions, NormalKind, Scene};
 use std::path::Path;
 
 /// Arguments about the scene.
@@ -26,6 +26,9 @@ pub struct SceneArgs {
     /// Take the file's light numbers as W, or as lm and divide them by 683 lm/W
     #[arg(long, value_name = "UNIT", default_value = "radiometric")]
     pub light_unit: LightUnit,
+    /// Refuse a mesh whose translucent surfaces are open, flipped, inside out or there twice, instead of a warning
+    #[arg(long)]
+    pub strict: bool,
 }
 
 /// Which normals to use.
@@ -53,6 +56,24 @@ impl SceneArgs {
         scene.warnings.iter().for_each(|w| common.warn(format_args!("{}: {w}", path.display())));
         scene.add_environment(self.radiance());
         Ok(scene)
+    }
+
+    /// Examines the surfaces of the translucent materials; warns of faults, or refuses them if `--strict`.
+    pub fn check_mesh(
+        &self,
+        scene: &Scene,
+        translucent: impl Fn(u16) -> bool,
+        path: &Path,
+        common: &Common,
+    ) -> Result<Health, Failure> {
+        let health = scene.mesh.health(translucent, scene.degenerate_triangles);
+        let line = format!("{}: the translucent surfaces have {health}", path.display());
+        match (health.is_good(), self.strict) {
+            (true, _) => {}
+            (false, true) => return Err(Failure::usage(format!("{line}; repair the mesh, or leave out --strict"))),
+            (false, false) => common.warn(format_args!("{line}; a medium wants a closed surface wound outwards")),
+        }
+        Ok(health)
     }
 
     /// Constant radiance from all around, scale included, W/(m² sr).

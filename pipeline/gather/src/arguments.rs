@@ -10,12 +10,12 @@ use std::path::PathBuf;
 #[derive(Parser)]
 #[command(version)]
 pub struct Arguments {
-    /// Cloud of sample-surface (with --list-cameras: SCENE alone is enough)
+    /// Cloud of sample-surface (with --list-cameras or --list-materials: SCENE alone is enough)
     pub cloud: Option<PathBuf>,
     /// The scene that the cloud was sampled from
     pub scene: Option<PathBuf>,
     /// OpenEXR image to write
-    #[arg(short, long, value_name = "IMAGE.exr", required_unless_present_any = ["list_cameras", "list_media"])]
+    #[arg(short, long, value_name = "IMAGE.exr", required_unless_present_any = ["list_cameras", "list_materials", "list_media"])]
     pub output: Option<PathBuf>,
     /// Camera of SCENE by name or index [default: the first]
     #[arg(long, value_name = "NAME|INDEX")]
@@ -29,7 +29,8 @@ pub struct Arguments {
     /// Height, pixels [default: by the camera's aspect]
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub height: Option<u32>,
-    /// Medium, by built-in name or from a file; of one material, or of all (repeatable)
+    /// Medium, by built-in name or from a file; of one material, or of all (repeatable) [default: what SCENE's
+    /// materials say]
     #[arg(long, value_name = "[MATERIAL=]NAME|FILE.json")]
     pub medium: Vec<String>,
     /// How light scatters from point to point
@@ -73,6 +74,9 @@ pub struct Arguments {
     /// Print the cameras of SCENE
     #[arg(long)]
     pub list_cameras: bool,
+    /// Print the materials of SCENE, with the media that it gives them
+    #[arg(long)]
+    pub list_materials: bool,
     /// Print the built-in media
     #[arg(long)]
     pub list_media: bool,

@@ -9,7 +9,7 @@ use arguments::Arguments;
 use bssrdf::{Medium, built_in, built_in_names};
 use choices::{camera, estimator, settings};
 use clap::Parser;
-use cli::Failure;
+use cli::{Failure, camera_table, material_table};
 use formats::{
     atomic::{self, Output},
     cloud::Cloud,
@@ -35,8 +35,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.list_media {
         return list_media();
     }
-    if arguments.list_cameras {
-        return list_cameras(arguments);
+    if arguments.list_cameras || arguments.list_materials {
+        return list_scene(arguments);
     }
     let start = Instant::now();
     let common = &arguments.common;
@@ -48,7 +48,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let camera = camera(arguments, &scene, scene_path)?;
     let settings = settings(arguments, &camera, estimator)?;
     check_memory(&settings)?;
-    let media = media::assign(&arguments.medium, cloud.meta())?;
+    let sampled = |material| cloud.meta().materials.iter().any(|m| m.index == material);
+    let health = arguments.scene_args.check_mesh(&scene, sampled, scene_path, common)?;
+    let media = media::assign(&arguments.medium, cloud.meta(), &scene.materials)?;
     show_scale(arguments, &scene, &cloud, &media, &settings);
     let output_path = arguments.output.as_deref().ok_or_else(|| Failure::usage("--output: give IMAGE.exr"))?;
     let mut output = Output::create(output_path)?;
@@ -76,7 +78,14 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     seconds.0.push(("render", step.elapsed().as_secs_f64()));
 
     let settings = Settings { paths_per_pixel: rendered.paths_per_pixel, ..settings };
-    let facts = Facts { settings: &settings, cloud: cloud.meta(), media: &media, camera: &camera.camera };
+    let facts = Facts {
+        settings: &settings,
+        cloud: cloud.meta(),
+        media: &media,
+        camera: &camera.camera,
+        warnings: &scene.warnings,
+        health,
+    };
     let step = Instant::now();
     if rendered.non_finite_count == 0 {
         write_image(arguments, &facts, &rendered, &mut output, output_path)?;
@@ -160,10 +169,14 @@ fn check_memory(settings: &Settings) -> Result<(), Failure> {
 /// Prints each medium's lengths beside its object's.
 fn show_scale(arguments: &Arguments, scene: &Scene, cloud: &Cloud, media: &[Medium], settings: &Settings) {
     for (material, medium) in cloud.meta().materials.iter().zip(media) {
-        let diagonal = diagonal(scene, material.index);
-        let spacing = (material.area_m2 / material.count().max(1) as f64).sqrt();
-        let transport = settings.model.of(medium).transport();
-        let scale = media::scale(&material.name, medium, transport, diagonal, spacing);
+        let (diagonal, extent) = size(scene, material.index);
+        let object = media::Object {
+            material: &material.name,
+            diagonal,
+            spacing: (material.area_m2 / material.count().max(1) as f64).sqrt(),
+            rounding: 0.5 * f64::from(f32::EPSILON) * extent,
+        };
+        let scale = media::scale(&object, medium, settings.model.of(medium).transport());
         scale.lines.iter().for_each(|line| arguments.common.say(line));
         scale.warnings.iter().for_each(|warning| arguments.common.warn(warning));
         if let Some(errors) = settings.model.poor_reflectance(medium) {
@@ -177,14 +190,14 @@ fn show_scale(arguments: &Arguments, scene: &Scene, cloud: &Cloud, media: &[Medi
     }
 }
 
-/// Diagonal of the box around one material's triangles, m.
-fn diagonal(scene: &Scene, material: u16) -> f64 {
+/// Diagonal of the box around one material's triangles, and their largest coordinate, m.
+fn size(scene: &Scene, material: u16) -> (f64, f64) {
     let mesh = &scene.mesh;
     let own = (0..mesh.triangles.len()).filter(|k| mesh.triangles[*k].material == material);
     let start = (scene::DVec3::INFINITY, scene::DVec3::NEG_INFINITY);
     let corners = own.flat_map(|k| mesh.corners(k));
     let (low, high) = corners.fold(start, |(low, high), p| (low.min(p), high.max(p)));
-    (high - low).length()
+    ((high - low).length(), low.abs().max(high.abs()).max_element())
 }
 
 fn write_image(
@@ -258,17 +271,18 @@ fn list_media() -> Result<(), Failure> {
     cli::print(&text)
 }
 
-fn list_cameras(arguments: &Arguments) -> Result<(), Failure> {
+fn list_scene(arguments: &Arguments) -> Result<(), Failure> {
     let path: &PathBuf = match (&arguments.cloud, &arguments.scene) {
         (_, Some(scene)) | (Some(scene), None) => scene,
-        _ => return Err(Failure::usage("--list-cameras: give SCENE")),
+        _ => return Err(Failure::usage("--list-cameras, --list-materials: give SCENE")),
     };
     let scene = arguments.scene_args.import(path, &arguments.common)?;
     let mut text = String::new();
-    for (index, camera) in scene.cameras.iter().enumerate() {
-        let kind = camera.yfov_degrees().map_or("orthographic".into(), |yfov| format!("yfov {yfov:.2} degrees"));
-        let aspect = camera.aspect.map_or("any aspect".into(), |a| format!("aspect {a:.3}"));
-        writeln!(text, "{index}\t{}\t{kind}\t{aspect}", camera.name)?;
+    if arguments.list_cameras {
+        text += &camera_table(&scene);
+    }
+    if arguments.list_materials {
+        text += &material_table(&scene)?;
     }
     cli::print(&text)
 }

@@ -1,13 +1,14 @@
 //! Which medium fills which material.
 
 use bssrdf::Medium;
-use cli::{ReadMediumError, read_medium};
+use cli::{ReadMediumError, read_medium, scene_medium};
 use formats::cloud::Meta;
+use scene::Material;
 
 /// Why media cannot be assigned.
 #[derive(Debug, thiserror::Error)]
 pub enum AssignError {
-    #[error("--medium: which one? give a name (--list-media prints them) or a FILE.json")]
+    #[error("--medium: which one? SCENE gives none; give a name (--list-media prints them) or a FILE.json")]
     Missing,
     #[error("--medium: material `{0}` of the cloud has no medium; add --medium {0}=NAME")]
     MissingFor(String),
@@ -17,14 +18,17 @@ pub enum AssignError {
     Twice(String, String),
     #[error("--medium: {0}")]
     Medium(#[from] ReadMediumError),
+    #[error("{0}")]
+    Scene(ReadMediumError),
 }
 
-/// The medium of each sampled material from arguments `[MATERIAL=]NAME|FILE.json`.
-pub fn assign(arguments: &[String], cloud: &Meta) -> Result<Vec<Medium>, AssignError> {
+/// The medium of each sampled material: from arguments `[MATERIAL=]NAME|FILE.json`, or else from the scene's
+/// `materials`.
+pub fn assign(arguments: &[String], cloud: &Meta, materials: &[Material]) -> Result<Vec<Medium>, AssignError> {
     let mut for_all: Option<&str> = None;
     let mut for_one: Vec<Option<&str>> = vec![None; cloud.materials.len()];
     for argument in arguments {
-        let (slots, medium): (Vec<&mut Option<&str>>, &str) = match argument.split_once('=') {
+        let (slots, medium): (Vec<&mut Option<&str>>, &str) = match split(argument, cloud) {
             Some((name, medium)) => {
                 let named = cloud.materials.iter().zip(&mut for_one).filter(|(m, _)| m.name == name);
                 (named.map(|(_, slot)| slot).collect(), medium)
@@ -42,13 +46,26 @@ pub fn assign(arguments: &[String], cloud: &Meta) -> Result<Vec<Medium>, AssignE
             }
         }
     }
-    if arguments.is_empty() {
-        return Err(AssignError::Missing);
-    }
+    let missing = |name: &str| match arguments {
+        [] if cloud.materials.len() == 1 => AssignError::Missing,
+        _ => AssignError::MissingFor(name.to_owned()),
+    };
     let chosen = for_one.iter().zip(&cloud.materials).map(|(one, m)| {
-        one.or(for_all).ok_or_else(|| AssignError::MissingFor(m.name.clone())).and_then(|name| Ok(read_medium(name)?))
+        if let Some(name) = one.or(for_all) {
+            return Ok(read_medium(name)?);
+        }
+        let own = materials.get(usize::from(m.index)).map(scene_medium).transpose().map_err(AssignError::Scene)?;
+        own.flatten().ok_or_else(|| missing(&m.name))
     });
     chosen.collect()
+}
+
+/// Splits `MATERIAL=MEDIUM`; the name of a material may hold an equals sign, and the longest that fits is meant.
+fn split<'a>(argument: &'a str, cloud: &Meta) -> Option<(&'a str, &'a str)> {
+    let at = |(k, _): (usize, &str)| Some((argument.get(..k)?, argument.get(k + 1..)?));
+    let known = |name: &str| cloud.materials.iter().any(|m| m.name == name);
+    let splits: Vec<_> = argument.match_indices('=').filter_map(at).collect();
+    splits.iter().rev().find(|(name, _)| known(name)).or(splits.first()).copied()
 }
 
 /// Lengths of a medium beside the object's, and what is odd about them.
@@ -58,14 +75,27 @@ pub struct Scale {
     pub warnings: Vec<String>,
 }
 
-/// Compares a medium with the object that it fills. `diagonal` is the object's, `spacing` the mean distance of its
-/// samples, m; `transport` is `σ_tr`, 1/m.
-pub fn scale(material: &str, medium: &Medium, transport: [f64; 3], diagonal: f64, spacing: f64) -> Scale {
+/// The surface of a material, m.
+pub struct Object<'a> {
+    pub material: &'a str,
+    /// Of the box around it.
+    pub diagonal: f64,
+    /// Mean distance of its samples.
+    pub spacing: f64,
+    /// What float32 rounds its positions by, at most.
+    pub rounding: f64,
+}
+
+/// Compares a medium with the object that it fills; `transport` is `σ_tr`, 1/m.
+pub fn scale(object: &Object, medium: &Medium, transport: [f64; 3]) -> Scale {
+    let Object { material, diagonal, spacing, rounding } = *object;
     let path = medium.mean_free_path();
     let diffuse = transport.map(|s| 1.0 / s);
     let three = |v: [f64; 3]| v.map(length).join(" ");
     let lines = vec![
         format!("material `{material}`: {} (eta {})", medium.name, medium.eta),
+        format!("  sigma_a, 1/m     {}", coefficients(medium.map(|c| c.sigma_a))),
+        format!("  sigma_s, 1/m     {}, g {}", coefficients(medium.map(|c| c.sigma_s)), mean_cosine(medium)),
         format!("  mean free path   {}", three(path)),
         format!("  1/sigma_tr       {}", three(diffuse)),
         format!("  object diagonal  {}   sample spacing {}", length(diagonal), length(spacing)),
@@ -95,7 +125,25 @@ pub fn scale(material: &str, medium: &Medium, transport: [f64; 3], diagonal: f64
             (spacing / reduced).powi(2)
         ));
     }
+    if rounding > 0.01 * reduced {
+        warnings.push(format!(
+            "`{material}`: positions are rounded by up to {}, light scatters within {}: the scene is too wide for so \
+             dense a medium; leave out what is far away",
+            length(rounding),
+            length(reduced)
+        ));
+    }
     Scale { lines, warnings }
+}
+
+fn coefficients(sigma: [f64; 3]) -> String {
+    sigma.map(|s| format!("{s:.4e}")).join(" ")
+}
+
+/// One number if the channels agree.
+fn mean_cosine(medium: &Medium) -> String {
+    let [r, g, b] = medium.map(|c| c.asymmetry);
+    if r == g && g == b { r.to_string() } else { format!("{r} {g} {b}") }
 }
 
 /// A length with a unit that suits it.

@@ -7,7 +7,7 @@ use formats::{
     cloud::{Meta, hex},
 };
 use gather::{Rendered, Settings, estimator::Estimator, film};
-use scene::Camera;
+use scene::{Camera, Health};
 use std::collections::BTreeMap;
 
 /// Facts about one image.
@@ -16,6 +16,9 @@ pub struct Facts<'a> {
     pub cloud: &'a Meta,
     pub media: &'a [Medium],
     pub camera: &'a Camera,
+    /// What was left out of the scene or looks wrong.
+    pub warnings: &'a [String],
+    pub health: Health,
 }
 
 fn estimator_name(estimator: Estimator) -> String {
@@ -57,6 +60,7 @@ impl Facts<'_> {
         put("pcsss/scene", Attribute::Text(hex(&self.cloud.geometry)));
         put("pcsss/samplesDrawn", Attribute::Double(self.cloud.samples_drawn as f64));
         put("pcsss/cloudSeed", Attribute::Text(self.cloud.options.seed.to_string()));
+        put("pcsss/lightUnit", Attribute::Text(self.cloud.options.light_unit.clone()));
         put("pcsss/seed", Attribute::Text(self.settings.seed.to_string()));
         put("pcsss/bssrdf", text(self.settings.model.name()));
         put("pcsss/estimator", Attribute::Text(estimator_name(self.settings.estimator)));
@@ -65,6 +69,9 @@ impl Facts<'_> {
         put("pcsss/varianceCovers", text(self.covers()));
         let media = self.cloud.materials.iter().zip(self.media);
         put("pcsss/media", Attribute::Texts(media.map(|(m, medium)| describe(&m.name, medium)).collect()));
+        if !self.warnings.is_empty() {
+            put("pcsss/warnings", Attribute::Texts(self.warnings.to_vec()));
+        }
         all
     }
 
@@ -114,6 +121,7 @@ impl Facts<'_> {
             "edge_rays": counts.edge_rays,
             "estimated_relative_error": film::relative_error(&rendered.pixels),
             "estimated_relative_error_covers": self.covers(),
+            "mesh": self.health.counts().into_iter().collect::<BTreeMap<_, _>>(),
             "non_finite": rendered.non_finite_count,
             "non_finite_pixels": rendered.non_finite.iter().map(|p| self.pixel(*p)).collect::<Vec<_>>(),
             "cloud": hex(&self.cloud.content),

@@ -1,15 +1,16 @@
 //! `sample-surface SCENE -o CLOUD`: arguments and files; the phase itself is the library.
 
 use clap::Parser;
-use cli::{Common, Failure, Progress, SceneArgs, parse_count, read_medium};
+use cli::{Common, Failure, Progress, SceneArgs, material_table, parse_count, read_medium};
 use formats::{
     atomic::{self, Output},
     cloud::{self, Cloud, Options},
     write_ply,
 };
 use sample_surface::{Choice, Goal, Pattern, Plan, SampleError, Sampled, Settings, sample, sample_enough};
-use scene::{Rays, Scene};
+use scene::{Health, Rays, Scene};
 use std::{
+    collections::BTreeMap,
     path::{Path, PathBuf},
     time::{Instant, SystemTime},
 };
@@ -23,8 +24,8 @@ struct Arguments {
     /// Scene to light and sample: .glb or .gltf
     scene: PathBuf,
     /// Cloud to write
-    #[arg(short, long, value_name = "CLOUD")]
-    output: PathBuf,
+    #[arg(short, long, value_name = "CLOUD", required_unless_present = "list_materials")]
+    output: Option<PathBuf>,
     /// Samples drawn over all translucent surfaces: 250k, 1M, 1e6
     #[arg(short = 'n', long, value_name = "K", default_value = "1M", value_parser = parse_samples)]
     samples: u64,
@@ -52,6 +53,9 @@ struct Arguments {
     /// Write statistics as JSON
     #[arg(long, value_name = "FILE")]
     stats: Option<PathBuf>,
+    /// Print the materials of SCENE
+    #[arg(long)]
+    list_materials: bool,
     #[command(flatten)]
     common: Common,
 }
@@ -83,6 +87,11 @@ fn main() {
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     let start = Instant::now();
     let common = &arguments.common;
+    if arguments.list_materials {
+        let scene = arguments.scene_args.import(&arguments.scene, common)?;
+        return cli::print(&material_table(&scene)?);
+    }
+    let output_path = arguments.output.as_deref().ok_or_else(|| Failure::usage("--output: give CLOUD"))?;
     check_memory(arguments.samples)?;
     let settings = settings(arguments);
     let medium = arguments.for_medium.as_deref().map(read_medium).transpose()?;
@@ -95,28 +104,31 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(goal) = &goal {
         plan.depends_on(goal);
     }
+    let sampled = |material| plan.materials.contains(&material);
+    let health = arguments.scene_args.check_mesh(&scene, sampled, &arguments.scene, common)?;
     seconds.add("import", start);
     if plan.unmarked {
         common.say("no material is marked as a volume: all surfaces that do not emit are translucent");
     }
-    let kept = is_current(&arguments.output, &plan);
+    let kept = is_current(output_path, &plan);
     if kept {
-        touch(&arguments.output);
-        common.say(format_args!("{}: up to date, kept", arguments.output.display()));
+        touch(output_path);
+        common.say(format_args!("{}: up to date, kept", output_path.display()));
     } else {
-        let output = Output::create(&arguments.output)?;
+        let output = Output::create(output_path)?;
         common.in_pool(|| {
-            let work = Work { arguments, settings: &settings, scene: &scene, plan: &plan, goal: goal.as_ref() };
+            let work =
+                Work { arguments, output_path, settings: &settings, scene: &scene, plan: &plan, goal: goal.as_ref() };
             work.sample_and_write(output, &mut seconds)
         })??;
     }
-    let cloud = Cloud::open(&arguments.output)?;
+    let cloud = Cloud::open(output_path)?;
     if let Some(path) = &arguments.ply {
         write_ply(path, &cloud)?;
     }
     seconds.add("total", start);
     if let Some(path) = &arguments.stats {
-        atomic::write(path, &statistics(&cloud, &seconds, common, kept))?;
+        atomic::write(path, &statistics(&cloud, &health, &seconds, common, kept))?;
     }
     report(&cloud, common);
     Ok(())
@@ -178,6 +190,7 @@ fn touch(path: &Path) {
 /// What is to be sampled.
 struct Work<'a> {
     arguments: &'a Arguments,
+    output_path: &'a Path,
     settings: &'a Settings,
     scene: &'a Scene,
     plan: &'a Plan,
@@ -193,7 +206,7 @@ impl Work<'_> {
         let sampled = self.sample(&rays).map_err(|e| named(&self.arguments.scene, &e))?;
         seconds.add("sample", start);
         let start = Instant::now();
-        cloud::write(&mut output, &self.arguments.output, &sampled.content, &sampled.meta)?;
+        cloud::write(&mut output, self.output_path, &sampled.content, &sampled.meta)?;
         output.commit()?;
         seconds.add("write", start);
         Ok(())
@@ -233,7 +246,7 @@ impl Seconds {
     }
 }
 
-fn statistics(cloud: &Cloud, seconds: &Seconds, common: &Common, kept: bool) -> Vec<u8> {
+fn statistics(cloud: &Cloud, health: &Health, seconds: &Seconds, common: &Common, kept: bool) -> Vec<u8> {
     let meta = cloud.meta();
     let rate = seconds.of("sample").filter(|s| *s > 0.0).map(|s| meta.shadow_rays as f64 / s);
     let table: serde_json::Map<_, _> = seconds.0.iter().map(|(k, v)| ((*k).to_owned(), (*v).into())).collect();
@@ -249,6 +262,7 @@ fn statistics(cloud: &Cloud, seconds: &Seconds, common: &Common, kept: bool) -> 
         "surface_area_m2": meta.surface_area_m2,
         "shadow_rays": meta.shadow_rays,
         "shadow_rays_per_second": rate,
+        "mesh": health.counts().into_iter().collect::<BTreeMap<_, _>>(),
         "mean_flux_w": meta.mean_flux_w,
         "file_bytes": cloud.bytes(),
         "content": cloud::hex(&meta.content),

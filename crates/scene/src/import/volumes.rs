@@ -77,7 +77,9 @@ pub(super) fn read(
     };
     tell_unused(m, e, draft.is_some(), &mut note);
     let ior = e.ior.as_ref().map_or(IndexOfRefraction::default().0, |i| i.ior.0);
-    Ok(Some(Volume { extinction, ior: f64::from(ior), scatter }))
+    // The decimal that the file has, not the float32 that was made of it.
+    let ior = ior.to_string().parse().unwrap_or(f64::from(ior));
+    Ok(Some(Volume { extinction, ior, scatter }))
 }
 
 /// `σ_t = −ln(attenuationColor)/attenuationDistance`, 1/m; the distance is in the world's units, whatever the node's

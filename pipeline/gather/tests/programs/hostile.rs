@@ -1,6 +1,6 @@
 //! Forged clouds, checksums right: refused with one message, or rendered, in seconds and in little memory.
 
-use crate::support::{Bench, data};
+use crate::support::{Bench, Limits, data};
 use formats::{
     atomic::Output,
     cloud::{self, Cloud, Content, Meta},
@@ -77,7 +77,7 @@ fn forged_clouds_do_no_harm() {
         forged.write(&bench, "bad.cloud");
         let start = Instant::now();
         let arguments = ["bad.cloud", &slab, "--medium", "marble", "--width", "4", "-o", "out.exr", "--quiet"];
-        let output = bench.run_within("4194304", "gather", &arguments);
+        let output = bench.run_within(Limits { kibibytes: 1 << 22, seconds: 60 }, "gather", &arguments);
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
         let code = output.status.code();
         assert!(!message.contains("panicked"), "{what}: {message}");

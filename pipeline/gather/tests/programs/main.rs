@@ -2,6 +2,8 @@
 
 mod bad_input;
 mod hostile;
+mod mutations;
 mod pipeline;
 mod support;
 mod targets;
+mod user_files;

@@ -13,9 +13,24 @@ pub struct Bench {
     folder: tempfile::TempDir,
 }
 
+/// What a program may take.
+#[derive(Clone, Copy)]
+pub struct Limits {
+    /// Address space.
+    pub kibibytes: u64,
+    /// Of all its threads.
+    pub seconds: u64,
+}
+
 /// A file of `data/`.
 pub fn data(name: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data").join(name).to_string_lossy().into_owned()
+}
+
+/// The JSON of a .glb and its binary chunk.
+pub fn split_glb(bytes: &[u8]) -> (Value, &[u8]) {
+    let size = u32::from_le_bytes(bytes[12..16].try_into().expect("four bytes")) as usize;
+    (serde_json::from_slice(&bytes[20..20 + size]).expect("JSON"), &bytes[28 + size..])
 }
 
 /// A program of the workspace. Cargo names only this package's to a test; the others lie beside it.
@@ -40,13 +55,14 @@ impl Bench {
         command.current_dir(self.folder.path()).args(arguments).output().expect("the program starts")
     }
 
-    /// Runs a program with so many KiB of address space, where there is a shell to ask for that.
-    pub fn run_within(&self, kibibytes: &str, name: &str, arguments: &[&str]) -> Output {
+    /// Runs a program within limits, where there is a shell to ask for them.
+    pub fn run_within(&self, limits: Limits, name: &str, arguments: &[&str]) -> Output {
         if !Path::new("/bin/sh").exists() {
             return self.run(name, arguments);
         }
         let mut command = Command::new("/bin/sh");
-        command.args(["-c", "ulimit -v \"$1\" && shift && exec \"$@\"", "sh", kibibytes]).arg(program(name));
+        let limits = format!("ulimit -v {} && ulimit -t {} && exec \"$@\"", limits.kibibytes, limits.seconds);
+        command.args(["-c", &limits, "sh"]).arg(program(name));
         command.current_dir(self.folder.path()).args(arguments).output().expect("the program starts")
     }
 
@@ -58,10 +74,23 @@ impl Bench {
         String::from_utf8_lossy(&output.stdout).into_owned()
     }
 
+    /// What a program that must succeed says on stderr.
+    pub fn says(&self, name: &str, arguments: &[&str]) -> String {
+        let output = self.run(name, arguments);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{name} {arguments:?}: {message}");
+        message
+    }
+
     /// Runs gather and demands a refusal with exit code 2 that says all of `words` and leaves no file.
     pub fn refuses(&self, arguments: &[&str], words: &[&str]) {
+        self.program_refuses("gather", arguments, words);
+    }
+
+    /// The same of any program.
+    pub fn program_refuses(&self, name: &str, arguments: &[&str], words: &[&str]) {
         let before = self.files();
-        let output = self.run("gather", arguments);
+        let output = self.run(name, arguments);
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
         for word in words {
@@ -77,6 +106,17 @@ impl Bench {
 
     pub fn json(&self, name: &str) -> Value {
         serde_json::from_slice(&fs::read(self.path(name)).expect("reads")).expect("JSON")
+    }
+
+    /// The slab of `data/` with its JSON changed, as `name` with its buffer in `slab.bin` beside it.
+    pub fn slab(&self, name: &str, change: impl FnOnce(&mut Value)) -> String {
+        let bytes = fs::read(data("scenes/slab.glb")).expect("reads");
+        let (mut root, binary) = split_glb(&bytes);
+        root["buffers"][0]["uri"] = "slab.bin".into();
+        change(&mut root);
+        self.write("slab.bin", binary);
+        self.write(name, root.to_string());
+        name.to_owned()
     }
 
     pub fn write(&self, name: &str, content: impl AsRef<[u8]>) {

@@ -1,0 +1,80 @@
+//! Lists that the programs print.
+
+use crate::{Failure, scene_medium};
+use scene::{Camera, Projection, Scene};
+
+/// A table with a header, columns aligned.
+struct Table(Vec<Vec<String>>);
+
+impl Table {
+    fn new(header: &[&str]) -> Table {
+        Table(vec![header.iter().map(|s| (*s).to_owned()).collect()])
+    }
+
+    /// The lines; the last column is as wide as it is.
+    fn text(&self) -> String {
+        let width = |c: usize| self.0.iter().map(|row| row[c].chars().count()).max().unwrap_or(0);
+        let widths: Vec<usize> = (0..self.0[0].len()).map(width).collect();
+        let mut text = String::new();
+        for row in &self.0 {
+            // A name may hold anything; a row is a line.
+            let cells = row.iter().zip(&widths).map(|(cell, width)| {
+                let cell = cell.replace(char::is_control, " ");
+                format!("{cell:<width$}")
+            });
+            text.push_str(cells.collect::<Vec<_>>().join("  ").trim_end());
+            text.push('\n');
+        }
+        text
+    }
+}
+
+/// The cameras of a scene: what `--camera` may name, and how they look.
+pub fn camera_table(scene: &Scene) -> String {
+    let mut table = Table::new(&["index", "name", "kind", "field of view", "aspect", "position, m"]);
+    for (index, camera) in scene.cameras.iter().enumerate() {
+        let (kind, view) = match camera.projection {
+            Projection::Perspective { .. } => {
+                ("perspective", format!("yfov {:.2} degrees", camera.yfov_degrees().unwrap_or_default()))
+            }
+            Projection::Orthographic { half_height } => ("orthographic", format!("height {:.4e} m", 2.0 * half_height)),
+        };
+        let aspect = camera.aspect.map_or("any".into(), |a| format!("{a:.3}"));
+        let Camera { name, position, .. } = camera;
+        let position = position.to_array().map(|x| format!("{x:.4}")).join(" ");
+        table.0.push(vec![index.to_string(), name.clone(), kind.into(), view, aspect, position]);
+    }
+    table.text()
+}
+
+/// The materials of a scene: what `--translucent` and `--medium` may name, how they are taken if nobody says so, how
+/// large their surfaces are, and the medium that the file gives them.
+pub fn material_table(scene: &Scene) -> Result<String, Failure> {
+    let mut table =
+        Table::new(&["index", "name", "kind", "triangles", "area, m2", "medium of the file: sigma_a, sigma_s (1/m)"]);
+    let (mut counts, mut areas) = (vec![0u64; scene.materials.len()], vec![0.0; scene.materials.len()]);
+    for (k, t) in scene.mesh.triangles.iter().enumerate() {
+        counts[usize::from(t.material)] += 1;
+        areas[usize::from(t.material)] += scene.mesh.area(k);
+    }
+    let (translucent, _) = scene.translucent();
+    for (index, material) in scene.materials.iter().enumerate() {
+        let bounds = u16::try_from(index).is_ok_and(|k| translucent.contains(&k));
+        let kind = match (bounds, material.emits()) {
+            (_, _) if counts[index] == 0 => "unused",
+            (true, true) => "translucent, emits",
+            (true, false) => "translucent",
+            (false, true) => "emits",
+            (false, false) => "opaque",
+        };
+        let three = |v: [f64; 3]| v.map(|x| format!("{x:.4e}")).join(" ");
+        let medium = scene_medium(material)?.map(|m| {
+            let (absorbs, scatters) = (three(m.map(|c| c.sigma_a)), three(m.map(|c| c.sigma_s)));
+            format!("{absorbs}, {scatters}, g {}, eta {} ({})", m.channels[0].asymmetry, m.eta, m.name)
+        });
+        let row = [index.to_string(), material.name.clone(), kind.into(), counts[index].to_string()];
+        let tail = [format!("{:.4e}", areas[index]), medium.unwrap_or_else(|| "-".into())];
+        table.0.push(row.into_iter().chain(tail).collect());
+    }
+    Ok(table.text())
+}

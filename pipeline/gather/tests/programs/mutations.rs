@@ -1,0 +1,182 @@
+//! Damaged scenes through both programs: an image or one clear message, in ten seconds and a GiB, never a panic.
+//!
+//! The same in every run; `make slow` goes through a thousand.
+
+use crate::{
+    support::{Bench, Limits, data, split_glb},
+    user_files::with_medium,
+};
+use scene::random::{Item, Purpose, Stream};
+use serde_json::{Value, json};
+use std::fs;
+
+const RUNS: u64 = if cfg!(feature = "slow") { 1000 } else { 32 };
+
+const LIMITS: Limits = Limits { kibibytes: 1 << 20, seconds: 10 };
+
+struct Random(Item, u64);
+
+impl Random {
+    fn below(&mut self, limit: usize) -> usize {
+        self.1 += 1;
+        (self.0.bits(self.1) % limit.max(1) as u64) as usize
+    }
+}
+
+/// A scene as JSON and buffer.
+struct Parts {
+    root: Value,
+    binary: Vec<u8>,
+}
+
+impl Parts {
+    fn read(name: &str) -> Parts {
+        let bytes = fs::read(data(&format!("scenes/{name}.glb"))).expect("reads");
+        let (mut root, binary) = split_glb(&bytes);
+        with_medium(&mut root);
+        Parts { root, binary: binary.to_vec() }
+    }
+
+    fn glb(&self) -> Vec<u8> {
+        let mut text = self.root.to_string().into_bytes();
+        text.resize(text.len().next_multiple_of(4), b' ');
+        let chunk = |kind: &[u8], content: &[u8]| [&(content.len() as u32).to_le_bytes(), kind, content].concat();
+        let body = [chunk(b"JSON", &text), chunk(b"BIN\0", &self.binary)].concat();
+        [b"glTF\x02\0\0\0".as_slice(), &(body.len() as u32 + 12).to_le_bytes(), &body].concat()
+    }
+}
+
+/// Pointers to all values below the root.
+fn pointers(value: &Value, at: &str, found: &mut Vec<String>) {
+    let mut visit = |key: String, v: &Value| {
+        let at = format!("{at}/{key}");
+        pointers(v, &at, found);
+        found.push(at);
+    };
+    match value {
+        Value::Array(items) => items.iter().enumerate().for_each(|(k, v)| visit(k.to_string(), v)),
+        Value::Object(fields) => fields.iter().for_each(|(k, v)| visit(k.clone(), v)),
+        _ => {}
+    }
+}
+
+/// Another value of the same kind, rarely none.
+fn bent(value: &Value, random: &mut Random) -> Value {
+    let indices = [0, 1, 2, 3, 1000, 1 << 31, 1 << 32, 1 << 63, u64::MAX];
+    let scales = [0.0, -1.0, 1e-9, 0.5, 2.0, 1e3, 1e9, 1e30, 1e300];
+    match (value, random.below(16)) {
+        (_, 0) => Value::Null,
+        (Value::Number(n), k) if n.is_u64() => {
+            let near = n.as_u64().unwrap_or(0).wrapping_add([1, u64::MAX][k % 2]);
+            json!(if k < 4 { near } else { indices[random.below(indices.len())] })
+        }
+        (Value::Number(n), k) => json!(n.as_f64().unwrap_or(0.0) * scales[k % scales.len()] + [0.0, 0.1][k % 2]),
+        (Value::Array(_), 1..=4) => json!([]),
+        (Value::Array(items), 5..=8) => json!(items[..items.len().saturating_sub(1)]),
+        (Value::Array(items), k) => json!(vec![items.clone(); 1 << (k % 4 * 3)].concat()),
+        (Value::Object(_), _) => json!({}),
+        (Value::String(_), 1..=4) => json!("x".repeat(1 << random.below(16))),
+        (Value::String(_), _) => json!(["", "../../etc/passwd", "%", "data:;base64,", "T\u{f6}p"][random.below(5)]),
+        (Value::Bool(b), _) => json!(!b),
+        (Value::Null, _) => json!(0),
+    }
+}
+
+/// Changes some bytes.
+fn flip(bytes: &mut [u8], random: &mut Random) {
+    for _ in 0..1 + random.below(3) {
+        let at = random.below(bytes.len());
+        bytes[at] = [0, 0x7f, 0x80, 0xff, bytes[at] ^ 1, bytes[at] ^ 2, b'0', b'9'][random.below(8)];
+    }
+}
+
+/// Takes some bytes out, or puts some in.
+fn shift(bytes: &mut Vec<u8>, random: &mut Random) {
+    let at = random.below(bytes.len());
+    if random.below(2) == 0 {
+        bytes.drain(at..(at + 1 + random.below(64)).min(bytes.len()));
+    } else {
+        bytes.splice(at..at, (0..1 + random.below(16)).map(|k| [0, 0xff, b'['][k % 3]));
+    }
+}
+
+fn mutated(scene: &Parts, kind: u64, random: &mut Random) -> Vec<u8> {
+    let mut copy = Parts { root: scene.root.clone(), binary: scene.binary.clone() };
+    match kind {
+        // The container's own lengths and the JSON.
+        0 => {
+            let mut bytes = copy.glb();
+            let start = bytes.len() - copy.binary.len();
+            flip(&mut bytes[..start], random);
+            bytes
+        }
+        1 => {
+            let mut bytes = copy.glb();
+            shift(&mut bytes, random);
+            bytes.truncate(bytes.len() - random.below(2) * random.below(bytes.len()));
+            bytes
+        }
+        2 => {
+            flip(&mut copy.binary, random);
+            copy.glb()
+        }
+        3 => {
+            shift(&mut copy.binary, random);
+            copy.root["buffers"][0]["byteLength"] = json!(copy.binary.len());
+            copy.glb()
+        }
+        _ => {
+            let mut all = Vec::new();
+            pointers(&copy.root, "", &mut all);
+            for _ in 0..1 + random.below(2) {
+                let pointer = &all[random.below(all.len())];
+                if let Some(value) = copy.root.pointer_mut(pointer) {
+                    *value = bent(value, random);
+                }
+            }
+            copy.glb()
+        }
+    }
+}
+
+/// Runs a program that must end well or with one message; true if it ended well.
+fn behaves(bench: &Bench, what: &str, name: &str, arguments: &[&str]) -> bool {
+    let output = bench.run_within(LIMITS, name, arguments);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    let code = output.status.code();
+    assert!([Some(0), Some(2), Some(3)].contains(&code), "{what}: {name}: {:?} {message}", output.status);
+    assert!(!message.contains("panicked"), "{what}: {name}: {message}");
+    if code != Some(0) {
+        assert!(message.lines().count() == 1 && message.contains("bad-"), "{what}: {name}: {message}");
+    }
+    code == Some(0)
+}
+
+/// Seen to catch: an index that is not checked, and a count that memory is asked for before it is.
+#[test]
+fn a_damaged_scene_gives_an_image_or_one_clear_message() {
+    let bench = Bench::new();
+    let scenes = ["slab", "sphere", "slivers", "figure"].map(Parts::read);
+    let stream = Stream::new(23, Purpose::Surface);
+    let (mut images, mut refusals) = (0, 0);
+    for k in 0..RUNS {
+        let mut random = Random(stream.item(k), 0);
+        let bytes = mutated(&scenes[random.below(scenes.len())], k % 8, &mut random);
+        let (what, scene, cloud) = (format!("mutation {k}"), format!("bad-{k}.glb"), format!("bad-{k}.cloud"));
+        bench.write(&scene, bytes);
+        let light = ["--environment", "0.1,0.1,0.1", "--quiet", "-j", "2"];
+        let sampling = [&scene, "-n", "200", "-o", &cloud];
+        let gathering = [&cloud, &scene, "--width", "4", "--height", "4", "--spp", "1", "-o", "bad.exr"];
+        let good = behaves(&bench, &what, "sample-surface", &[&sampling[..], &light].concat())
+            && behaves(&bench, &what, "gather", &[&gathering[..], &light, &["--medium", "marble"]].concat());
+        if good {
+            bench.image("bad.exr");
+        }
+        *(if good { &mut images } else { &mut refusals }) += 1;
+        for name in [&scene, &cloud] {
+            fs::remove_file(bench.path(name)).ok();
+        }
+    }
+    println!("{images} images, {refusals} refusals");
+    assert!(images > RUNS / 8 && refusals > RUNS / 8, "{images} images, {refusals} refusals");
+}

@@ -1,0 +1,324 @@
+//! What users bring, a test for each kind of input. Where the library's own tests go through the details, the comment
+//! names them: they are `crates/scene/tests/scene/*` and the others of this folder.
+
+use crate::support::{Bench, data};
+use formats::Attribute;
+use serde_json::{Value, json};
+
+/// A small cloud of `scene` as `user.cloud`; returns what was said.
+fn sample(bench: &Bench, scene: &str, more: &[&str]) -> String {
+    bench.says("sample-surface", &[&[scene, "-n", "500", "-o", "user.cloud", "--progress", "none"], more].concat())
+}
+
+/// A small image of it as `user.exr`; returns what was said.
+fn gather(bench: &Bench, scene: &str, more: &[&str]) -> String {
+    let size = ["--width", "8", "--height", "8", "--spp", "1", "--progress", "none", "-o", "user.exr"];
+    bench.says("gather", &[&["user.cloud", scene], &size[..], more].concat())
+}
+
+fn text_attribute(bench: &Bench, name: &str) -> String {
+    match bench.image("user.exr").attributes.get(name) {
+        Some(Attribute::Text(text)) => text.clone(),
+        Some(Attribute::Texts(lines)) => lines.join("\n"),
+        other => panic!("{name}: {other:?}"),
+    }
+}
+
+/// Numbers as they are, or lumens; the choice is stored, and both programs must agree. `import_lights`.
+#[test]
+fn light_units() {
+    let bench = Bench::new();
+    let slab = data("scenes/slab.glb");
+    let flux = |unit: &str| {
+        sample(&bench, &slab, &["--light-unit", unit, "--stats", "stats.json"]);
+        bench.json("stats.json")["mean_flux_w"][0].as_f64().expect("a number")
+    };
+    let (watts, lumens) = (flux("radiometric"), flux("photometric"));
+    assert!((watts / lumens - 683.0).abs() < 1e-6 * 683.0, "{watts} {lumens}");
+    gather(&bench, &slab, &["--medium", "marble", "--light-unit", "photometric"]);
+    assert_eq!(text_attribute(&bench, "pcsss/lightUnit"), "photometric");
+    let wrong = ["user.cloud", &slab, "--medium", "marble", "-o", "wrong.exr"];
+    bench.refuses(&wrong, &["--light-unit is radiometric"]);
+}
+
+/// Red, green and blue lights are white together, on nested and scaled nodes. `import_lights` has cones and ranges.
+#[test]
+fn light_colour_and_cone() {
+    let bench = Bench::new();
+    let flux = |colors: &[Value]| {
+        let scene = bench.slab("lights.gltf", |root| {
+            let sun = |color: &Value| json!({ "type": "directional", "color": color, "intensity": 2 });
+            root["extensions"]["KHR_lights_punctual"]["lights"] = colors.iter().map(sun).collect();
+            let light = |k: usize| json!({ "extensions": { "KHR_lights_punctual": { "light": k } } });
+            let first = 3;
+            root["nodes"][1] = json!({
+                "rotation": root["nodes"][1]["rotation"], "scale": [3, 3, 3],
+                "children": (first..first + colors.len()).collect::<Vec<_>>(),
+            });
+            root["nodes"].as_array_mut().expect("a list").extend((0..colors.len()).map(light));
+        });
+        sample(&bench, &scene, &["--stats", "stats.json"]);
+        bench.json("stats.json")["mean_flux_w"].clone()
+    };
+    let primaries = flux(&[json!([1, 0, 0]), json!([0, 1, 0]), json!([0, 0, 1])]);
+    let white = flux(&[json!([1, 1, 1])]);
+    for c in 0..3 {
+        let [sum, white] = [&primaries, &white].map(|f| f[c].as_f64().expect("a number"));
+        // One of the three is picked for each sample: a share with five standard errors.
+        assert!((sum / white - 1.0).abs() < 5.0 * (2.0f64 / 500.0).sqrt(), "{sum} for {white}");
+    }
+}
+
+/// Emitting triangles light the scene; a scene that nothing lights is refused. `lights`, `import_lights`.
+#[test]
+fn area_lights_and_scenes_without_light() {
+    let bench = Bench::new();
+    let dark = |root: &mut Value| root["nodes"][1]["extensions"] = json!({});
+    let scene = bench.slab("dark.gltf", dark);
+    let arguments = [&scene, "-n", "500", "-o", "user.cloud"];
+    bench.program_refuses("sample-surface", &arguments, &["dark.gltf", "no light", "--environment"]);
+    let scene = bench.slab("lit.gltf", |root| {
+        dark(root);
+        let strength = json!({ "KHR_materials_emissive_strength": { "emissiveStrength": 5 } });
+        let lamp = json!({ "name": "Lamp", "emissiveFactor": [1, 1, 1], "extensions": strength, "doubleSided": true });
+        root["materials"].as_array_mut().expect("a list").push(lamp);
+        let mut mesh = root["meshes"][0].clone();
+        mesh["primitives"][0]["material"] = json!(1);
+        root["meshes"].as_array_mut().expect("a list").push(mesh);
+        root["nodes"][1]["mesh"] = json!(1);
+    });
+    assert!(sample(&bench, &scene, &[]).contains("carry light"));
+}
+
+/// Both kinds by name and index, a scaled parent, an aspect that is not the image's. `import_lights`.
+#[test]
+fn cameras() {
+    let bench = Bench::new();
+    let scene = bench.slab("cameras.gltf", |root| {
+        let flat = json!({ "xmag": 0.1, "ymag": 0.05, "znear": 0, "zfar": 9 });
+        let flat = json!({ "name": "Flat \u{e9}", "type": "orthographic", "orthographic": flat });
+        root["cameras"].as_array_mut().expect("a list").push(flat);
+        let mut node = root["nodes"][2].clone();
+        node["camera"] = json!(1);
+        node["scale"] = json!([7, 7, 7]);
+        root["nodes"].as_array_mut().expect("a list").push(node);
+        root["scenes"][0]["nodes"].as_array_mut().expect("a list").push(json!(3));
+    });
+    let table = bench.succeed("gather", &["--list-cameras", &scene]);
+    let lines: Vec<&str> = table.lines().collect();
+    assert!(lines[1].starts_with("0") && lines[1].contains("Top") && lines[1].contains("yfov 2.30 degrees"), "{table}");
+    assert!(lines[2].starts_with("1") && lines[2].contains("orthographic"), "{table}");
+    assert!(lines[2].contains("height 1.0000e-1 m") && lines[2].contains("2.000"), "{table}");
+    sample(&bench, &scene, &[]);
+    for camera in ["1", "Flat \u{e9}"] {
+        let said = gather(&bench, &scene, &["--medium", "marble", "--camera", camera]);
+        assert!(said.contains("aspect is 2.000, the image's 1.000"), "{said}");
+        // It looks straight down from half a metre; scaled or not, all of the picture shows the slab.
+        let image = bench.image("user.exr");
+        let depth = image.channel("Z").expect("depths");
+        assert!(depth.iter().all(|z| (z - 0.5).abs() < 1e-6), "{depth:?}");
+    }
+}
+
+/// A mirrored slab is wound outwards still. `import`, and `tests/invariance/mirror.rs` for the picture.
+#[test]
+fn negative_scale() {
+    let bench = Bench::new();
+    let scene = bench.slab("mirrored.gltf", |root| root["nodes"][0]["scale"] = json!([-1, 1, 1]));
+    let said = sample(&bench, &scene, &["--strict", "--stats", "stats.json"]);
+    assert!(!said.contains("warning"), "{said}");
+    assert_eq!(bench.json("stats.json")["mesh"]["inward_parts"], 0);
+}
+
+/// The slab has none: its triangles' are taken. `import::lists_strips_and_fans_without_indices`.
+#[test]
+fn no_normals() {
+    let bench = Bench::new();
+    let slab = data("scenes/slab.glb");
+    sample(&bench, &slab, &[]);
+    gather(&bench, &slab, &["--medium", "marble"]);
+    let image = bench.image("user.exr");
+    let [x, y, z] = ["N.X", "N.Y", "N.Z"].map(|name| image.channel(name).expect("normals").to_vec());
+    assert!((0..x.len()).all(|p| (x[p], y[p], z[p]) == (0.0, 1.0, 0.0)));
+}
+
+/// Points are left out and said. Strips, fans, missing indices, interleaved and sparse accessors: `import`.
+#[test]
+fn strips_points_and_many_primitives() {
+    let bench = Bench::new();
+    let scene = bench.slab("points.gltf", |root| {
+        let more = [
+            json!({ "attributes": { "POSITION": 0 }, "mode": 0 }),
+            json!({ "attributes": { "POSITION": 0 }, "mode": 1 }),
+        ];
+        root["meshes"][0]["primitives"].as_array_mut().expect("a list").extend(more);
+    });
+    let said = sample(&bench, &scene, &[]);
+    assert_eq!(said.matches("points and lines are left out").count(), 2, "{said}");
+}
+
+/// Gives the first material a medium of the older draft.
+pub fn with_medium(root: &mut Value) {
+    let extensions = &mut root["materials"][0]["extensions"];
+    extensions["KHR_materials_volume"] =
+        json!({ "thicknessFactor": 1, "attenuationDistance": 0.002, "attenuationColor": [0.5, 0.5, 0.25] });
+    extensions["KHR_materials_volume_scatter"] =
+        json!({ "multiscatterColorFactor": [0.5, 0.5, 0.5], "scatterAnisotropy": 0.25 });
+}
+
+/// Coefficients of the file are taken, printed and stored; those of the command line beat them. The details:
+/// `import_volumes`, and `the_albedo_of_the_gltf_drafts`.
+#[test]
+fn subsurface_parameters() {
+    let bench = Bench::new();
+    let scene = bench.slab("medium.gltf", with_medium);
+    sample(&bench, &scene, &[]);
+    let said = gather(&bench, &scene, &[]);
+    // ln 2 / 2 mm, of which the albedo 0.9117 scatters; the index 1.3 is the file's.
+    for words in
+        ["KHR_materials_volume_scatter (eta 1.3)", "sigma_a, 1/m     3.0599e1", "sigma_s, 1/m     3.1597e2", "g 0.25"]
+    {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    for words in ["mean free path   2.885 mm 2.885 mm 1.443 mm", "1/sigma_tr", "object diagonal"] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    let stored = text_attribute(&bench, "pcsss/media");
+    assert!(stored.starts_with("Slab=KHR_materials_volume_scatter: sigma_a 30.599"), "{stored}");
+    let table = bench.succeed("gather", &["--list-materials", &scene]);
+    assert!(table.contains("(KHR_materials_volume_scatter)") && table.contains("3.0599e1"), "{table}");
+    let said = gather(&bench, &scene, &["--medium", "marble"]);
+    assert!(said.contains("`Slab`: marble") && !said.contains("`Slab`: KHR"), "{said}");
+    assert!(text_attribute(&bench, "pcsss/media").starts_with("Slab=marble"));
+    // Neither file nor command line; and an index that no model knows, unless it is not asked for.
+    sample(&bench, &data("scenes/slab.glb"), &[]);
+    bench.refuses(&["user.cloud", &data("scenes/slab.glb"), "-o", "no.exr"], &["--medium", "SCENE gives none"]);
+    let legacy = bench.slab("legacy.gltf", |root| {
+        with_medium(root);
+        root["materials"][0]["extensions"]["KHR_materials_ior"]["ior"] = json!(0);
+    });
+    sample(&bench, &legacy, &[]);
+    bench.refuses(&["user.cloud", &legacy, "-o", "no.exr"], &["`Slab`", "KHR_materials_ior", "eta", "--medium Slab="]);
+    gather(&bench, &legacy, &["--medium", "marble"]);
+}
+
+/// Each of two materials takes its medium from where there is one.
+#[test]
+fn media_of_file_and_command_line_together() {
+    let bench = Bench::new();
+    let scene = bench.slab("two.gltf", |root| {
+        with_medium(root);
+        let plain = json!({ "name": "Plain", "extensions": { "KHR_materials_volume": { "thicknessFactor": 1 } } });
+        root["materials"].as_array_mut().expect("a list").push(plain);
+        let mut mesh = root["meshes"][0].clone();
+        mesh["primitives"][0]["material"] = json!(1);
+        root["meshes"].as_array_mut().expect("a list").push(mesh);
+        root["nodes"].as_array_mut().expect("a list").push(json!({ "mesh": 1, "translation": [0, -1, 0] }));
+        root["scenes"][0]["nodes"].as_array_mut().expect("a list").push(json!(3));
+    });
+    sample(&bench, &scene, &[]);
+    bench.refuses(&["user.cloud", &scene, "-o", "no.exr"], &["`Plain`", "--medium Plain=NAME"]);
+    let said = gather(&bench, &scene, &["--medium", "Plain=marble"]);
+    assert!(said.contains("`Slab`: KHR_materials_volume_scatter") && said.contains("`Plain`: marble"), "{said}");
+}
+
+/// Open, turned, doubled: warned of with counts, kept in the statistics, refused by `--strict`. `health`.
+#[test]
+fn an_open_mesh_with_a_volume() {
+    let bench = Bench::new();
+    let scene = bench.slab("open.gltf", |root| root["accessors"][1]["count"] = json!(18432 - 3));
+    let said = sample(&bench, &scene, &["--stats", "stats.json"]);
+    assert!(said.contains("warning: open.gltf: the translucent surfaces have 3 open edges"), "{said}");
+    assert_eq!(bench.json("stats.json")["mesh"]["open_edges"], 3);
+    let said = gather(&bench, &scene, &["--medium", "marble", "--stats", "stats.json"]);
+    assert!(said.contains("3 open edges"), "{said}");
+    assert_eq!(bench.json("stats.json")["mesh"]["open_edges"], 3);
+    let words = ["open.gltf", "3 open edges", "--strict"];
+    bench.program_refuses("sample-surface", &[&scene, "-o", "no.cloud", "--strict"], &words);
+    bench.refuses(&["user.cloud", &scene, "--medium", "marble", "-o", "no.exr", "--strict"], &words);
+    let twice = bench.slab("twice.gltf", |root| {
+        let again = root["meshes"][0]["primitives"][0].clone();
+        root["meshes"][0]["primitives"].as_array_mut().expect("a list").push(again);
+    });
+    let said = sample(&bench, &twice, &[]);
+    assert!(said.contains("6144 duplicate triangles"), "{said}");
+}
+
+/// A speck two kilometres from what it stands beside: float32 has lost what the medium resolves.
+#[test]
+fn a_scene_too_wide_for_its_medium() {
+    let bench = Bench::new();
+    let wide = |distance: f64| {
+        let scene = bench.slab("wide.gltf", |root| {
+            root["materials"].as_array_mut().expect("a list").push(json!({ "name": "Far" }));
+            let mut mesh = root["meshes"][0].clone();
+            mesh["primitives"][0]["material"] = json!(1);
+            root["meshes"].as_array_mut().expect("a list").push(mesh);
+            root["nodes"].as_array_mut().expect("a list").push(json!({ "mesh": 1, "translation": [distance, 0, 0] }));
+            root["scenes"][0]["nodes"].as_array_mut().expect("a list").push(json!(3));
+        });
+        sample(&bench, &scene, &[]);
+        gather(&bench, &scene, &["--medium", "marble"])
+    };
+    let said = wide(2000.0);
+    assert!(said.contains("rounded by up to 59") && said.contains("too wide"), "{said}");
+    assert!(!wide(20.0).contains("rounded"));
+}
+
+/// Named with the way out; what moves only a camera is said. `import_faults::nodes`, and `bad_input` of sample-surface.
+#[test]
+fn skins_morphs_and_animations() {
+    let bench = Bench::new();
+    let channel = |node: usize| json!([{ "sampler": 0, "target": { "node": node, "path": "translation" } }]);
+    let sampler = json!([{ "input": 0, "output": 0 }]);
+    let changes: [(&str, Box<dyn Fn(&mut Value)>); 3] = [
+        ("skinned", Box::new(|root| root["nodes"][0]["skin"] = json!(0))),
+        ("morph", Box::new(|root| root["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": 0 }]))),
+        (
+            "moves a mesh",
+            Box::new(|root| root["animations"] = json!([{ "channels": channel(0), "samplers": sampler }])),
+        ),
+    ];
+    for (word, change) in &changes {
+        let scene = bench.slab("posed.gltf", |root| change(root));
+        let words = ["posed.gltf", word, "apply the pose"];
+        bench.program_refuses("sample-surface", &[&scene, "-o", "no.cloud"], &words);
+    }
+    let scene =
+        bench.slab("seen.gltf", |root| root["animations"] = json!([{ "channels": channel(2), "samplers": sampler }]));
+    assert!(sample(&bench, &scene, &[]).contains("cameras and lights stay at rest"));
+}
+
+/// Compressed geometry is refused by the extension's name, required or not; quantised is read. `import_quantised`.
+#[test]
+fn compressed_and_quantised_meshes() {
+    let bench = Bench::new();
+    for list in ["extensionsUsed", "extensionsRequired"] {
+        for name in ["KHR_draco_mesh_compression", "EXT_meshopt_compression"] {
+            let scene = bench.slab("small.gltf", |root| root[list] = json!([name]));
+            let words = ["small.gltf", name, "not supported", "export again without compression"];
+            bench.program_refuses("sample-surface", &[&scene, "-o", "no.cloud"], &words);
+        }
+    }
+    let scene = bench.slab("small.gltf", |root| root["extensionsRequired"] = json!(["KHR_mesh_quantization"]));
+    sample(&bench, &scene, &["--strict"]);
+}
+
+/// Spaces, percent escapes and Unicode in the names of files, cameras and materials; a missing buffer in full.
+/// `import_files`.
+#[test]
+fn names_and_uris() {
+    let bench = Bench::new();
+    let scene = bench.slab("my \u{91d1} slab.gltf", |root| {
+        root["buffers"][0]["uri"] = json!("the%20slab%20%E9%87%91.bin");
+        root["cameras"][0]["name"] = json!("T\u{f6}p view");
+        root["materials"][0]["name"] = json!("blue = \u{9752}");
+    });
+    std::fs::rename(bench.path("slab.bin"), bench.path("the slab \u{91d1}.bin")).expect("a new name");
+    sample(&bench, &scene, &["--translucent", "blue = \u{9752}"]);
+    gather(&bench, &scene, &["--medium", "marble", "--camera", "T\u{f6}p view"]);
+    assert!(text_attribute(&bench, "pcsss/media").starts_with("blue = \u{9752}=marble"));
+    std::fs::remove_file(bench.path("the slab \u{91d1}.bin")).expect("gone");
+    let words = ["my \u{91d1} slab.gltf", "the slab \u{91d1}.bin", "buffers[0].uri", "beside it"];
+    bench.program_refuses("sample-surface", &[&scene, "-o", "no.cloud"], &words);
+}
