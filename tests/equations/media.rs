@@ -40,7 +40,7 @@ fn colored(color: [f64; 3], radius: [f64; 3], rest: &str) -> Result<Medium, Medi
 }
 
 /// The half-space of that medium reflects the colour asked for: by the closed form (3.5), and by the integral of the
-/// model itself over a plane. Planted: the index left out of the inversion (18 % in the darkest colour).
+/// model itself over a plane. Planted: one index for all media (10 % in a dark colour).
 #[test]
 fn a_medium_shows_the_colour_asked_for() {
     for (eta, g) in [(1.0, 0.0), (1.3, 0.0), (1.5, 0.8), (0.7, -0.5)] {
