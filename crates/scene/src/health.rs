@@ -122,8 +122,10 @@ struct Part {
 }
 
 struct Parts {
-    /// For each place, its part.
-    of_place: Vec<u32>,
+    /// Where each place's way to the one that stands for its part goes.
+    parents: Vec<u32>,
+    /// The part of each place that stands for one.
+    of_root: Vec<u32>,
     list: Vec<Part>,
 }
 
@@ -136,23 +138,28 @@ impl Parts {
                 parents[one as usize] = other;
             }
         }
-        let of_place: Vec<u32> = (0..points.len() as u32).map(|k| root(&mut parents, k)).collect();
         let empty = Part { closed: true, volume: 0.0, area: 0.0, low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
-        let mut list = vec![empty; points.len()];
+        let (mut of_root, mut list) = (vec![u32::MAX; points.len()], Vec::new());
         for triangle in triangles {
-            let part = &mut list[of_place[triangle[0] as usize] as usize];
+            let number = &mut of_root[root(&mut parents, triangle[0]) as usize];
+            if *number == u32::MAX {
+                *number = list.len() as u32;
+                list.push(empty);
+            }
+            let part = &mut list[*number as usize];
             let [a, b, c] = triangle.map(|k| points[k as usize]);
             part.volume += a.dot(b.cross(c)) / 6.0;
             part.area += 0.5 * (b - a).cross(c - a).length();
             part.low = part.low.min(a).min(b).min(c);
             part.high = part.high.max(a).max(b).max(c);
         }
-        Parts { of_place, list }
+        Parts { parents, of_root, list }
     }
 
     /// The part of this place is not closed.
     fn open(&mut self, place: u32) {
-        self.list[self.of_place[place as usize] as usize].closed = false;
+        let root = root(&mut self.parents, place);
+        self.list[self.of_root[root as usize] as usize].closed = false;
     }
 
     /// Closed parts wound inwards that are no cavities. A cavity is one whose box lies in that of a body wound outwards;

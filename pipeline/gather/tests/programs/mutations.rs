@@ -152,7 +152,7 @@ fn behaves(bench: &Bench, what: &str, name: &str, arguments: &[&str]) -> bool {
     code == Some(0)
 }
 
-/// Seen to catch: an index that is not checked, and a count that memory is asked for before it is.
+/// Seen to catch: vertex indices that are not checked.
 #[test]
 fn a_damaged_scene_gives_an_image_or_one_clear_message() {
     let bench = Bench::new();
