@@ -152,6 +152,19 @@ fn behaves(bench: &Bench, what: &str, name: &str, arguments: &[&str]) -> bool {
     code == Some(0)
 }
 
+/// Three million triangles in a hundred kilobytes: refused before they are unfolded. Seen to catch: an end by the
+/// allocator, in the tree of rays.
+#[test]
+fn a_scene_larger_than_memory_is_refused() {
+    let bench = Bench::new();
+    let scene = bench.slab("bad-large.gltf", |root| {
+        let primitives = &mut root["meshes"][0]["primitives"];
+        *primitives = json!(vec![primitives[0].clone(); 512]);
+    });
+    let arguments = [&scene, "-n", "200", "-o", "bad.cloud", "--quiet", "-j", "2"];
+    assert!(!behaves(&bench, "large", "sample-surface", &arguments));
+}
+
 /// Seen to catch: vertex indices that are not checked.
 #[test]
 fn a_damaged_scene_gives_an_image_or_one_clear_message() {
