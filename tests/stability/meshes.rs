@@ -43,7 +43,8 @@ fn zero_area_triangles_change_nothing() {
     }
     dirty.triangles.extend([[0, 0, 0], [0, 1, 2]]); // a point, and three vertices in a row
     let (clean, dirty) = (sunny(clean), sunny(dirty));
-    assert_eq!((clean.scene.degenerate_triangles, dirty.scene.degenerate_triangles), (0, 12));
+    assert!(clean.scene.degenerate_triangles.is_empty());
+    assert_eq!(dirty.scene.degenerate_triangles.values().sum::<u64>(), 12);
     for choice in [Choice::Area, Choice::Uniform] {
         let sampling = Sampling { choice, ..by_area(1000, 1) };
         let (clean, dirty) = (cloud(&clean, &sampling), cloud(&dirty, &sampling));

@@ -66,7 +66,7 @@ impl SceneArgs {
         path: &Path,
         common: &Common,
     ) -> Result<Health, Failure> {
-        let health = scene.mesh.health(translucent, scene.degenerate_triangles);
+        let health = scene.health(translucent);
         let line = format!("{}: the translucent surfaces have {health}", path.display());
         match (health.is_good(), self.strict) {
             (true, _) => {}

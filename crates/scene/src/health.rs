@@ -1,6 +1,6 @@
 //! What is wrong with a mesh that is to hold a medium: it should be closed, wound outwards, and there once.
 
-use crate::mesh::Mesh;
+use crate::{Scene, mesh::Mesh};
 use glam::{DVec3, Vec3};
 use std::fmt;
 
@@ -45,10 +45,19 @@ impl fmt::Display for Health {
     }
 }
 
+impl Scene {
+    /// Examines the surfaces of the materials that `belong`, as [`Mesh::health`] does, and counts what was left out.
+    pub fn health(&self, belong: impl Fn(u16) -> bool) -> Health {
+        let degenerate = self.degenerate_triangles.iter().filter(|(material, _)| belong(**material));
+        let degenerate_triangles = degenerate.map(|(_, count)| count).sum();
+        Health { degenerate_triangles, ..self.mesh.health(&belong) }
+    }
+}
+
 impl Mesh {
-    /// Examines the triangles whose material `belongs`, all together: a body may have several materials. `degenerate`
-    /// triangles without area were left out before. Sorts, so takes n log n of n triangles.
-    pub fn health(&self, belongs: impl Fn(u16) -> bool, degenerate: u64) -> Health {
+    /// Examines the triangles whose material `belongs`, all together: a body may have several materials. Sorts, so
+    /// takes n log n of n triangles.
+    pub fn health(&self, belongs: impl Fn(u16) -> bool) -> Health {
         let (places, points) = self.weld();
         let own = self.triangles.iter().filter(|t| belongs(t.material));
         let mut triangles: Vec<[u32; 3]> = own.map(|t| t.vertices.map(|i| places[i as usize])).collect();
@@ -63,7 +72,7 @@ impl Mesh {
             flipped_edges,
             inward_parts: parts.inward(),
             duplicate_triangles: (count - triangles.len()) as u64,
-            degenerate_triangles: degenerate,
+            degenerate_triangles: 0,
         }
     }
 

@@ -24,6 +24,8 @@ pub use rays::{Hit, Rays};
 pub use view::{Camera, Projection, View};
 pub use volume::{Draft, Scatter, Volume};
 
+use std::collections::BTreeMap;
+
 /// What a surface looks like to light, apart from any medium below it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
@@ -57,8 +59,8 @@ pub struct Scene {
     pub origin: DVec3,
     /// What was left out or looks wrong, one line each.
     pub warnings: Vec<String>,
-    /// Triangles without area, left out.
-    pub degenerate_triangles: u64,
+    /// Triangles without area, left out: how many of which material.
+    pub degenerate_triangles: BTreeMap<u16, u64>,
     /// Identity of the lights as the file gives them.
     pub light_digest: [u8; 32],
 }

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::mesh::{Mesh, Triangle};
 use glam::{DMat3, DVec3, Vec3};
-use std::hint::black_box;
+use std::{collections::BTreeMap, hint::black_box};
 
 /// More than this, instances included, is refused before memory is asked for: a small file can name a large mesh many
 /// times.
@@ -27,8 +27,8 @@ pub(super) struct Instance<'a> {
 pub(super) struct Geometry {
     pub mesh: Mesh,
     pub origin: DVec3,
-    /// Triangles without area, left out.
-    pub degenerate: u64,
+    /// Triangles without area, left out: how many of which material.
+    pub degenerate: BTreeMap<u16, u64>,
 }
 
 /// Joins all instances, in their order.
@@ -145,12 +145,17 @@ impl Builder {
         let count = triangles.len();
         let mut mesh = Mesh { positions, normals: self.normals, triangles };
         let keep: Vec<bool> = (0..count).map(|k| mesh.area(k) > 0.0).collect();
-        let mut flags = keep.iter();
-        mesh.triangles.retain(|_| *flags.next().unwrap_or(&true));
+        let (mut flags, mut degenerate) = (keep.iter(), BTreeMap::new());
+        mesh.triangles.retain(|t| {
+            let keep = *flags.next().unwrap_or(&true);
+            if !keep {
+                *degenerate.entry(t.material).or_default() += 1;
+            }
+            keep
+        });
         if mesh.triangles.is_empty() {
             return Err(format!("all {count} triangles have no area (scale 0?)"));
         }
-        let degenerate = (count - mesh.triangles.len()) as u64;
         Ok(Geometry { mesh, origin, degenerate })
     }
 }

@@ -104,8 +104,9 @@ fn geometry(document: &Document, nodes: &[Placed], warnings: &mut Vec<String>) -
     let with_parts = |(k, placed): (usize, _)| Some(Instance { parts: parts[k].as_ref()?, placed });
     let instances: Vec<Instance> = instances.into_iter().filter_map(with_parts).collect();
     let geometry = geometry::join(&instances)?;
-    if geometry.degenerate > 0 {
-        warnings.push(format!("{} triangles without area are left out", geometry.degenerate));
+    let degenerate: u64 = geometry.degenerate.values().sum();
+    if degenerate > 0 {
+        warnings.push(format!("{degenerate} triangles without area are left out"));
     }
     Ok(geometry)
 }

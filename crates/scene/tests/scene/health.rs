@@ -8,7 +8,7 @@ use scene::{DVec3, Health, Mesh, Triangle};
 use serde_json::json;
 
 fn health(mesh: &Mesh) -> Health {
-    mesh.health(|_| true, 0)
+    mesh.health(|_| true)
 }
 
 /// Both meshes in one, the second moved.
@@ -81,8 +81,8 @@ fn only_the_materials_asked_for_count_and_count_together() {
     let mut two = cube(1.0);
     two.triangles.iter_mut().skip(6).for_each(|t| t.material = 1);
     assert!(health(&two).is_good(), "a body of two materials");
-    assert!(two.health(|m| m == 0, 0).open_edges > 0);
-    assert!(two.health(|_| false, 0).is_good());
+    assert!(two.health(|m| m == 0).open_edges > 0);
+    assert!(two.health(|_| false).is_good());
 }
 
 /// As the programs see it: through the file, with what was left out.
@@ -92,8 +92,8 @@ fn faults_of_a_file() {
     let indices = asset.indices(&[0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3, 1, 2, 3, 0, 0, 1]);
     asset.set("/meshes/0/primitives/0/indices", json!(indices));
     let scene = asset.import().expect("a good file");
-    let found = scene.mesh.health(|_| true, scene.degenerate_triangles);
-    assert_eq!(found.to_string(), "1 duplicate triangles, 1 degenerate triangles");
+    assert_eq!(scene.health(|m| m == 0).to_string(), "1 duplicate triangles, 1 degenerate triangles");
+    assert!(scene.health(|m| m == 1).is_good(), "what is left out of others does not count");
 }
 
 /// A tenth of a second on a machine at rest.
