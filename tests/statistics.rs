@@ -9,6 +9,8 @@
 mod cut;
 #[path = "statistics/edges.rs"]
 mod edges;
+#[path = "statistics/environment.rs"]
+mod environment;
 #[path = "statistics/error_bars.rs"]
 mod error_bars;
 #[path = "statistics/knob.rs"]

@@ -85,7 +85,7 @@ impl Shot {
         let settings = Settings {
             estimator: self.estimator,
             normals: self.normals,
-            environment: self.environment,
+            environment: self.environment.into(),
             ..settings(self.model, SIZE, SIZE)
         };
         let rendered = gather::render(&input, &settings, |_| ());

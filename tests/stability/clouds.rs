@@ -18,7 +18,7 @@ use support::{
 /// What the program renders with if it is told nothing.
 fn default_settings(model: Model) -> Settings {
     let estimator = Estimator::Cut { accuracy: 0.01 };
-    Settings { estimator, paths_per_pixel: 16, filter: Filter::Box, environment: SKY, ..settings(model, 8, 8) }
+    Settings { estimator, paths_per_pixel: 16, filter: Filter::Box, environment: SKY.into(), ..settings(model, 8, 8) }
 }
 
 fn milky() -> Medium {

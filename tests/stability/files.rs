@@ -180,14 +180,13 @@ fn cloud() {
     let path = folder.path("test.cloud");
     let good = Sample { position: Vec3::ZERO, normal: DVec3::Z, direction: DVec3::Z, flux: Vec3::ONE };
     verdict(&path, good, |_| ()).expect("the cloud is valid");
-    let facts: [fn(&mut Meta, f64); 7] = [
+    let facts: [fn(&mut Meta, f64); 6] = [
         |m, x| m.origin_m[1] = x,
         |m, x| m.mean_flux_w[2] = x,
         |m, x| m.diagonal_m = x,
         |m, x| m.surface_area_m2 = x,
         |m, x| m.materials[0].area_m2 = x,
         |m, x| m.options.metres_per_unit = x,
-        |m, x| m.options.environment[0] = x,
     ];
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         for c in 0..3 {

@@ -29,7 +29,7 @@ fn list(cloud: &Cloud) -> Vec<Sample> {
 }
 
 fn spread(model: Model, environment: DVec3) -> Settings {
-    Settings { paths_per_pixel: 16, filter: Filter::Box, environment, ..settings(model, 8, 8) }
+    Settings { paths_per_pixel: 16, filter: Filter::Box, environment: environment.into(), ..settings(model, 8, 8) }
 }
 
 /// They have no normal and no density: the importer leaves them out and counts them, and N with either rule of choice

@@ -54,7 +54,7 @@ impl Clear {
 /// Renders bodies of clear media under [`SKY`] from all around: every pixel must show that, to the rounding of the two
 /// shares that its first interfaces split it in, and no path may be lost.
 pub fn assert_invisible(what: &str, clear: &Clear, etas: &[f64], camera: &Camera, settings: &Settings) -> Counts {
-    let settings = Settings { environment: SKY, max_depth: 256, ..settings.clone() };
+    let settings = Settings { environment: SKY.into(), max_depth: 256, ..settings.clone() };
     let rendered = clear.render(etas, camera, &settings);
     let counts = rendered.counts;
     let shows_sky = |p: &film::Pixel| (p.beauty() / SKY - 1.0).abs().max_element() < 1e-14;

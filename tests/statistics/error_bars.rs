@@ -75,7 +75,7 @@ pub fn of_paths(estimator: Estimator, paths_per_pixel: u32) -> Settings {
 fn of_the_cut() {
     let scene = edge(built_in("marble").expect("a built-in medium"));
     for (k, paths) in [2, 4, 5].into_iter().enumerate() {
-        let settings = Settings { environment: scene.environment, ..of_paths(CUT, paths) };
+        let settings = Settings { environment: scene.environment.into(), ..of_paths(CUT, paths) };
         assert_error_bars(&format!("cut, {paths} paths"), &scene, &settings, 50_000 + 1000 * k as u64);
     }
 }
@@ -90,7 +90,7 @@ fn of_the_whole_sum() {
     // In so thin a medium independent samples, and a view without the body's edge, let the cloud's part be seen.
     let scene = Scene { half_height: 6e-4, sampling: by_area, ..edge(grey(30.0, 300.0, 0.0, 1.3)) };
     for (k, paths) in [2, 4].into_iter().enumerate() {
-        let settings = Settings { environment: scene.environment, ..of_paths(Estimator::Exhaustive, paths) };
+        let settings = Settings { environment: scene.environment.into(), ..of_paths(Estimator::Exhaustive, paths) };
         assert_error_bars(&format!("whole sum, {paths} paths"), &scene, &settings, 60_000 + 1000 * k as u64);
     }
 }

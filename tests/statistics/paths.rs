@@ -20,7 +20,7 @@ fn render(world: &World, camera: &Camera, sigma_a: f64, settings: &Settings) -> 
 
 fn with_sky(environment: DVec3, paths_per_pixel: u32, max_depth: u32) -> Settings {
     let settings = settings(Model::DirectionalDipole, 16, 16);
-    Settings { environment, paths_per_pixel, max_depth, filter: Filter::Box, ..settings }
+    Settings { environment: environment.into(), paths_per_pixel, max_depth, filter: Filter::Box, ..settings }
 }
 
 /// The means of all pixels against what is expected, each channel.

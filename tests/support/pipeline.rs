@@ -56,7 +56,7 @@ pub fn sampled_with(world: &World, sampling: &Sampling, normals: NormalKind) -> 
             normals: if normals == NormalKind::Geometric { "geometric" } else { "shading" }.into(),
             metres_per_unit: 1.0,
             light_unit: "radiometric".into(),
-            environment: [0.0; 3],
+            environment: "0,0,0".into(),
         },
     };
     let plan = Plan::new(&world.scene, &settings).expect("the scene has light and a surface");
@@ -109,7 +109,7 @@ pub fn settings(model: Model, width: usize, height: usize) -> gather::Settings {
         estimator: Estimator::Exhaustive,
         model,
         normals: NormalKind::Geometric,
-        environment: DVec3::ZERO,
+        environment: DVec3::ZERO.into(),
         max_depth: 16,
         seed: 1,
     }

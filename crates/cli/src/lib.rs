@@ -1,6 +1,7 @@
 //! How a stage behaves as a program: arguments in common, exit codes, progress, signals.
 
 mod count;
+mod environment;
 mod failure;
 mod medium;
 mod progress;
@@ -9,6 +10,7 @@ mod scene_args;
 mod tables;
 
 pub use count::parse_count;
+pub use environment::EnvironmentSource;
 pub use failure::{Failure, run};
 pub use medium::{ReadMediumError, read_medium, scene_medium};
 pub use progress::Progress;

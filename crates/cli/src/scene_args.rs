@@ -1,20 +1,24 @@
 //! How the programs read a scene: sampling and gathering must agree on it.
 
-use crate::{Common, Failure, parse_rgb};
+use crate::{
+    Common, Failure,
+    environment::{EnvironmentSource, parse_environment},
+};
 use clap::{Args, ValueEnum};
-use scene::{DVec3, Health, ImportOptions, NormalKind, Scene};
+use scene::{DVec3, Health, ImportOptions, NormalKind, Scene, light::Environment};
 use std::path::Path;
 
 /// Arguments about the scene.
 #[derive(Args, Clone, Debug)]
 pub struct SceneArgs {
-    /// Light from all around: a constant radiance, W/(m² sr)
-    #[arg(long, value_name = "R,G,B", value_parser = parse_environment)]
-    pub environment: Option<DVec3>,
+    /// Light from all around, W/(m² sr): an equirectangular picture, its middle towards +X and its top towards +Y, or a
+    /// constant radiance
+    #[arg(long, value_name = "FILE.exr|FILE.hdr|R,G,B", value_parser = parse_environment)]
+    pub environment: Option<EnvironmentSource>,
     /// Multiplies the environment's radiance
     #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = parse_scale)]
     pub environment_scale: f64,
-    /// Turns the environment about +Y; a constant one looks the same
+    /// Turns the environment about +Y, counter-clockwise seen from above
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, value_parser = parse_finite, allow_hyphen_values = true)]
     pub environment_rotation: f64,
     /// Normals that cosines are taken with: interpolated from the vertices, or the triangle's as in the note
@@ -46,16 +50,18 @@ pub enum LightUnit {
 }
 
 impl SceneArgs {
-    /// Reads the scene and adds the environment; prints the import's warnings.
-    pub fn import(&self, path: &Path, common: &Common) -> Result<Scene, Failure> {
+    /// Reads the scene and the environment that it is given; prints the import's warnings.
+    pub fn import(&self, path: &Path, common: &Common) -> Result<(Scene, Environment), Failure> {
         let light_unit = match self.light_unit {
             LightUnit::Radiometric => scene::LightUnit::Radiometric,
             LightUnit::Photometric => scene::LightUnit::Photometric,
         };
         let mut scene = Scene::import(path, &ImportOptions { metres_per_unit: self.metres_per_unit, light_unit })?;
         scene.warnings.iter().for_each(|w| common.warn(format_args!("{}: {w}", path.display())));
-        scene.add_environment(self.radiance());
-        Ok(scene)
+        let source = self.environment.as_ref().unwrap_or(&EnvironmentSource::Constant(DVec3::ZERO));
+        let environment = source.read(self.environment_scale, self.environment_rotation)?;
+        scene.add_environment(environment.clone());
+        Ok((scene, environment))
     }
 
     /// Examines the surfaces of the translucent materials; warns of faults, or refuses them if `--strict`.
@@ -74,11 +80,6 @@ impl SceneArgs {
             (false, false) => common.warn(format_args!("{line}; a medium wants a closed surface wound outwards")),
         }
         Ok(health)
-    }
-
-    /// Constant radiance from all around, scale included, W/(m² sr).
-    pub fn radiance(&self) -> DVec3 {
-        self.environment.unwrap_or(DVec3::ZERO) * self.environment_scale
     }
 
     pub fn normal_kind(&self) -> NormalKind {
@@ -105,14 +106,6 @@ impl LightUnit {
             LightUnit::Photometric => "photometric",
         }
     }
-}
-
-fn parse_environment(text: &str) -> Result<DVec3, String> {
-    let is_map = [".exr", ".hdr"].iter().any(|end| text.to_lowercase().ends_with(end));
-    if is_map {
-        return Err("environment maps are not built yet; give a constant radiance R,G,B".into());
-    }
-    parse_rgb(text).map(DVec3::from_array)
 }
 
 fn parse_finite(text: &str) -> Result<f64, String> {

@@ -10,8 +10,10 @@ pub mod cloud;
 mod error;
 pub mod image;
 mod octahedral;
+mod panorama;
 mod ply;
 
 pub use error::Error;
 pub use image::{Attribute, Channel, Image, ImageError};
+pub use panorama::Panorama;
 pub use ply::write_ply;

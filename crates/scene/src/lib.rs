@@ -78,10 +78,11 @@ impl Scene {
         if marked.is_empty() { (select(|m| !m.emits()), true) } else { (marked, false) }
     }
 
-    /// Adds light of the same radiance (W/(m² sr)) from all around.
-    pub fn add_environment(&mut self, radiance: DVec3) {
-        if radiance != DVec3::ZERO {
-            self.lights.push(Box::new(light::ConstantEnvironment { radiance }));
+    /// Adds light from all around; a mere colour is a constant radiance, W/(m² sr).
+    pub fn add_environment(&mut self, environment: impl Into<light::Environment>) {
+        let environment = environment.into();
+        if !environment.is_black() {
+            self.lights.push(Box::new(environment));
         }
     }
 

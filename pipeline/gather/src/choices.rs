@@ -7,7 +7,7 @@ use gather::{
     Filter, Settings,
     estimator::{Estimator, Rule},
 };
-use scene::{Camera, Scene, View};
+use scene::{Camera, Scene, View, light::Environment};
 use std::path::Path;
 
 /// Default of `--accuracy`.
@@ -72,7 +72,12 @@ pub fn camera(arguments: &Arguments, scene: &Scene, scene_path: &Path) -> Result
 /// Most pixels of an image.
 const MAX_PIXELS: u64 = 1 << 28;
 
-pub fn settings(arguments: &Arguments, chosen: &Chosen, estimator: Estimator) -> Result<Settings, Failure> {
+pub fn settings(
+    arguments: &Arguments,
+    chosen: &Chosen,
+    estimator: Estimator,
+    environment: Environment,
+) -> Result<Settings, Failure> {
     let (width, height) = size(arguments, chosen)?;
     if width as u64 * height as u64 > MAX_PIXELS {
         return Err(Failure::usage(format!("--width, --height: {width} x {height} is more than {MAX_PIXELS} pixels")));
@@ -100,7 +105,7 @@ pub fn settings(arguments: &Arguments, chosen: &Chosen, estimator: Estimator) ->
         estimator,
         model,
         normals: arguments.scene_args.normal_kind(),
-        environment: arguments.scene_args.radiance(),
+        environment,
         max_depth: arguments.max_depth,
         seed: arguments.common.seed,
     })

@@ -24,7 +24,7 @@ use estimator::Estimator;
 use film::{Errors, Pixel};
 use formats::cloud::Cloud;
 use passes::Passes;
-use scene::{Camera, DVec3, NormalKind, Rays, Scene};
+use scene::{Camera, NormalKind, Rays, Scene, light::Environment};
 
 /// Over what part of a pixel its paths are spread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,8 +45,8 @@ pub struct Settings {
     pub estimator: Estimator,
     pub model: Model,
     pub normals: NormalKind,
-    /// Radiance of rays that escape, W/(m² sr).
-    pub environment: DVec3,
+    /// What rays that escape see.
+    pub environment: Environment,
     pub max_depth: u32,
     pub seed: u64,
 }

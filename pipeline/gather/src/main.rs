@@ -17,7 +17,7 @@ use formats::{
 use gather::{Input, Rendered, Settings, film, media, preview};
 use report::{Facts, Seconds};
 use rounds::{render_all, render_to};
-use scene::{Rays, Scene};
+use scene::{Rays, Scene, light::Environment};
 use std::{
     fmt::Write as _,
     io::Write as _,
@@ -43,10 +43,10 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (cloud_path, scene_path) = paths(arguments)?;
     let estimator = estimator(arguments)?;
     let cloud = Cloud::open(cloud_path)?;
-    let scene = arguments.scene_args.import(scene_path, common)?;
-    check_fit(&cloud, cloud_path, &scene, scene_path, arguments)?;
+    let (scene, environment) = arguments.scene_args.import(scene_path, common)?;
+    check_fit(&cloud, cloud_path, (&scene, &environment), scene_path, arguments)?;
     let camera = camera(arguments, &scene, scene_path)?;
-    let settings = settings(arguments, &camera, estimator)?;
+    let settings = settings(arguments, &camera, estimator, environment)?;
     check_memory(&settings)?;
     let sampled = |material| cloud.meta().materials.iter().any(|m| m.index == material);
     let health = arguments.scene_args.check_mesh(&scene, sampled, scene_path, common)?;
@@ -114,7 +114,7 @@ fn paths(arguments: &Arguments) -> Result<(&Path, &Path), Failure> {
 fn check_fit(
     cloud: &Cloud,
     cloud_path: &Path,
-    scene: &Scene,
+    (scene, environment): (&Scene, &Environment),
     scene_path: &Path,
     arguments: &Arguments,
 ) -> Result<(), Failure> {
@@ -132,16 +132,12 @@ fn check_fit(
         "its materials differ".into()
     } else if scene.light_digest != meta.lights {
         "its lights differ".into()
+    } else if environment.identity() != meta.options.environment {
+        format!("--environment is {}, the cloud's {}", environment.identity(), meta.options.environment)
     } else {
         let normals = arguments.scene_args.normals.name();
         if normals != meta.options.normals {
             arguments.common.warn(format_args!("--normals is {normals}, the cloud's {}", meta.options.normals));
-        }
-        let (seen, lit) = (arguments.scene_args.radiance().to_array(), meta.options.environment);
-        if seen != lit {
-            let [r, g, b] = lit;
-            let text = format!("rays that escape see --environment {seen:?}, the cloud was lit by {r},{g},{b}");
-            arguments.common.warn(text);
         }
         return Ok(());
     };
@@ -276,7 +272,7 @@ fn list_scene(arguments: &Arguments) -> Result<(), Failure> {
         (_, Some(scene)) | (Some(scene), None) => scene,
         _ => return Err(Failure::usage("--list-cameras, --list-materials: give SCENE")),
     };
-    let scene = arguments.scene_args.import(path, &arguments.common)?;
+    let (scene, _) = arguments.scene_args.import(path, &arguments.common)?;
     let mut text = String::new();
     if arguments.list_cameras {
         text += &camera_table(&scene);

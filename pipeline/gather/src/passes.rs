@@ -50,7 +50,7 @@ impl<'a, M: LaneModel> Passes<'a, M> {
             rays: input.rays,
             camera: input.camera,
             bodies: bodies::<M>(input, settings),
-            environment: settings.environment,
+            environment: settings.environment.clone(),
             normals: settings.normals,
             estimator: settings.estimator,
             samples_drawn: input.cloud.meta().drawn_by_half(),

@@ -9,7 +9,7 @@ use crate::{
 use bssrdf::{fresnel, lanes::LaneModel};
 use scene::{
     Camera, DVec3, Hit, NormalKind, Rays, Scene, SurfacePoint,
-    light::all_light_at,
+    light::{Environment, all_light_at},
     random::{Item, Stream},
 };
 use std::f64::consts::PI;
@@ -21,8 +21,8 @@ pub struct Renderer<'a, M> {
     pub camera: &'a Camera,
     /// One entry for each material; none for opaque ones.
     pub bodies: Vec<Option<Body<'a, M>>>,
-    /// Radiance of rays that escape, W/(m² sr).
-    pub environment: DVec3,
+    /// What rays that escape see.
+    pub environment: Environment,
     pub normals: NormalKind,
     pub estimator: Estimator,
     /// `K`, the unlit samples included, of each half of the cloud.
@@ -210,7 +210,7 @@ impl<M: LaneModel> Renderer<'_, M> {
 
     /// A ray that meets nothing more.
     fn escape(&self, walker: &Walker, light: &mut PathLight, counts: &mut Counts) {
-        let mut seen = self.environment;
+        let mut seen = self.environment.radiance(walker.direction);
         if let Some(body) = walker.inside.and_then(|m| self.bodies[m as usize].as_ref()) {
             counts.escaped_inside += 1;
             let clear = body.unscattered.map(|sigma| f64::from(u8::from(sigma == 0.0)));

@@ -84,7 +84,7 @@ impl Facts<'_> {
         };
         format!(
             "{camera} --width {} --height {} --bssrdf {} --estimator {} --spp {} --filter {} --max-depth {} --seed {} \
-             --environment {},{},{} --normals {}",
+             --environment {} --normals {}",
             s.width,
             s.height,
             s.model.name(),
@@ -93,9 +93,7 @@ impl Facts<'_> {
             filter_name(s),
             s.max_depth,
             s.seed,
-            s.environment.x,
-            s.environment.y,
-            s.environment.z,
+            s.environment.identity(),
             arguments.scene_args.normals.name(),
         )
     }

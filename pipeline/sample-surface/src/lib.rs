@@ -42,7 +42,7 @@ pub struct Settings {
 pub enum SampleError {
     #[error("--translucent: no surface has a material called `{name}`; there are {known}")]
     UnknownMaterial { name: String, known: String },
-    #[error("the scene has no light: give it one, or light it with --environment R,G,B")]
+    #[error("the scene has no light: give it one, or light it with --environment")]
     NoLight,
     #[error("no surface to sample: all of them emit; name one with --translucent")]
     NoSurface,

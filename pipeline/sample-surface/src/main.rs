@@ -8,7 +8,7 @@ use formats::{
     write_ply,
 };
 use sample_surface::{Choice, Goal, Pattern, Plan, SampleError, Sampled, Settings, sample, sample_enough};
-use scene::{Health, Rays, Scene};
+use scene::{Health, Rays, Scene, light::Environment};
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
@@ -88,18 +88,18 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let start = Instant::now();
     let common = &arguments.common;
     if arguments.list_materials {
-        let scene = arguments.scene_args.import(&arguments.scene, common)?;
+        let (scene, _) = arguments.scene_args.import(&arguments.scene, common)?;
         return cli::print(&material_table(&scene)?);
     }
     let output_path = arguments.output.as_deref().ok_or_else(|| Failure::usage("--output: give CLOUD"))?;
     check_memory(arguments.samples)?;
-    let settings = settings(arguments);
     let medium = arguments.for_medium.as_deref().map(read_medium).transpose()?;
     let room = cli::available_memory_bytes().map_or(MAX_SAMPLES - 1, |bytes| bytes / BYTES_PER_SAMPLE);
     let goal = medium.as_ref().zip(arguments.target_error);
     let goal = goal.map(|(medium, error)| Goal { medium, error, most: room.min(MAX_SAMPLES - 1) });
     let mut seconds = Seconds::default();
-    let scene = arguments.scene_args.import(&arguments.scene, common)?;
+    let (scene, environment) = arguments.scene_args.import(&arguments.scene, common)?;
+    let settings = settings(arguments, &environment);
     let mut plan = Plan::new(&scene, &settings).map_err(|e| named(&arguments.scene, &e))?;
     if let Some(goal) = &goal {
         plan.depends_on(goal);
@@ -147,7 +147,7 @@ fn check_memory(samples: u64) -> Result<(), Failure> {
     }
 }
 
-fn settings(arguments: &Arguments) -> Settings {
+fn settings(arguments: &Arguments, environment: &Environment) -> Settings {
     let scene = &arguments.scene_args;
     Settings {
         samples: arguments.samples,
@@ -162,7 +162,7 @@ fn settings(arguments: &Arguments) -> Settings {
             normals: scene.normals.name().into(),
             metres_per_unit: scene.metres_per_unit,
             light_unit: scene.light_unit.name().into(),
-            environment: scene.radiance().to_array(),
+            environment: environment.identity(),
         },
     }
 }

@@ -181,7 +181,10 @@ fn usage_errors() {
     bench.refuses(&[&scene, "-o", "out.cloud", "--sample-count", "3"], &["--sample-count"]);
     bench.refuses(&[&scene], &["--output"]);
     bench.refuses(&[&scene, "-o", "out.cloud", "--environment", "1,-1,1"], &["--environment"]);
-    bench.refuses(&[&scene, "-o", "out.cloud", "--environment", "sky.exr"], &["--environment", "R,G,B"]);
+    bench.refuses(
+        &[&scene, "-o", "out.cloud", "--environment", "sky.exr"],
+        &["--environment", "sky.exr", "cannot read"],
+    );
     bench.refuses(&[&scene, "-o", "out.cloud", "--metres-per-unit", "0"], &["--metres-per-unit"]);
     bench.refuses(&[&scene, "-o", "out.cloud", "-j", "0"], &["--threads"]);
 }

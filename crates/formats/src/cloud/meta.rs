@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 /// The struct of this version; the number is checked before this is read.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Versioned {
-    V2(Meta),
+    V3(Meta),
 }
 
 /// Facts of a cloud. Holds no time, host or path: the same inputs give the same bytes.
@@ -47,7 +47,7 @@ impl Meta {
     /// True if no fact is NaN or infinite.
     pub(super) fn is_finite(&self) -> bool {
         let single = [self.surface_area_m2, self.diagonal_m, self.options.metres_per_unit];
-        let triples = [self.mean_flux_w, self.origin_m, self.options.environment];
+        let triples = [self.mean_flux_w, self.origin_m];
         let areas = self.materials.iter().map(|m| m.area_m2);
         single.into_iter().chain(triples.into_iter().flatten()).chain(areas).all(f64::is_finite)
     }
@@ -66,8 +66,8 @@ pub struct Options {
     pub metres_per_unit: f64,
     /// `radiometric` or `photometric`.
     pub light_unit: String,
-    /// Constant radiance from all around, scale included, W/(m² sr).
-    pub environment: [f64; 3],
+    /// Light from all around: its radiance, or the identity of a map.
+    pub environment: String,
 }
 
 /// A translucent material and its samples.

@@ -1,24 +1,67 @@
 //! Light from all around.
 
-use super::{Illumination, Light, strength};
+use super::{EnvironmentMap, Illumination, Light, strength};
 use crate::{mesh::SurfacePoint, warp};
 use glam::DVec3;
-use std::f64::consts::PI;
+use std::{f64::consts::PI, sync::Arc};
 
-/// The same radiance from every direction: with cosine-distributed directions `E = V π L` (method.md 6.4).
+/// Light from infinitely far away in every direction.
 #[derive(Clone, Debug)]
-pub struct ConstantEnvironment {
-    /// W/(m² sr).
-    pub radiance: DVec3,
+pub enum Environment {
+    /// The same radiance from every direction, W/(m² sr).
+    Constant(DVec3),
+    Map(Arc<EnvironmentMap>),
 }
 
-impl Light for ConstantEnvironment {
-    fn importance(&self, _at: &SurfacePoint) -> f64 {
-        PI * strength(self.radiance)
+impl Environment {
+    /// Radiance that a ray in this unit direction sees, W/(m² sr).
+    pub fn radiance(&self, direction: DVec3) -> DVec3 {
+        match self {
+            Environment::Constant(radiance) => *radiance,
+            Environment::Map(map) => map.radiance(direction),
+        }
     }
 
+    /// True if no light comes from it.
+    pub fn is_black(&self) -> bool {
+        match self {
+            Environment::Constant(radiance) => *radiance == DVec3::ZERO,
+            Environment::Map(map) => map.is_black(),
+        }
+    }
+
+    /// What tells it from others, as text: `R,G,B`, or a digest of the map's pixels with its scale and rotation.
+    pub fn identity(&self) -> String {
+        match self {
+            Environment::Constant(DVec3 { x, y, z }) => format!("{x},{y},{z}"),
+            Environment::Map(map) => map.identity(),
+        }
+    }
+}
+
+impl From<DVec3> for Environment {
+    fn from(radiance: DVec3) -> Environment {
+        Environment::Constant(radiance)
+    }
+}
+
+impl Light for Environment {
+    fn importance(&self, at: &SurfacePoint) -> f64 {
+        match self {
+            Environment::Constant(radiance) => PI * strength(*radiance),
+            Environment::Map(map) => map.importance(at),
+        }
+    }
+
+    /// Of a constant one: cosine-distributed directions, `E = V π L` (method.md 6.4).
     fn illuminate(&self, at: &SurfacePoint, xi: [f64; 2]) -> Option<Illumination> {
-        let direction = warp::cosine_hemisphere(at.normal, xi);
-        Some(Illumination { direction, distance: f64::INFINITY, irradiance: self.radiance * PI })
+        match self {
+            Environment::Constant(radiance) => Some(Illumination {
+                direction: warp::cosine_hemisphere(at.normal, xi),
+                distance: f64::INFINITY,
+                irradiance: *radiance * PI,
+            }),
+            Environment::Map(map) => map.illuminate(at, xi),
+        }
     }
 }

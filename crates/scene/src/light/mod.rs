@@ -3,11 +3,15 @@
 mod area;
 mod directional;
 mod environment;
+mod environment_map;
+mod lookout;
 mod point;
+mod pyramid;
 
 pub use area::AreaLight;
 pub use directional::DirectionalLight;
-pub use environment::ConstantEnvironment;
+pub use environment::Environment;
+pub use environment_map::{EnvironmentMap, MapError};
 pub use point::{PointLight, Spot};
 
 use crate::{mesh::SurfacePoint, rays::Rays};

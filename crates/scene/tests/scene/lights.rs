@@ -2,10 +2,10 @@
 
 use crate::meshes::{direction, mesh, random};
 use scene::{
-    DVec3, Mesh, Rays, SurfacePoint,
+    DVec3, Mesh, Rays, SurfacePoint, Vec3,
     light::{
-        AreaLight, ConstantEnvironment, DirectionalLight, Illumination, Light, Lit, PointLight, Spot, all_light_at,
-        light_at, pick,
+        AreaLight, DirectionalLight, Environment, EnvironmentMap, Illumination, Light, Lit, PointLight, Spot,
+        all_light_at, light_at, pick,
     },
 };
 use std::f64::consts::PI;
@@ -86,7 +86,7 @@ fn range_fades_to_nothing() {
 
 #[test]
 fn constant_environment_gives_pi_times_its_radiance() {
-    let light = ConstantEnvironment { radiance: DVec3::new(0.5, 1.0, 2.0) };
+    let light = Environment::Constant(DVec3::new(0.5, 1.0, 2.0));
     let normal = tilted(70.0);
     let n = 64;
     let mut sum = DVec3::ZERO;
@@ -98,7 +98,7 @@ fn constant_environment_gives_pi_times_its_radiance() {
         sum += lit.irradiance;
         weighted += lit.direction;
     }
-    assert!((sum / (n * n) as f64).distance(PI * light.radiance) < 1e-12);
+    assert!((sum / (n * n) as f64).distance(PI * DVec3::new(0.5, 1.0, 2.0)) < 1e-12);
     // Directions have the density cos/pi: their mean is two thirds of the normal.
     assert!((weighted / (n * n) as f64).distance(normal * (2.0 / 3.0)) < 1e-3);
 }
@@ -164,13 +164,16 @@ fn area_light_shines_to_its_front_or_to_both_sides() {
 
 fn lights() -> Vec<Box<dyn Light>> {
     let spot = Spot { axis: DVec3::NEG_Z, cos_inner: 0.9, cos_outer: 0.5 };
+    let pixels = (0..72).map(|k| Vec3::splat([0.0, 0.0, 1.0][k % 3])).collect();
+    let map = EnvironmentMap::new((12, 6), pixels, 1.0, 20.0).expect("good pixels");
     vec![
         Box::new(DirectionalLight { direction: tilted(20.0), irradiance: DVec3::new(0.0, 3.0, 0.0) }),
         Box::new(PointLight { range: Some(9.0), ..bulb(DVec3::Z) }),
         Box::new(PointLight { spot: Some(spot), ..bulb(DVec3::Z * 3.0) }),
         Box::new(AreaLight::new(&square(), &[0, 1, 2], DVec3::X, false).expect("an area")),
         Box::new(AreaLight::new(&square(), &[0, 1, 2], DVec3::Z, true).expect("an area")),
-        Box::new(ConstantEnvironment { radiance: DVec3::splat(0.1) }),
+        Box::new(Environment::Constant(DVec3::splat(0.1))),
+        Box::new(Environment::Map(map.into())),
     ]
 }
 
@@ -178,7 +181,7 @@ fn lights() -> Vec<Box<dyn Light>> {
 #[test]
 fn importance_is_positive_wherever_there_is_light() {
     let lights = lights();
-    let mut lit = [0; 6];
+    let mut lit = [0; 7];
     for k in 0..200_000 {
         let item = random(k);
         let position = direction(item, 0) * (5.0 * item.uniform(2));

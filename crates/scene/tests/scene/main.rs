@@ -1,6 +1,7 @@
 //! Import, rays and lights from outside the crate.
 
 mod asset;
+mod environment;
 mod exactness;
 mod health;
 mod import;

@@ -1,0 +1,200 @@
+//! Radiance HDR bytes to pixels (Ward 1994, "Real pixels", and the reference manual's picture format). The bytes are
+//! not trusted.
+
+use super::Panorama;
+
+/// Widths that the scan lines of run-length coding have.
+const CODED_WIDTHS: std::ops::Range<usize> = 8..32768;
+
+/// A byte stands for fewer pixels than this: four runs of two bytes code 127.
+const PIXELS_PER_BYTE: usize = 16;
+
+pub(super) fn decode(bytes: &[u8]) -> Result<Panorama, String> {
+    let mut reader = Reader { rest: bytes };
+    let gain = header(&mut reader)?;
+    let (width, height) = resolution(reader.line()?)?;
+    let limit = reader.rest.len().saturating_mul(PIXELS_PER_BYTE);
+    if width.checked_mul(height).is_none_or(|pixels| pixels > limit) {
+        return Err(format!("{width} x {height} pixels are more than a file of {} bytes can hold", bytes.len()));
+    }
+    let mut pixels = Vec::new();
+    let mut line = Vec::new();
+    for _ in 0..height {
+        reader.scan_line(width, &mut line)?;
+        pixels.extend(line.iter().map(|rgbe| radiance(*rgbe, gain)));
+    }
+    Ok(Panorama { width, height, pixels })
+}
+
+/// Scene-linear colour: mantissas share an exponent.
+fn radiance([r, g, b, exponent]: [u8; 4], gain: [f64; 3]) -> [f32; 3] {
+    if exponent == 0 {
+        return [0.0; 3];
+    }
+    let unit = f64::from(i32::from(exponent) - (128 + 8)).exp2();
+    let [r, g, b] = [r, g, b].map(f64::from);
+    [r * gain[0], g * gain[1], b * gain[2]].map(|x| (x * unit) as f32)
+}
+
+/// Reads the lines before the resolution. Returns what pixels are multiplied by: all exposures and colour corrections
+/// that they were multiplied with are undone.
+fn header(reader: &mut Reader) -> Result<[f64; 3], String> {
+    let mut gain = [1.0; 3];
+    loop {
+        let line = reader.line()?;
+        let Some((name, value)) = line.split_once('=') else {
+            if line.is_empty() {
+                return Ok(gain);
+            }
+            continue;
+        };
+        let bad = || format!("{}: `{}` is not understood; save the picture again", name.trim(), value.trim());
+        let factors = match name.trim() {
+            "FORMAT" if value.trim() == "32-bit_rle_rgbe" => continue,
+            "FORMAT" => return Err(format!("FORMAT: {} is not supported, 32-bit_rle_rgbe is", value.trim())),
+            "EXPOSURE" => value.trim().parse().map(|x| vec![x; 3]).map_err(|_| bad())?,
+            "COLORCORR" => {
+                value.split_whitespace().map(str::parse).collect::<Result<Vec<f64>, _>>().map_err(|_| bad())?
+            }
+            _ => continue,
+        };
+        if factors.len() != 3 || !factors.iter().all(|x| *x > 0.0 && x.is_finite()) {
+            return Err(bad());
+        }
+        gain.iter_mut().zip(factors).for_each(|(gain, factor)| *gain /= factor);
+    }
+}
+
+/// Rows from the top, columns from the left: the one order that programs write.
+fn resolution(line: &str) -> Result<(usize, usize), String> {
+    let unknown = || format!("`{line}`: the line `-Y height +X width` is needed; save the picture again");
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let ["-Y", height, "+X", width] = words[..] else {
+        return Err(unknown());
+    };
+    let number = |word: &str| word.parse().ok().filter(|n: &usize| *n > 0).ok_or_else(unknown);
+    Ok((number(width)?, number(height)?))
+}
+
+/// What is left of the file.
+struct Reader<'a> {
+    rest: &'a [u8],
+}
+
+impl<'a> Reader<'a> {
+    fn take<const N: usize>(&mut self) -> Result<[u8; N], String> {
+        let (head, rest) = self.rest.split_first_chunk().ok_or("the file ends early; make it again")?;
+        self.rest = rest;
+        Ok(*head)
+    }
+
+    /// A line of text without its end.
+    fn line(&mut self) -> Result<&'a str, String> {
+        let end = self.rest.iter().position(|b| *b == b'\n').ok_or("the header has no end; make the file again")?;
+        let line = &self.rest[..end];
+        self.rest = &self.rest[end + 1..];
+        std::str::from_utf8(line).map(str::trim_end).map_err(|_| "the header is no text; make the file again".into())
+    }
+
+    /// Reads one row of mantissas and exponents, in runs or pixel by pixel.
+    fn scan_line(&mut self, width: usize, line: &mut Vec<[u8; 4]>) -> Result<(), String> {
+        line.clear();
+        let coded = self.rest.first_chunk().is_some_and(|[a, b, c, _]| *a == 2 && *b == 2 && *c < 128);
+        if coded && CODED_WIDTHS.contains(&width) {
+            let [_, _, high, low] = self.take()?;
+            if usize::from(high) << 8 | usize::from(low) != width {
+                return Err(format!("a scan line of another width than {width}; make the file again"));
+            }
+            line.resize(width, [0; 4]);
+            return (0..4).try_for_each(|component| self.runs(line, component));
+        }
+        for _ in 0..width {
+            let pixel = self.take()?;
+            if pixel[..3] == [1; 3] {
+                return Err("its runs are coded as before 1991; save the picture again".into());
+            }
+            line.push(pixel);
+        }
+        Ok(())
+    }
+
+    /// One component of a row: runs of one value, and values one by one.
+    fn runs(&mut self, line: &mut [[u8; 4]], component: usize) -> Result<(), String> {
+        let mut at = 0;
+        while at < line.len() {
+            let [count] = self.take()?;
+            let (length, run) = if count > 128 { (count - 128, true) } else { (count, false) };
+            let end = at + usize::from(length);
+            let part = line.get_mut(at..end).filter(|part| !part.is_empty());
+            let part = part.ok_or("a run that does not fit its scan line; make the file again")?;
+            let mut value = if run { self.take::<1>()?[0] } else { 0 };
+            for pixel in part {
+                if !run {
+                    [value] = self.take()?;
+                }
+                pixel[component] = value;
+            }
+            at = end;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HEAD: &str = "#?RADIANCE\n# a comment\nFORMAT=32-bit_rle_rgbe\n";
+
+    fn file(head: &str, resolution: &str, body: &[u8]) -> Vec<u8> {
+        [format!("{head}\n{resolution}\n").as_bytes(), body].concat()
+    }
+
+    /// Ten pixels: a run of seven reds and three single ones, runs of the other components.
+    const CODED: [u8; 18] = [2, 2, 0, 10, 135, 64, 3, 1, 2, 3, 138, 128, 138, 0, 133, 129, 133, 130];
+
+    /// Planted: a run taken as single values, the exponent's offset one off, rows of runs one short.
+    #[test]
+    fn runs_and_single_values() {
+        let picture = decode(&file(HEAD, "-Y 1 +X 10", &CODED)).expect("a picture");
+        assert_eq!((picture.width, picture.height), (10, 1));
+        assert_eq!(picture.pixels[0], [0.5, 1.0, 0.0]);
+        assert_eq!(picture.pixels[7], [4.0 * 1.0 / 256.0, 2.0, 0.0]);
+        assert_eq!(picture.pixels[9], [4.0 * 3.0 / 256.0, 2.0, 0.0]);
+        let flat = decode(&file(HEAD, "-Y 2 +X 1", &[128, 0, 0, 129, 2, 2, 9, 0])).expect("a picture");
+        assert_eq!(flat.pixels, [[1.0, 0.0, 0.0], [0.0; 3]]);
+    }
+
+    /// Planted: pixels multiplied by the exposure.
+    #[test]
+    fn exposure_and_colour_correction_are_undone() {
+        let head = format!("{HEAD}EXPOSURE= 2\nEXPOSURE=4\nCOLORCORR=1 0.5 1\nSOFTWARE=x=y\n");
+        let picture = decode(&file(&head, "-Y 1 +X 1", &[128, 128, 64, 131])).expect("a picture");
+        assert_eq!(picture.pixels, [[0.5, 1.0, 0.25]]);
+        for line in ["EXPOSURE=0", "EXPOSURE=nan", "COLORCORR=1 1", "FORMAT=32-bit_rle_xyze"] {
+            let message = decode(&file(&format!("{HEAD}{line}\n"), "-Y 1 +X 1", &[0; 4])).expect_err("refused");
+            assert!(message.contains(line.split_once('=').expect("a name").0), "{message}");
+        }
+    }
+
+    #[test]
+    fn damaged_files_and_bombs_are_refused() {
+        let good = file(HEAD, "-Y 1 +X 10", &CODED);
+        for length in 0..good.len() {
+            assert!(decode(&good[..length]).is_err(), "{length}");
+        }
+        let sizes = ["-Y 100000 +X 30000", "-Y 18446744073709551615 +X 18446744073709551615", "-Y 0 +X 9", "+X 1 -Y 1"];
+        for resolution in sizes {
+            assert!(decode(&file(HEAD, resolution, &CODED)).is_err(), "{resolution}");
+        }
+        let bad: [&[u8]; 4] = [
+            &[2, 2, 0, 11, 139, 64],                // another width
+            &[2, 2, 0, 10, 139, 64, 0, 0],          // a run beyond the end
+            &[2, 2, 0, 10, 0, 0, 0, 0, 0, 0, 0, 0], // runs of nothing
+            &[9, 9, 9, 130, 1, 1, 1, 9],            // runs of the old kind
+        ];
+        for body in bad {
+            assert!(decode(&file(HEAD, "-Y 1 +X 10", body)).is_err(), "{body:?}");
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! Light from all around by a picture in the equirectangular projection.
+//!
+//! Seen from inside with +Y up, the middle of the picture lies in direction +X, and its columns go on to the right
+//! towards +Z; the top row surrounds +Y. A rotation turns it about +Y, counter-clockwise seen from above. Radiance is
+//! constant over each pixel: what a ray sees is what directions are chosen by.
+
+use super::{
+    Illumination, Light,
+    lookout::{Lookout, WINDOW_COLUMNS, WINDOW_ROWS},
+    pyramid::{Cell, Pyramid},
+    strength,
+};
+use crate::mesh::SurfacePoint;
+use glam::{DVec2, DVec3, Vec3};
+use std::f64::consts::{PI, TAU};
+
+/// Most pixels of a map.
+const MAX_PIXELS: usize = 1 << 27;
+
+/// Why pixels are no map.
+#[derive(Debug, thiserror::Error)]
+pub enum MapError {
+    #[error("pixel {column}, {row} is {value}; radiance must be finite and not negative")]
+    Pixel { column: usize, row: usize, value: Vec3 },
+    #[error("{width} x {height} pixels; an environment has between 1 and {MAX_PIXELS}")]
+    Size { width: usize, height: usize },
+}
+
+/// A picture of distant light. Its directions are chosen by radiance, solid angle and the cosine at the surface.
+#[derive(Debug)]
+pub struct EnvironmentMap {
+    width: usize,
+    height: usize,
+    /// Row after row from the top, W/(m² sr) but for the scale.
+    pixels: Vec<Vec3>,
+    scale: f64,
+    rotation_degrees: f64,
+    /// Cosine and sine of the rotation.
+    turn: DVec2,
+    /// Strength times solid angle of each pixel.
+    power: Pyramid,
+    /// The windows that light comes through, for every way a surface can face.
+    lookout: Lookout,
+}
+
+impl EnvironmentMap {
+    /// A map of `width * height` pixels of radiance, row after row from the top, W/(m² sr) after multiplication by
+    /// `scale`.
+    pub fn new(
+        (width, height): (usize, usize),
+        pixels: Vec<Vec3>,
+        scale: f64,
+        rotation_degrees: f64,
+    ) -> Result<EnvironmentMap, MapError> {
+        let count = width.checked_mul(height).filter(|n| (1..=MAX_PIXELS).contains(n) && *n == pixels.len());
+        if count.is_none() {
+            return Err(MapError::Size { width, height });
+        }
+        let bad = |p: &Vec3| !(p.is_finite() && p.min_element() >= 0.0);
+        if let Some(k) = pixels.iter().position(bad) {
+            return Err(MapError::Pixel { column: k % width, row: k / width, value: pixels[k] });
+        }
+        let solid_angles: Vec<f64> = (0..height).map(|row| solid_angle(width, height, row)).collect();
+        let power = Pyramid::new(width, height, |x, y| strength(pixels[y * width + x].as_dvec3()) * solid_angles[y]);
+        let lookout = Lookout::new(&power);
+        let (sine, cosine) = rotation_degrees.to_radians().sin_cos();
+        let turn = DVec2::new(cosine, sine);
+        Ok(EnvironmentMap { width, height, pixels, scale, rotation_degrees, turn, power, lookout })
+    }
+
+    /// Radiance that a ray in this unit direction sees, W/(m² sr).
+    pub fn radiance(&self, direction: DVec3) -> DVec3 {
+        let [column, row] = self.pixel(self.in_map(direction));
+        self.pixels[row * self.width + column].as_dvec3() * self.scale
+    }
+
+    pub(super) fn is_black(&self) -> bool {
+        self.scale == 0.0 || self.power.total() == 0.0
+    }
+
+    /// A digest of the pixels, with scale and rotation.
+    pub(super) fn identity(&self) -> String {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(&(self.width as u64).to_le_bytes());
+        self.pixels.iter().flat_map(|p| p.to_array()).for_each(|x| {
+            hasher.update(&x.to_le_bytes());
+        });
+        format!("map {} * {} turned by {} degrees", hasher.finalize().to_hex(), self.scale, self.rotation_degrees)
+    }
+
+    /// A direction of the world as the map has it.
+    fn in_map(&self, d: DVec3) -> DVec3 {
+        let DVec2 { x: cosine, y: sine } = self.turn;
+        DVec3::new(d.x * cosine - d.z * sine, d.y, d.x * sine + d.z * cosine)
+    }
+
+    fn in_world(&self, d: DVec3) -> DVec3 {
+        let DVec2 { x: cosine, y: sine } = self.turn;
+        DVec3::new(d.x * cosine + d.z * sine, d.y, d.z * cosine - d.x * sine)
+    }
+
+    /// Column and row of a unit direction of the map.
+    fn pixel(&self, d: DVec3) -> [usize; 2] {
+        let across = d.z.atan2(d.x) / TAU + 0.5;
+        let down = DVec2::new(d.x, d.z).length().atan2(d.y) / PI;
+        let index = |share: f64, count: usize| ((share * count as f64) as usize).min(count - 1);
+        [index(across, self.width), index(down, self.height)]
+    }
+
+    /// The direction of the map at a place within a pixel, even in solid angle.
+    fn direction(&self, cell: &Cell) -> DVec3 {
+        let across = (cell.column as f64 + cell.xi[0]) / self.width as f64;
+        let [high, low] = [cell.row, cell.row + 1].map(|row| half_angle(row, self.height).sin().powi(2));
+        // 1 - cos θ = 2 sin²(θ/2) keeps its digits at the pole.
+        let height = 2.0 * (high + (low - high) * cell.xi[1]);
+        let radius = (height * (2.0 - height)).max(0.0).sqrt();
+        let (sine, cosine) = (TAU * (across - 0.5)).sin_cos();
+        DVec3::new(radius * cosine, 1.0 - height, radius * sine).normalize()
+    }
+}
+
+/// Half of the polar angle of the border above a row.
+fn half_angle(row: usize, height: usize) -> f64 {
+    0.5 * PI * row as f64 / height as f64
+}
+
+/// Solid angle of each pixel of a row, sr: the difference of the borders' cosines, times the width.
+fn solid_angle(width: usize, height: usize, row: usize) -> f64 {
+    let (high, low) = (half_angle(row, height), half_angle(row + 1, height));
+    2.0 * (high + low).sin() * (low - high).sin() * TAU / width as f64
+}
+
+impl Light for EnvironmentMap {
+    fn importance(&self, at: &SurfacePoint) -> f64 {
+        self.lookout.facing(self.in_map(at.normal)).total() * self.scale
+    }
+
+    /// note: [irradiance] A window by its light and cosine, a pixel in it by its light, and any place in the pixel:
+    /// `E = L (n·ω) Ω/P` with the pixel's solid angle and probability.
+    fn illuminate(&self, at: &SurfacePoint, xi: [f64; 2]) -> Option<Illumination> {
+        let windows = self.lookout.facing(self.in_map(at.normal));
+        if windows.total() == 0.0 {
+            return None;
+        }
+        let window = windows.choose(xi);
+        let level = self.power.level_within(WINDOW_COLUMNS, WINDOW_ROWS);
+        let cell = self.power.choose_below(level, window);
+        let direction = self.in_world(self.direction(&cell));
+        let cosine = at.normal.dot(direction);
+        let radiance = self.pixels[cell.row * self.width + cell.column].as_dvec3() * self.scale;
+        let factor = cosine * solid_angle(self.width, self.height, cell.row) / cell.probability;
+        (cosine > 0.0).then(|| Illumination { direction, distance: f64::INFINITY, irradiance: radiance * factor })
+    }
+}
