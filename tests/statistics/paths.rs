@@ -87,6 +87,29 @@ fn emission_is_seen_through_the_interface() {
     }
 }
 
+/// A glowing block that is seen in a pane, of a medium that lets nothing through: `R L_e`, without noise. The area light
+/// that the block is does not come on top.
+///
+/// Seen to catch: a mirrored branch that ends at light sources.
+#[test]
+fn a_lamp_is_seen_in_a_mirror() {
+    let emission = DVec3::new(1.0, 2.0, 4.0);
+    for degrees in [40.0, 60.0, 75.0] {
+        let (sine, cosine) = f64::to_radians(degrees).sin_cos();
+        let mut lamp = Part { emission, ..Part::opaque(slab(DVec3::splat(3.0), 1)) };
+        let middle = 30.0 * DVec3::new(-sine, 0.0, cosine);
+        lamp.mesh.positions.iter_mut().for_each(|p| *p += middle.as_vec3());
+        let world = world(&[Part::translucent(slab(DVec3::new(20.0, 20.0, 0.25), 1)), lamp], &[], DVec3::ZERO);
+        let camera = orthographic(DVec3::new(sine, 0.0, cosine), 0.01);
+        let rendered = render(&world, &camera, 1e4, &with_sky(DVec3::ZERO, 4, 16));
+        let expected = (1.0 - fresnel::transmittance(cosine, 1.5)) * emission;
+        for pixel in &rendered.pixels {
+            let worst = (pixel.beauty() / expected - 1.0).abs().max_element();
+            assert!(worst < 1e-7, "{degrees} degrees: {} instead of {expected}", pixel.beauty());
+        }
+    }
+}
+
 /// A pane before a glowing wall: with R at each face and the transmittance a of one way through, it shows
 /// `(1 − R)² a/(1 − R² a²)` of the wall.
 ///

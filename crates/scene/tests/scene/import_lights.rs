@@ -129,6 +129,19 @@ fn emitting_materials_are_area_lights() {
     assert!(irradiance(&scene, DVec3::splat(-100.0), DVec3::ONE.normalize()).x > 0.0);
 }
 
+/// Emission is that of the factor; the file's texture would make it uneven, and is named as left out, once.
+#[test]
+fn an_emissive_texture_is_left_out_with_a_warning() {
+    let mut asset = tetrahedron();
+    asset.set("/materials/0/emissiveFactor", json!([0.5, 1, 1]));
+    asset.set("/materials/0/emissiveTexture", json!({ "index": 0 }));
+    asset.set("/materials/0/name", json!("Neon"));
+    let scene = import(&asset);
+    assert_eq!(scene.materials[0].emission, DVec3::new(0.5, 1.0, 1.0));
+    let about = scene.warnings.iter().filter(|w| w.contains("`Neon`") && w.contains("emissive texture"));
+    assert_eq!(about.count(), 1, "{:?}", scene.warnings);
+}
+
 #[test]
 fn the_light_digest_tells_lights_apart() {
     let digest = |light: Value| import(&lit(light, json!({}))).light_digest;
