@@ -7,7 +7,8 @@ use crate::{
 use formats::cloud::Cloud;
 use gather::estimator::{Estimator, Rule};
 use glam::{DQuat, DVec3};
-use sample_surface::{Drawn, Numbers, TriangleChoice, draw};
+use sample_surface::{Drawn, LitSurface, Numbers, TriangleChoice, draw};
+use scene::light::LightTree;
 use serde_json::json;
 use support::{
     meshes::World,
@@ -52,11 +53,15 @@ fn placed_as(original: &World, world: &World, shot: &Shot) -> Cloud {
     let facts = sampled_with(world, sampling, shot.normals).meta;
     let choice = TriangleChoice::new(mesh, sampling.choice, |m| m == facts.materials[0].index);
     let numbers = Numbers::new(sampling.pattern, sampling.seed, sampling.samples);
+    let lights = LightTree::new(&world.scene.lights);
+    let surface = LitSurface { mesh: &world.scene.mesh, rays: &world.rays, lights, normals: shot.normals };
     let mut halves = Halves::default();
     for (half, place) in numbers.places(&choice, 0..sampling.samples) {
-        if let Drawn::Lit { sample, .. } = draw(&world.scene, &world.rays, shot.normals, &place, &mut 0) {
-            halves[half].push(sample);
-        }
+        draw(&surface, &[(half, place)], &mut 0, |half, drawn| {
+            if let Drawn::Lit { sample, .. } = drawn {
+                halves[half].push(sample);
+            }
+        });
     }
     filed(&planted(&facts, &[halves]))
 }

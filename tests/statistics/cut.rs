@@ -6,7 +6,10 @@ use gather::estimator::Estimator;
 use glam::DVec3;
 use rayon::prelude::*;
 use sample_surface::Choice;
-use scene::{NormalKind, SurfacePoint, light::all_light_at};
+use scene::{
+    NormalKind, SurfacePoint,
+    light::{LightTree, all_light_at},
+};
 use support::{
     EFFORT,
     meshes::{Part, World, repository_scene, sphere, world},
@@ -25,12 +28,13 @@ const POINTS: usize = 10;
 /// scene has both.
 fn lit_and_unlit(world: &World, wanted: usize) -> [Vec<Point>; 2] {
     let (mut random, mut points) = (Random(31), [Vec::new(), Vec::new()]);
+    let lights = LightTree::new(&world.scene.lights);
     for _ in 0..100 * wanted {
         let (a, b) = (random.uniform().sqrt(), random.uniform());
         let triangle = (random.uniform() * world.scene.mesh.triangles.len() as f64) as u32;
         let weights = [1.0 - a, (1.0 - b) * a, b * a];
         let at: SurfacePoint = world.scene.mesh.point(triangle, weights, NormalKind::Geometric);
-        let light = all_light_at(&world.scene.lights, &world.rays, &at, || [0.5; 2], &mut 0);
+        let light = all_light_at(&lights, &world.rays, &at, || [0.5; 2], &mut 0);
         let own = &mut points[usize::from(light == DVec3::ZERO)];
         if own.len() < wanted {
             own.push(Point { position: at.position + world.scene.origin, normal: at.normal });

@@ -6,7 +6,10 @@ use formats::cloud::Cloud;
 use gather::{Input, Settings, estimator::Estimator, film::Pixel};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
-use scene::{Camera, NormalKind, light::all_light_at};
+use scene::{
+    Camera, NormalKind,
+    light::{LightTree, all_light_at},
+};
 use std::path::Path;
 use support::{
     EFFORT,
@@ -81,6 +84,7 @@ fn looking(world: &World, material: u16, towards: DVec3) -> Camera {
 /// interface takes much of their light are left out: the cut may be that much worse there.
 fn sides(world: &World, material: u16, camera: &Camera) -> [Vec<usize>; 2] {
     let (scene, rays) = (&world.scene, &world.rays);
+    let lights = LightTree::new(&scene.lights);
     let mut sides = [Vec::new(), Vec::new()];
     for pixel in 0..SIZE * SIZE {
         let at = DVec2::new((pixel % SIZE) as f64 + 0.5, (pixel / SIZE) as f64 + 0.5);
@@ -90,7 +94,7 @@ fn sides(world: &World, material: u16, camera: &Camera) -> [Vec<usize>; 2] {
         };
         let point = scene.mesh.point(hit.triangle, hit.weights, NormalKind::Geometric);
         if point.material == material && point.normal.dot(direction) < -0.5 {
-            let light = all_light_at(&scene.lights, rays, &point, || [0.5; 2], &mut 0);
+            let light = all_light_at(&lights, rays, &point, || [0.5; 2], &mut 0);
             sides[usize::from(light == DVec3::ZERO)].push(pixel);
         }
     }

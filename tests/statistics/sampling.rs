@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 use sample_surface::{Choice, TriangleChoice};
 use scene::{
     NormalKind, SurfacePoint,
-    light::pick,
+    light::{LightChoice, LightTree, Region},
     random::{Item, Purpose, Stream},
     warp,
 };
@@ -114,15 +114,17 @@ fn lit_by_five() -> World {
 #[test]
 fn lights_are_picked_with_the_probability_returned() {
     let world = lit_by_five();
-    let lights = &world.scene.lights;
-    assert_eq!(lights.len(), 5);
+    let count = world.scene.lights.len();
+    assert_eq!(count, 5);
+    let lights = LightTree::new(&world.scene.lights);
     for triangle in [0, 12, 26, 34, 42] {
         let point: SurfacePoint = world.scene.mesh.point(triangle, [0.2, 0.5, 0.3], NormalKind::Geometric);
-        let (mut observed, mut probability) = (vec![0; lights.len()], vec![0.0; lights.len()]);
+        let (mut observed, mut probability) = (vec![0; count], vec![0.0; count]);
+        let choice = LightChoice::new(&lights, &Region::point(&point), 1);
         for item in items(u64::from(triangle)).take(DRAWS as usize / 4) {
-            let (index, p) = pick(lights, &point, item.uniform(3)).expect("the environment reaches every point");
-            observed[index] += 1;
-            probability[index] = p;
+            let pick = choice.pick(&point, item.uniform(3)).expect("the environment reaches every point");
+            observed[pick.index] += 1;
+            probability[pick.index] = pick.share;
         }
         let expected: Vec<f64> = probability.iter().map(|p| p * (DRAWS / 4) as f64).collect();
         assert_fits(&format!("lights seen from triangle {triangle}"), &observed, &expected);

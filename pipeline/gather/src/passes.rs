@@ -15,6 +15,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 use scene::{
     DVec3,
+    light::LightTree,
     random::{Purpose, Stream},
     sequence::Sequence,
 };
@@ -48,6 +49,7 @@ impl<'a, M: LaneModel> Passes<'a, M> {
         let mut renderer = Renderer {
             scene: input.scene,
             rays: input.rays,
+            lights: LightTree::new(&input.scene.lights),
             camera: input.camera,
             bodies: bodies::<M>(input, settings),
             environment: settings.environment.clone(),

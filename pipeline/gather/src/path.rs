@@ -9,7 +9,7 @@ use crate::{
 use bssrdf::{fresnel, lanes::LaneModel};
 use scene::{
     Camera, DVec3, Hit, NormalKind, Rays, Scene, SurfacePoint,
-    light::{Environment, all_light_at},
+    light::{Environment, LightTree, all_light_at},
     random::{Item, Stream},
 };
 use std::f64::consts::PI;
@@ -18,6 +18,7 @@ use std::f64::consts::PI;
 pub struct Renderer<'a, M> {
     pub scene: &'a Scene,
     pub rays: &'a Rays,
+    pub lights: LightTree<'a>,
     pub camera: &'a Camera,
     /// One entry for each material; none for opaque ones.
     pub bodies: Vec<Option<Body<'a, M>>>,
@@ -257,7 +258,7 @@ impl<M: LaneModel> Renderer<'_, M> {
             facing.geometric_normal = -facing.geometric_normal;
         }
         let xi = || [walker.uniform(), walker.uniform()];
-        let irradiance = all_light_at(&self.scene.lights, self.rays, &facing, xi, &mut counts.shadow_rays);
+        let irradiance = all_light_at(&self.lights, self.rays, &facing, xi, &mut counts.shadow_rays);
         light.add(walker, Layer::Diffuse, material.base_color / PI * irradiance);
     }
 

@@ -13,15 +13,18 @@ mod sample;
 pub use choice::{Choice, Chosen, TriangleChoice};
 pub use enough::{Goal, relative_error, sample_enough};
 pub use pattern::{Numbers, Pattern, Place};
-pub use sample::{Drawn, draw};
+pub use sample::{Drawn, LitSurface, draw};
 
 use formats::cloud::{Content, Group, Meta, Options, Record, SampledMaterial, version};
 use rayon::prelude::*;
-use scene::{NormalKind, Rays, Scene};
+use scene::{NormalKind, Rays, Scene, light::LightTree};
 use std::collections::BTreeMap;
 
 /// Samples that one task draws.
 const CHUNK: u64 = 1 << 14;
+
+/// Samples that share a list of lights.
+const TOGETHER: usize = 512;
 
 /// What to sample.
 #[derive(Clone, Debug)]
@@ -144,10 +147,14 @@ pub fn sample(
 ) -> Result<Sampled, SampleError> {
     let choice = TriangleChoice::new(&scene.mesh, settings.choice, |m| plan.materials.contains(&m));
     let numbers = Numbers::new(settings.pattern, settings.options.seed, settings.samples);
+    let lights = LightTree::new(&scene.lights);
+    // Independent samples that follow each other lie anywhere.
+    let together = if settings.pattern == Pattern::Stratified || lights.is_flat() { TOGETHER } else { 1 };
+    let surface = LitSurface { mesh: &scene.mesh, rays, lights, normals: settings.normals };
     let portion = |chunk: u64| {
         let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(settings.samples);
         progress(range.end - range.start);
-        draw_portion(scene, rays, settings.normals, plan, numbers.places(&choice, range))
+        draw_portion(&surface, plan, numbers.places(&choice, range), together)
     };
     let portions: Vec<Portion> = (0..settings.samples.div_ceil(CHUNK)).into_par_iter().map(portion).collect();
     let not_finite = portions.iter().map(|p| p.not_finite).sum();
@@ -158,31 +165,42 @@ pub fn sample(
 }
 
 fn draw_portion(
-    scene: &Scene,
-    rays: &Rays,
-    normals: NormalKind,
+    surface: &LitSurface,
     plan: &Plan,
-    places: impl Iterator<Item = (usize, Place)>,
+    mut places: impl Iterator<Item = (usize, Place)>,
+    together: usize,
 ) -> Portion {
     let groups = vec![[Vec::new(), Vec::new()]; plan.materials.len()];
-    let (facing_away, shadowed, underflow, not_finite, shadow_rays) = (0, 0, 0, 0, 0);
+    let (facing_away, shadowed, underflow, not_finite) = (0, 0, 0, 0);
     let flux = scene::DVec3::ZERO;
-    let mut p = Portion { groups, facing_away, shadowed, underflow, not_finite, shadow_rays, flux };
-    for (half, place) in places {
-        match draw(scene, rays, normals, &place, &mut p.shadow_rays) {
-            Drawn::FacingAway => p.facing_away += 1,
-            Drawn::Shadowed => p.shadowed += 1,
-            Drawn::Underflow => p.underflow += 1,
-            Drawn::NotFinite => p.not_finite += 1,
+    let mut p = Portion { groups, facing_away, shadowed, underflow, not_finite, shadow_rays: 0, flux };
+    let mut shadow_rays = 0;
+    let mut neighbours = Vec::with_capacity(together);
+    loop {
+        neighbours.clear();
+        neighbours.extend(places.by_ref().take(together));
+        if neighbours.is_empty() {
+            return Portion { shadow_rays, ..p };
+        }
+        draw(surface, &neighbours, &mut shadow_rays, |half, drawn| p.count(plan, half, drawn));
+    }
+}
+
+impl Portion {
+    fn count(&mut self, plan: &Plan, half: usize, drawn: Drawn) {
+        match drawn {
+            Drawn::FacingAway => self.facing_away += 1,
+            Drawn::Shadowed => self.shadowed += 1,
+            Drawn::Underflow => self.underflow += 1,
+            Drawn::NotFinite => self.not_finite += 1,
             Drawn::Lit { sample, material } => {
-                p.flux += sample.flux.as_dvec3();
+                self.flux += sample.flux.as_dvec3();
                 if let Ok(slot) = plan.materials.binary_search(&material) {
-                    p.groups[slot][half].push(Record::new(&sample));
+                    self.groups[slot][half].push(Record::new(&sample));
                 }
             }
         }
     }
-    p
 }
 
 /// Puts the samples of each material and half in order and adds up what is known of them.

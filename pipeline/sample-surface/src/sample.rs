@@ -3,9 +3,17 @@
 use crate::pattern::Place;
 use formats::cloud::Sample;
 use scene::{
-    NormalKind, Rays, Scene,
-    light::{Lit, light_at},
+    Mesh, NormalKind, Rays, SurfacePoint,
+    light::{LightChoice, LightTree, Lit, Region, light_at},
 };
+
+/// A surface and its light.
+pub struct LitSurface<'a> {
+    pub mesh: &'a Mesh,
+    pub rays: &'a Rays,
+    pub lights: LightTree<'a>,
+    pub normals: NormalKind,
+}
 
 /// What became of a drawn sample.
 pub enum Drawn {
@@ -21,10 +29,29 @@ pub enum Drawn {
     NotFinite,
 }
 
-/// Lights a place of the surface. `shadow_rays` counts the rays traced.
-pub fn draw(scene: &Scene, rays: &Rays, normals: NormalKind, place: &Place, shadow_rays: &mut u64) -> Drawn {
-    let point = scene.mesh.point(place.triangle, place.weights, normals);
-    let (direction, irradiance) = match light_at(&scene.lights, rays, &point, place.light, shadow_rays) {
+/// Entries of the list of lights that places share: some, and more for each of them.
+const ENTRIES: [usize; 2] = [32, 4];
+
+/// Lights places of the surface that lie together, each with the half that it belongs to. `shadow_rays` counts the rays
+/// traced.
+pub fn draw(
+    surface: &LitSurface,
+    places: &[(usize, Place)],
+    shadow_rays: &mut u64,
+    mut tell: impl FnMut(usize, Drawn),
+) {
+    let point = |(_, p): &(usize, Place)| surface.mesh.point(p.triangle, p.weights, surface.normals);
+    let points: Vec<SurfacePoint> = places.iter().map(point).collect();
+    let Some(region) = Region::around(&points) else { return };
+    let choice = LightChoice::new(&surface.lights, &region, ENTRIES[0] + ENTRIES[1] * points.len());
+    for ((half, place), point) in places.iter().zip(&points) {
+        tell(*half, drawn(place, point, light_at(&choice, surface.rays, point, place.light, shadow_rays)));
+    }
+}
+
+/// The sample at a place.
+fn drawn(place: &Place, point: &SurfacePoint, light: Lit) -> Drawn {
+    let (direction, irradiance) = match light {
         Lit::FacingAway => return Drawn::FacingAway,
         Lit::Shadowed => return Drawn::Shadowed,
         Lit::Light { direction, irradiance } => (direction, irradiance),

@@ -1,12 +1,12 @@
 //! Light from emitting triangles.
 
-use super::{Illumination, Light, strength};
+use super::{Extent, Illumination, Light, Region, extent::Ball, strength};
 use crate::{
     mesh::{Mesh, SurfacePoint, unit},
     warp,
 };
 use glam::DVec3;
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// An emitting triangle.
 #[derive(Clone, Debug)]
@@ -25,36 +25,45 @@ pub struct AreaLight {
     double_sided: bool,
     emitters: Vec<Emitter>,
     area: f64,
-    centre: DVec3,
-    radius: f64,
+    extent: Extent,
+    ball: Ball,
 }
 
 impl AreaLight {
     /// These triangles of `mesh`, emitting `radiance`, W/(m² sr); none if there are none.
     pub fn new(mesh: &Mesh, triangles: &[usize], radiance: DVec3, double_sided: bool) -> Option<AreaLight> {
         let (mut emitters, mut area) = (Vec::new(), 0.0);
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let mut extent: Option<Extent> = None;
         for k in triangles {
             let corners = mesh.corners(*k);
             area += mesh.area(*k);
-            corners.iter().for_each(|c| (low, high) = (low.min(*c), high.max(*c)));
             let normal = unit((corners[1] - corners[0]).cross(corners[2] - corners[0]));
             emitters.push(Emitter { corners, normal, area_so_far: area });
+            let own = Extent {
+                low: corners[0].min(corners[1]).min(corners[2]),
+                high: corners[0].max(corners[1]).max(corners[2]),
+                // The mean over the half space that a triangle shines into.
+                intensity: strength(radiance) * mesh.area(*k) / PI,
+                axis: normal,
+                reach: if double_sided { PI } else { FRAC_PI_2 },
+                range: f64::INFINITY,
+            };
+            extent = Some(extent.map_or(own, |all| all.join(&own)));
         }
-        let (centre, radius) = ((low + high) / 2.0, (high - low).length() / 2.0);
-        (area > 0.0).then_some(AreaLight { radiance, double_sided, emitters, area, centre, radius })
+        let extent = extent.filter(|_| area > 0.0)?;
+        Some(AreaLight { radiance, double_sided, emitters, area, extent, ball: Ball::new(&extent) })
     }
 }
 
 impl Light for AreaLight {
-    /// The light as if it were a small one-sided source at its centre, at least its radius away, under the largest
-    /// cosine that a point of it can have; 0 only if all of it lies behind the surface.
+    /// With the largest cosine that a place of it can have.
     fn importance(&self, at: &SurfacePoint) -> f64 {
-        let offset = self.centre - at.position;
-        let distance = offset.length().max(self.radius);
-        let cosine = |normal: DVec3| ((offset.dot(normal) + self.radius) / distance).clamp(0.0, 1.0);
-        let cosine = cosine(at.normal) * if cosine(at.geometric_normal) > 0.0 { 1.0 } else { 0.0 };
-        strength(self.radiance) * self.area * cosine / (PI * distance * distance)
+        let [_, most] = self.ball.arriving(&Region::point(at));
+        most
+    }
+
+    fn extent(&self) -> Option<Extent> {
+        Some(self.extent)
     }
 
     fn illuminate(&self, at: &SurfacePoint, xi: [f64; 2]) -> Option<Illumination> {

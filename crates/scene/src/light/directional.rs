@@ -1,6 +1,6 @@
 //! Light from infinitely far away.
 
-use super::{Illumination, Light, strength};
+use super::{Extent, Illumination, Light, strength};
 use crate::mesh::SurfacePoint;
 use glam::DVec3;
 
@@ -14,6 +14,10 @@ pub struct DirectionalLight {
 }
 
 impl Light for DirectionalLight {
+    fn extent(&self) -> Option<Extent> {
+        None
+    }
+
     fn importance(&self, at: &SurfacePoint) -> f64 {
         if at.geometric_normal.dot(self.direction) <= 0.0 {
             return 0.0;

@@ -1,6 +1,6 @@
 //! Light from all around.
 
-use super::{EnvironmentMap, Illumination, Light, strength};
+use super::{EnvironmentMap, Extent, Illumination, Light, strength};
 use crate::{mesh::SurfacePoint, warp};
 use glam::DVec3;
 use std::{f64::consts::PI, sync::Arc};
@@ -46,6 +46,10 @@ impl From<DVec3> for Environment {
 }
 
 impl Light for Environment {
+    fn extent(&self) -> Option<Extent> {
+        None
+    }
+
     fn importance(&self, at: &SurfacePoint) -> f64 {
         match self {
             Environment::Constant(radiance) => PI * strength(*radiance),

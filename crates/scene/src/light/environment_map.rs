@@ -5,7 +5,7 @@
 //! constant over each pixel: what a ray sees is what directions are chosen by.
 
 use super::{
-    Illumination, Light,
+    Extent, Illumination, Light,
     lookout::{Lookout, WINDOW_COLUMNS, WINDOW_ROWS},
     pyramid::{Cell, Pyramid},
     strength,
@@ -131,6 +131,10 @@ fn solid_angle(width: usize, height: usize, row: usize) -> f64 {
 }
 
 impl Light for EnvironmentMap {
+    fn extent(&self) -> Option<Extent> {
+        None
+    }
+
     fn importance(&self, at: &SurfacePoint) -> f64 {
         self.lookout.facing(self.in_map(at.normal)).total() * self.scale
     }

@@ -1,21 +1,30 @@
 //! Lights: what arrives at a point on the surface, by one routine for both phases.
 
 mod area;
+mod choice;
 mod directional;
 mod environment;
 mod environment_map;
+mod extent;
 mod lookout;
 mod point;
 mod pyramid;
+mod region;
+mod tree;
 
 pub use area::AreaLight;
+pub use choice::{LightChoice, Pick};
 pub use directional::DirectionalLight;
 pub use environment::Environment;
 pub use environment_map::{EnvironmentMap, MapError};
+pub use extent::Extent;
 pub use point::{PointLight, Spot};
+pub use region::Region;
+pub use tree::LightTree;
 
 use crate::{mesh::SurfacePoint, rays::Rays};
 use glam::DVec3;
+use tree::FEW;
 
 /// Light that reaches a point if nothing is in the way.
 #[derive(Clone, Copy, Debug)]
@@ -34,6 +43,9 @@ pub trait Light: Send + Sync {
     /// irradiance there, and 0 only where it certainly cannot.
     fn importance(&self, at: &SurfacePoint) -> f64;
 
+    /// Where the light is and what it can send; none if it is infinitely far away.
+    fn extent(&self) -> Option<Extent>;
+
     /// Light arriving at `at`, from the direction that the uniform numbers `xi` choose; none if it arrives from below
     /// the surface.
     fn illuminate(&self, at: &SurfacePoint, xi: [f64; 2]) -> Option<Illumination>;
@@ -42,7 +54,7 @@ pub trait Light: Send + Sync {
 /// What became of one attempt to light a point.
 #[derive(Clone, Copy, Debug)]
 pub enum Lit {
-    /// Direction towards the light, and irradiance over the probability of the light's choice, W/m².
+    /// Direction towards the light, and irradiance over the light's share of the choice, W/m².
     Light { direction: DVec3, irradiance: DVec3 },
     /// Every light is behind the surface, or out of its cone or range.
     FacingAway,
@@ -52,65 +64,54 @@ pub enum Lit {
 
 /// Picks one light by importance, then a direction, and looks whether it is visible (method.md 6.4). Light must come
 /// from above the triangle, whatever normal the cosine is taken with. `shadow_rays` counts the rays traced.
-pub fn light_at(lights: &[Box<dyn Light>], rays: &Rays, at: &SurfacePoint, xi: [f64; 3], shadow_rays: &mut u64) -> Lit {
-    let Some((index, probability)) = pick(lights, at, xi[0]) else {
+pub fn light_at(choice: &LightChoice, rays: &Rays, at: &SurfacePoint, xi: [f64; 3], shadow_rays: &mut u64) -> Lit {
+    let Some(Pick { light, share, .. }) = choice.pick(at, xi[0]) else {
         return Lit::FacingAway;
     };
-    let Some(arriving) = lights[index].illuminate(at, [xi[1], xi[2]]) else {
+    let Some(arriving) = arriving(light, at, [xi[1], xi[2]]) else {
         return Lit::FacingAway;
     };
-    if arriving.direction.dot(at.geometric_normal) <= 0.0 || arriving.irradiance == DVec3::ZERO {
-        return Lit::FacingAway;
-    }
     *shadow_rays += 1;
     if !rays.visible(at.position, arriving.direction, arriving.distance, Some(at.triangle)) {
         return Lit::Shadowed;
     }
-    Lit::Light { direction: arriving.direction, irradiance: arriving.irradiance / probability }
+    Lit::Light { direction: arriving.direction, irradiance: arriving.irradiance / share }
 }
 
-/// Irradiance from all lights, one direction of each: for surfaces that are lit once a path, where the choice of a light
-/// would be noise. `xi` gives two uniform numbers for each light.
+/// Entries of the list that lights of one point are picked from.
+const PICKED_FROM: usize = 128;
+
+/// Irradiance for surfaces that are lit once a path: from all lights, one direction of each, where there are few, since
+/// the choice of one would be noise; else from as many picked ones. `xi` gives two uniform numbers at a time.
 pub fn all_light_at(
-    lights: &[Box<dyn Light>],
+    lights: &LightTree,
     rays: &Rays,
     at: &SurfacePoint,
     mut xi: impl FnMut() -> [f64; 2],
     shadow_rays: &mut u64,
 ) -> DVec3 {
-    let mut irradiance = DVec3::ZERO;
-    for light in lights {
-        let Some(arriving) = light.illuminate(at, xi()) else { continue };
-        if arriving.direction.dot(at.geometric_normal) <= 0.0 {
-            continue;
-        }
+    let mut visible = |light: &dyn Light, xi: [f64; 2]| {
+        let Some(arriving) = arriving(light, at, xi) else { return DVec3::ZERO };
         *shadow_rays += 1;
-        if rays.visible(at.position, arriving.direction, arriving.distance, Some(at.triangle)) {
-            irradiance += arriving.irradiance;
-        }
+        let clear = rays.visible(at.position, arriving.direction, arriving.distance, Some(at.triangle));
+        if clear { arriving.irradiance } else { DVec3::ZERO }
+    };
+    if lights.lights.len() <= FEW {
+        return lights.lights.iter().map(|light| visible(&**light, xi())).sum();
     }
-    irradiance
+    let choice = LightChoice::new(lights, &Region::point(at), PICKED_FROM);
+    let [shift, _] = xi();
+    let one = |k: usize| {
+        let picked = choice.pick(at, (k as f64 + shift) / FEW as f64);
+        picked.map_or(DVec3::ZERO, |p| visible(p.light, xi()) / p.share)
+    };
+    (0..FEW).map(one).sum::<DVec3>() / FEW as f64
 }
 
-/// A light and the probability of having been picked, in proportion to its importance; none if all are zero.
-pub fn pick(lights: &[Box<dyn Light>], at: &SurfacePoint, xi: f64) -> Option<(usize, f64)> {
-    let total: f64 = lights.iter().map(|l| l.importance(at)).sum();
-    if total.is_nan() || total <= 0.0 {
-        return None;
-    }
-    let mut left = xi * total;
-    let mut last = None;
-    for (index, light) in lights.iter().enumerate() {
-        let importance = light.importance(at);
-        if importance > 0.0 {
-            last = Some((index, importance / total));
-            if left < importance {
-                break;
-            }
-            left -= importance;
-        }
-    }
-    last
+/// Light from above the triangle.
+fn arriving(light: &dyn Light, at: &SurfacePoint, xi: [f64; 2]) -> Option<Illumination> {
+    let arriving = light.illuminate(at, xi)?;
+    (arriving.direction.dot(at.geometric_normal) > 0.0 && arriving.irradiance != DVec3::ZERO).then_some(arriving)
 }
 
 /// One number for a colour, positive wherever a channel is.

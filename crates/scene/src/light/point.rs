@@ -1,6 +1,6 @@
 //! Light from one point, to all sides or within a cone.
 
-use super::{Illumination, Light, strength};
+use super::{Extent, Illumination, Light, strength};
 use crate::mesh::SurfacePoint;
 use glam::DVec3;
 
@@ -44,6 +44,12 @@ impl Light for PointLight {
             Some(light) if light.direction.dot(at.geometric_normal) > 0.0 => strength(light.irradiance),
             _ => 0.0,
         }
+    }
+
+    fn extent(&self) -> Option<Extent> {
+        let point = Extent::point(self.position, strength(self.intensity));
+        let cone = self.spot.map_or((point.axis, point.reach), |spot| (spot.axis, spot.cos_outer.acos()));
+        Some(Extent { axis: cone.0, reach: cone.1, range: self.range.unwrap_or(f64::INFINITY), ..point })
     }
 
     fn illuminate(&self, at: &SurfacePoint, _xi: [f64; 2]) -> Option<Illumination> {

@@ -99,6 +99,9 @@ impl Pyramid {
     }
 }
 
+/// The largest number below 1.
+pub(super) const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
+
 /// True if a uniform number chooses the second of two weights; it becomes uniform in the one that is chosen.
 pub(super) fn split(xi: &mut f64, first: f64, second: f64, probability: &mut f64) -> bool {
     let total = first + second;
@@ -107,7 +110,7 @@ pub(super) fn split(xi: &mut f64, first: f64, second: f64, probability: &mut f64
     let chosen = target >= first && second > 0.0;
     let (before, own) = if chosen { (first, second) } else { (0.0, first) };
     *probability *= own / total;
-    *xi = ((target - before) / own).clamp(0.0, 1.0 - f64::EPSILON / 2.0);
+    *xi = ((target - before) / own).clamp(0.0, BELOW_ONE);
     chosen
 }
 

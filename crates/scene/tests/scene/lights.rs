@@ -4,8 +4,8 @@ use crate::meshes::{direction, mesh, random};
 use scene::{
     DVec3, Mesh, Rays, SurfacePoint, Vec3,
     light::{
-        AreaLight, DirectionalLight, Environment, EnvironmentMap, Illumination, Light, Lit, PointLight, Spot,
-        all_light_at, light_at, pick,
+        AreaLight, DirectionalLight, Environment, EnvironmentMap, Illumination, Light, LightChoice, LightTree, Lit,
+        Pick, PointLight, Region, Spot, all_light_at, light_at,
     },
 };
 use std::f64::consts::PI;
@@ -162,6 +162,10 @@ fn area_light_shines_to_its_front_or_to_both_sides() {
     assert!(AreaLight::new(&square(), &[], DVec3::ONE, false).is_none());
 }
 
+fn any_picked(lights: &[Box<dyn Light>], at: &SurfacePoint) -> bool {
+    LightChoice::new(&LightTree::new(lights), &Region::point(at), 1).pick(at, 0.5).is_some()
+}
+
 fn lights() -> Vec<Box<dyn Light>> {
     let spot = Spot { axis: DVec3::NEG_Z, cos_inner: 0.9, cos_outer: 0.5 };
     let pixels = (0..72).map(|k| Vec3::splat([0.0, 0.0, 1.0][k % 3])).collect();
@@ -203,14 +207,17 @@ fn importance_is_positive_wherever_there_is_light() {
 #[test]
 fn lights_are_picked_in_proportion_to_their_importance() {
     let lights = lights();
+    let tree = LightTree::new(&lights);
     for at in [facing(DVec3::ZERO, tilted(10.0)), facing(DVec3::splat(0.3), tilted(170.0))] {
+        let choice = LightChoice::new(&tree, &Region::point(&at), 1);
         let importance: Vec<f64> = lights.iter().map(|l| l.importance(&at)).collect();
         let total: f64 = importance.iter().sum();
         let n = 100_000;
         let mut counts = vec![0u32; lights.len()];
         let mut probabilities = vec![0.0; lights.len()];
         for k in 0..n {
-            let (index, probability) = pick(&lights, &at, (f64::from(k) + 0.5) / f64::from(n)).expect("some light");
+            let Pick { index, share: probability, .. } =
+                choice.pick(&at, (f64::from(k) + 0.5) / f64::from(n)).expect("some light");
             counts[index] += 1;
             probabilities[index] = probability;
         }
@@ -219,10 +226,10 @@ fn lights_are_picked_in_proportion_to_their_importance() {
             assert!(importance[k] == 0.0 || (probabilities[k] - importance[k] / total).abs() < 1e-15);
         }
         assert!((probabilities.iter().sum::<f64>() - 1.0).abs() < 1e-12);
-        assert!(pick(&lights, &at, 1.0 - f64::EPSILON / 2.0).is_some_and(|(k, _)| importance[k] > 0.0));
+        assert!(choice.pick(&at, 1.0 - f64::EPSILON / 2.0).is_some_and(|p| importance[p.index] > 0.0));
     }
     let behind: Vec<Box<dyn Light>> = vec![Box::new(bulb(DVec3::NEG_Z))];
-    assert!(pick(&behind, &facing(DVec3::ZERO, DVec3::Z), 0.5).is_none());
+    assert!(!any_picked(&behind, &facing(DVec3::ZERO, DVec3::Z)));
 }
 
 /// One light at random, divided by its probability, gives on average what all lights give; hidden ones give nothing.
@@ -238,11 +245,13 @@ fn one_light_at_random_has_the_mean_of_all() {
         Box::new(DirectionalLight { direction: tilted(60.0), irradiance: DVec3::splat(2.0) }),
     ];
     let expected = 20.0 / 5.0 * (2.0 / 5f64.sqrt()) + 2.0 * 0.5;
+    let tree = LightTree::new(&lights);
+    let choice = LightChoice::new(&tree, &Region::point(&at), 1);
     let n = 10_000;
     let (mut sum, mut traced, mut shadowed) = (0.0, 0, 0);
     for k in 0..n {
         let xi = [(f64::from(k) + 0.5) / f64::from(n), 0.5, 0.5];
-        match light_at(&lights, &rays, &at, xi, &mut traced) {
+        match light_at(&choice, &rays, &at, xi, &mut traced) {
             Lit::Light { irradiance, .. } => sum += irradiance.x,
             Lit::Shadowed => shadowed += 1,
             Lit::FacingAway => panic!("no light is behind"),
@@ -250,7 +259,7 @@ fn one_light_at_random_has_the_mean_of_all() {
     }
     assert!((sum / f64::from(n) - expected).abs() < 1e-3 * expected, "{}", sum / f64::from(n));
     assert!(traced == u64::from(n as u32) && shadowed > 0);
-    let all = all_light_at(&lights, &rays, &at, || [0.5; 2], &mut traced);
+    let all = all_light_at(&tree, &rays, &at, || [0.5; 2], &mut traced);
     assert_close(all.x, expected);
 }
 
@@ -277,5 +286,5 @@ fn a_light_in_the_surface_gives_nothing_or_something_finite() {
         }
     }
     let lights: Vec<Box<dyn Light>> = vec![Box::new(bulb(DVec3::ZERO))];
-    assert!(pick(&lights, &facing(DVec3::ZERO, DVec3::Z), 0.5).is_none());
+    assert!(!any_picked(&lights, &facing(DVec3::ZERO, DVec3::Z)));
 }

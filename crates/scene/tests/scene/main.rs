@@ -12,6 +12,7 @@ mod import_mutations;
 mod import_quantised;
 mod import_volumes;
 mod lights;
+mod many_lights;
 mod meshes;
 mod rays;
 mod shadows;
