@@ -7,7 +7,7 @@ use bssrdf::{
     simd::{self, Kernel, Level},
 };
 use gather::{
-    estimator::{Cut, Estimator, Exhaustive, Radial, Roulette, Scratch, Sum},
+    estimator::{Calibration, Cut, Estimator, Exhaustive, Radial, Roulette, Scratch, Sum},
     samples::{Exit, LitSamples},
 };
 use glam::DVec3;
@@ -29,11 +29,11 @@ fn each_way<M: LaneModel>(
             all_ways(|| Roulette { model, samples, exit, rates })
         }
         Estimator::Cut { accuracy } => {
-            let accuracy = accuracy as f32;
+            let (accuracy, calibration) = (accuracy as f32, &Calibration::default());
             levels()
                 .map(|level| {
                     let scratch = &mut Scratch::default();
-                    simd::run_as(level, Cut { model, samples, radial, exit, accuracy, scratch })
+                    simd::run_as(level, Cut { model, samples, radial, exit, accuracy, calibration, scratch })
                 })
                 .collect()
         }
@@ -56,7 +56,7 @@ fn sums_have_the_same_bits_for_any_vector_width() {
     for medium in ["skin1", "marble", "espresso"].map(|name| built_in(name).expect("a built-in medium")) {
         let samples = LitSamples::new(&cloud, &cloud.meta().materials[0].halves[0], medium.eta);
         for model in MODELS {
-            let radial = Radial::new(&medium, &*model.of(&medium));
+            let radial = Radial::new(&medium, &*model.of(&medium), 5e-3);
             let sums = match model {
                 Model::DirectionalDipole => each_way::<DirectionalLanes>,
                 Model::BetterDipole => each_way::<BetterLanes>,

@@ -121,17 +121,18 @@ fn media() -> Vec<Medium> {
 }
 
 /// Much of the light crosses the object without being scattered: the shortest mean free path is over a quarter of its
-/// size. What does scatter is the directional dipole's poles at grazing light,
-/// a sample here and there, which no cut and no measurement at a few points foresees: such media may be worse than
-/// [`WORST`], and count in the mean.
+/// size. What does scatter is the directional dipole's poles at grazing light, a sample here and there.
 fn is_tenuous(medium: &Medium, view: &View) -> bool {
     let shortest = medium.channels.iter().map(|c| 1.0 / c.reduced_extinction()).fold(f64::INFINITY, f64::min);
     shortest > 0.25 * view.cloud.meta().materials[0].area_m2.sqrt()
 }
 
-/// No turbid medium is worse than this at lit and at unlit points, as a multiple of the accuracy. What reaches an unlit
-/// point of an opaque medium comes from a handful of samples at the shadow's edge, and 64 points measure that badly.
-const WORST: [f64; 2] = [2.5, 5.0];
+/// No turbid medium is worse than this at lit and at unlit points, as a multiple of the accuracy: with all media 1.2 and
+/// 2.1. The factor that is measured before goes by brightness, so that dim lit points share that of unlit ones.
+const WORST: [f64; 2] = [1.5, 2.5];
+
+/// No tenuous one; with all media 1.2 and 2.8.
+const WORST_TENUOUS: [f64; 2] = [1.5, 3.5];
 
 /// Seen to catch: three times the accuracy asked for.
 #[test]
@@ -143,12 +144,14 @@ fn the_cut_is_as_accurate_as_asked_for() {
         for (half, kind) in ["lit", "unlit"].into_iter().enumerate() {
             let own = || media.iter().zip(errors.iter().map(|e| e[half])).filter(|(_, e)| e.is_finite());
             let mean = (own().map(|(_, e)| e.ln()).sum::<f64>() / own().count() as f64).exp();
-            let turbid = own().filter(|(medium, _)| !is_tenuous(medium, &view));
-            let (worst, most) = turbid.max_by(|a, b| a.1.total_cmp(&b.1)).expect("a medium that is not black");
+            // Relative to what is allowed.
+            let bound = |medium: &Medium| if is_tenuous(medium, &view) { WORST_TENUOUS } else { WORST }[half];
+            let by_bound = own().max_by(|a, b| (a.1 / bound(a.0)).total_cmp(&(b.1 / bound(b.0))));
+            let (worst, most) = by_bound.expect("a medium that is not black");
             let what = format!("{}, {kind}: error {mean:.2} X, worst {most:.2} X ({})", view.name, worst.name);
             println!("{what}");
             // Better than asked is no failure: in opaque media all that contributes at all is summed one by one.
-            if mean.is_nan() || mean > 1.5 || most > WORST[half] {
+            if mean.is_nan() || mean > 1.5 || most > bound(worst) {
                 failures.push(what);
             }
         }

@@ -7,7 +7,7 @@ use bssrdf::{
 };
 use formats::cloud::Cloud;
 use gather::{
-    estimator::{Cut, Estimator, Exhaustive, Radial, Roulette, Scratch, Sum},
+    estimator::{Calibration, Cut, Estimator, Exhaustive, Radial, Roulette, Scratch, Sum},
     samples::{Exit, LitSamples},
 };
 use glam::DVec3;
@@ -28,7 +28,7 @@ impl Scatterer {
 
     /// The tables that the cut decides by.
     pub fn radial(&self) -> &Radial {
-        self.radial.get_or_init(|| Radial::new(&self.medium, &*self.model.of(&self.medium)))
+        self.radial.get_or_init(|| Radial::new(&self.medium, &*self.model.of(&self.medium), f64::INFINITY))
     }
 
     /// The sum over samples, with the widest vectors there are.
@@ -50,7 +50,8 @@ impl Scatterer {
             }
             Estimator::Cut { accuracy } => {
                 let (radial, accuracy, scratch) = (self.radial(), accuracy as f32, &mut Scratch::default());
-                simd::dispatch(Cut { model, samples, radial, exit, accuracy, scratch })
+                let calibration = &Calibration::default();
+                simd::dispatch(Cut { model, samples, radial, exit, accuracy, calibration, scratch })
             }
         }
     }

@@ -2,7 +2,8 @@
 //! before it is rendered, so that the error asked for is the error that comes.
 
 use crate::{
-    estimator::Estimator,
+    estimator::{Calibration, Estimator, Sum},
+    gathering::Body,
     path::{Renderer, Worker},
     samples::Exit,
 };
@@ -16,34 +17,57 @@ use scene::{
 };
 
 /// Points for each medium, and the camera rays that look for them.
-const POINTS: usize = 64;
-const RAYS: u32 = 4096;
+const POINTS: usize = 128;
+const RAYS: u32 = 8192;
 
-/// Sums at each point, with random numbers of their own.
-const REPLICATES: u64 = 4;
+/// The points in groups by the sum that is predicted at them: each group has a factor.
+const GROUPS: usize = 8;
+
+/// Sums at each point in a round, with random numbers of their own.
+const REPLICATES: u64 = 2;
 const ROUNDS: u64 = 3;
 
 /// A point darker than this share of the brightest does not count.
 const DARKEST: f64 = 1e-6;
 
-/// The factor stays within these.
-const RANGE: (f64, f64) = (0.3, 10.0);
+/// The factors stay within these. With the smallest every sample is summed, which costs hardly more than to do so at once.
+const RANGE: (f64, f64) = (0.01, 8.0);
 
-/// Sets the factor of each body by which the accuracy asked of its sums is multiplied. `size` is the image's, pixels.
+/// Sets the factors of each body by which the accuracy asked of its sums is multiplied. `size` is the image's, pixels.
 pub fn calibrate<M: LaneModel>(renderer: &mut Renderer<M>, size: DVec2, seed: u64) {
     let Estimator::Cut { .. } = renderer.estimator else {
         return;
     };
     let stream = Stream::new(seed, Purpose::Calibration);
     let points = points(renderer, size, stream);
-    for material in 0..renderer.bodies.len() {
+    for (material, points) in points.iter().enumerate() {
+        let mut measured = Vec::new();
         for round in 0..ROUNDS {
-            let factor = factor(renderer, material, &points[material], stream, round);
+            if let Some(body) = &renderer.bodies[material] {
+                measured.extend(measure(renderer, body, material, points, stream, round));
+            }
             if let Some(body) = &mut renderer.bodies[material] {
-                body.calibration = (body.calibration * factor).clamp(RANGE.0, RANGE.1);
+                body.calibration = fit(&measured);
             }
         }
     }
+}
+
+/// The factors that would have made the error met the one asked for.
+fn fit(measured: &[Measured]) -> Calibration {
+    let brightest = measured.iter().fold(0.0f64, |most, m| most.max(m.mean));
+    let mut counted: Vec<&Measured> = measured
+        .iter()
+        .filter(|m| m.mean > DARKEST * brightest && m.predicted > 0.0 && m.predicted.is_finite())
+        .collect();
+    counted.sort_by(|a, b| a.predicted.total_cmp(&b.predicted));
+    let known = counted.chunks(counted.len().div_ceil(GROUPS).max(1)).map(|group| {
+        let n = group.len() as f64;
+        let worse = (group.iter().map(|m| m.worse).sum::<f64>() / n).sqrt();
+        let predicted = (group.iter().map(|m| m.predicted.ln()).sum::<f64>() / n).exp();
+        (predicted, (1.0 / worse).clamp(RANGE.0, RANGE.1))
+    });
+    Calibration::new(&known.collect::<Vec<_>>())
 }
 
 /// Points of each material that the camera sees, with the normals there.
@@ -65,38 +89,43 @@ fn points<M: LaneModel>(renderer: &Renderer<M>, size: DVec2, stream: Stream) -> 
     points
 }
 
-/// The wanted error over the one that is met.
-fn factor<M: LaneModel>(
+/// What the sums at one point were in one round.
+struct Measured {
+    /// Length of the mean colour, and what the cut predicts of it.
+    mean: f64,
+    predicted: f64,
+    /// Relative variance of one sum over the square of the accuracy that was asked of it.
+    worse: f64,
+}
+
+/// At each point.
+fn measure<M: LaneModel>(
     renderer: &Renderer<M>,
+    body: &Body<M>,
     material: usize,
     points: &[(DVec3, DVec3)],
     stream: Stream,
     round: u64,
-) -> f64 {
-    let Some(body) = &renderer.bodies[material] else {
-        return 1.0;
-    };
-    let measure = |(index, (position, normal)): (usize, &(DVec3, DVec3))| {
+) -> Vec<Measured> {
+    let at = |(index, (position, normal)): (usize, &(DVec3, DVec3))| {
         let mut worker = Worker::new(renderer.bodies.len());
         let item = stream.item(1 + (material * POINTS + index) as u64);
         let sum = |replicate: u64| {
             let exit = Exit::new(*position, *normal, item.bits(round * REPLICATES + replicate));
-            renderer.sum(body, index % 2, &exit, 1.0, worker.scratch(material)).radiance
+            renderer.sum(body, index % 2, &exit, 1.0, worker.scratch(material))
         };
-        moments((0..REPLICATES).map(sum).collect())
+        let sums: Vec<Sum> = (0..REPLICATES).map(sum).collect();
+        let (mean, variance) = moments(&sums);
+        let predicted = sums[0].predicted;
+        let asked = renderer.accuracy(1.0) * f64::from(body.calibration.factor(predicted));
+        Measured { mean, predicted: f64::from(predicted), worse: variance / (mean * asked).powi(2) }
     };
-    let moments: Vec<(f64, f64)> = points.par_iter().enumerate().map(measure).collect();
-    let brightest = moments.iter().fold(0.0f64, |most, (mean, _)| most.max(*mean));
-    let counted: Vec<f64> =
-        moments.iter().filter(|(mean, _)| *mean > DARKEST * brightest).map(|(mean, v)| v / (mean * mean)).collect();
-    let met = (counted.iter().sum::<f64>() / counted.len().max(1) as f64).sqrt();
-    let wanted = renderer.accuracy(1.0);
-    if counted.is_empty() { 1.0 } else { wanted / met.max(0.1 * wanted) }
+    points.par_iter().enumerate().map(at).collect()
 }
 
 /// Length of the mean colour, and the variance of one.
-fn moments(colors: Vec<DVec3>) -> (f64, f64) {
-    let n = colors.len() as f64;
-    let mean = colors.iter().sum::<DVec3>() / n;
-    (mean.length(), colors.iter().map(|c| c.distance_squared(mean)).sum::<f64>() / (n - 1.0))
+fn moments(sums: &[Sum]) -> (f64, f64) {
+    let n = sums.len() as f64;
+    let mean = sums.iter().map(|s| s.radiance).sum::<DVec3>() / n;
+    (mean.length(), sums.iter().map(|s| s.radiance.distance_squared(mean)).sum::<f64>() / (n - 1.0))
 }

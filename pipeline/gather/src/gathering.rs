@@ -1,7 +1,7 @@
 //! The light that leaves a translucent surface scattered: sums over the halves of a cloud.
 
 use crate::{
-    estimator::{Cut, Estimator, Exhaustive, Radial, Rates, Roulette, Scratch, Sum},
+    estimator::{Calibration, Cut, Estimator, Exhaustive, Radial, Rates, Roulette, Scratch, Sum},
     film::Layer,
     path::{PathLight, Renderer, Walker, Worker},
     samples::{Exit, LitSamples},
@@ -17,7 +17,7 @@ pub struct Body<'a, M> {
     pub unscattered: [f64; 3],
     pub method: Method,
     /// What the accuracy asked of the cut is multiplied by, see [`crate::calibration`].
-    pub calibration: f64,
+    pub calibration: Calibration,
     /// The two independent halves of the cloud.
     pub halves: [LitSamples<'a>; 2],
 }
@@ -97,8 +97,8 @@ impl<M: LaneModel> Renderer<'_, M> {
             Method::Exhaustive => simd::dispatch(Exhaustive { model, samples, exit }),
             Method::Roulette(rates) => simd::dispatch(Roulette { model, samples, exit, rates: *rates }),
             Method::Cut(radial) => {
-                let accuracy = (self.accuracy(share) * body.calibration) as f32;
-                simd::dispatch(Cut { model, samples, radial, exit, accuracy, scratch })
+                let (accuracy, calibration) = (self.accuracy(share) as f32, &body.calibration);
+                simd::dispatch(Cut { model, samples, radial, exit, accuracy, calibration, scratch })
             }
         }
     }

@@ -4,7 +4,7 @@ use crate::{
     Filter, Input, Rendered, Session, Settings, calibration,
     counts::Counts,
     edge::{self, Edge},
-    estimator::{Estimator, Radial},
+    estimator::{Calibration, Estimator, Radial},
     film::{Errors, Pixel, PixelSum},
     gathering::{Body, Method},
     path::{PathIndex, Renderer, Worker},
@@ -207,13 +207,13 @@ fn bodies<'a, M: LaneModel>(input: &Input<'a>, settings: &Settings) -> Vec<Optio
         let method = match settings.estimator {
             Estimator::Exhaustive => Method::Exhaustive,
             Estimator::Roulette(rule) => Method::Roulette(rule.rates(model.transport())),
-            Estimator::Cut { .. } => Method::Cut(Radial::new(medium, &*model)),
+            Estimator::Cut { .. } => Method::Cut(Radial::new(medium, &*model, sampled.area_m2.sqrt())),
         };
         bodies[sampled.index as usize] = Some(Body {
             model: M::new(medium),
             unscattered: settings.model.unscattered_extinction(medium),
             method,
-            calibration: 1.0,
+            calibration: Calibration::default(),
             halves: sampled.halves.map(|half| LitSamples::new(input.cloud, &half, medium.eta)),
             medium: medium.clone(),
         });

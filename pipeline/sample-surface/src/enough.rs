@@ -11,7 +11,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use scene::{Rays, Scene, SurfacePoint};
 use sums::{
-    estimator::{Cut, Radial, Scratch},
+    estimator::{Calibration, Cut, Radial, Scratch},
     samples::{Exit, LitSamples},
 };
 
@@ -63,7 +63,7 @@ pub fn sample_enough(
 /// The relative standard error of the light that leaves the sampled surface.
 pub fn relative_error(scene: &Scene, sampled: &Sampled, settings: &Settings, plan: &Plan, goal: &Goal) -> f64 {
     let model = DirectionalLanes::new(goal.medium);
-    let radial = Radial::new(goal.medium, &*Model::DirectionalDipole.of(goal.medium));
+    let radial = Radial::new(goal.medium, &*Model::DirectionalDipole.of(goal.medium), f64::INFINITY);
     let choice = TriangleChoice::new(&scene.mesh, settings.choice, |m| plan.materials.contains(&m));
     // The points have nothing to do with the samples: another seed.
     let numbers = Numbers::new(Pattern::Stratified, !settings.options.seed, POINTS);
@@ -101,6 +101,7 @@ fn radiance(
     let exit = &Exit::new(point.position, point.normal, 2 * index + half as u64);
     // Less than the goal by so much that it does not show in the difference.
     let accuracy = (0.3 * goal.error) as f32;
-    let cut = Cut { model, samples, radial, exit, accuracy, scratch: &mut Scratch::default() };
+    let (calibration, scratch) = (&Calibration::default(), &mut Scratch::default());
+    let cut = Cut { model, samples, radial, exit, accuracy, calibration, scratch };
     simd::dispatch(cut).radiance / sampled.meta.drawn_by_half()[half].max(1) as f64
 }

@@ -3,10 +3,11 @@
 //! A closed node contributes one of its `n` samples, picked uniformly, `n` times; an open leaf all of its samples. That
 //! is unbiased for every choice of the cut that does not look at what is picked. A node is opened while the standard
 //! deviation that it would add, by the tables of [`Radial`], exceeds a threshold that is the same for all nodes: for a
-//! given sum of variances this takes the fewest nodes. The threshold follows from the wanted error and from the tables'
-//! estimate of the sum itself, and is lowered until the cut is good enough.
+//! given sum of variances this takes the fewest nodes. The threshold follows from the wanted error and from an estimate of
+//! the sum itself, what open leaves contribute and what the tables say of closed nodes, and is lowered until the cut is
+//! good enough.
 
-use super::{Accumulator, Radial, Sum, random_bits};
+use super::{Accumulator, Calibration, Radial, Sum, random_bits};
 use crate::samples::{Exit, LitSamples};
 use bssrdf::{
     lanes::{LANES, Lane, LaneModel},
@@ -44,6 +45,8 @@ pub struct Cut<'a, M> {
     pub exit: &'a Exit,
     /// Wanted standard error of the sum, relative.
     pub accuracy: f32,
+    /// What that is multiplied by.
+    pub calibration: &'a Calibration,
     pub scratch: &'a mut Scratch,
 }
 
@@ -76,34 +79,38 @@ impl<M: LaneModel> Kernel for Cut<'_, M> {
 
     #[inline(always)]
     fn run(mut self) -> Sum {
-        let nodes = self.choose();
         let mut sum = Accumulator::new();
+        let (nodes, predicted) = self.choose(&mut sum);
         self.pick();
-        // Meanwhile the picked samples arrive from memory.
-        let open = self.add_open(&mut sum);
+        let open = (self.scratch.open.len() * TILE) as u64;
         let evaluations = open + self.add_closed(&mut sum);
-        Sum { radiance: sum.total(), evaluations, nodes }
+        Sum { radiance: sum.total(), evaluations, nodes, predicted }
     }
 }
 
 impl<M: LaneModel> Cut<'_, M> {
-    /// Finds the cut; returns how many nodes were looked at.
+    /// Finds the cut, and adds the samples of its open leaves; returns how many nodes were looked at, and the sum that it
+    /// predicts.
     #[inline(always)]
-    fn choose(&mut self) -> u64 {
+    fn choose(&mut self, sum: &mut Accumulator) -> (u64, f32) {
         self.scratch.closed.clear();
         self.scratch.open.clear();
         self.scratch.frontier.push(1);
-        let mut of_open = 0.0;
-        let mut visited = self.sweep(Criterion::Wide, &mut of_open);
-        let rough = self.scratch.closed.iter().fold(of_open, |sum, c| sum + c.most);
-        let mut threshold = START * self.accuracy * self.accuracy.sqrt() * rough;
+        let mut visited = self.sweep(Criterion::Wide);
+        let mut added = self.add_open(0, sum);
+        let rough = self.scratch.closed.iter().fold(of_open(sum), |sum, c| sum + c.most);
+        let guess = self.accuracy * self.calibration.factor(rough);
+        let mut threshold = START * guess * guess.sqrt() * rough;
+        let mut predicted = 0.0;
         for _ in 0..ROUNDS {
-            self.reopen(threshold, &mut of_open);
-            visited += self.sweep(Criterion::Above(threshold), &mut of_open);
-            let start = (of_open, 0.0);
+            self.reopen(threshold);
+            visited += self.sweep(Criterion::Above(threshold));
+            added = self.add_open(added, sum);
+            let start = (of_open(sum), 0.0);
             let (total, variance) =
                 self.scratch.closed.iter().fold(start, |(t, v), c| (t + c.value, v + c.error * c.error));
-            let excess = variance.sqrt() / (self.accuracy * total);
+            predicted = total;
+            let excess = variance.sqrt() / (self.accuracy * self.calibration.factor(total) * total);
             // Not a number if nothing contributes.
             if excess <= GOOD_ENOUGH || excess.is_nan() {
                 break;
@@ -112,17 +119,17 @@ impl<M: LaneModel> Cut<'_, M> {
             let bounded = excess.min(10.0);
             threshold /= bounded * bounded.sqrt();
         }
-        visited
+        (visited, predicted)
     }
 
     /// Moves closed nodes above the threshold back to the frontier, as their children.
     #[inline(always)]
-    fn reopen(&mut self, threshold: f32, of_open: &mut f32) {
+    fn reopen(&mut self, threshold: f32) {
         let first_leaf = first_leaf(self.samples.tiles().len() as u64) as u32;
         let Scratch { frontier, closed, open, .. } = &mut *self.scratch;
         closed.retain(|node| {
             if node.error > threshold {
-                expand(node, first_leaf, frontier, open, of_open);
+                expand(node.id, first_leaf, frontier, open);
                 return false;
             }
             true
@@ -131,7 +138,7 @@ impl<M: LaneModel> Cut<'_, M> {
 
     /// Takes the frontier down until every node is closed or an open leaf.
     #[inline(always)]
-    fn sweep(&mut self, criterion: Criterion, of_open: &mut f32) -> u64 {
+    fn sweep(&mut self, criterion: Criterion) -> u64 {
         let first_leaf = first_leaf(self.samples.tiles().len() as u64) as u32;
         let nodes = self.samples.nodes();
         let Scratch { frontier, closed, open, .. } = &mut *self.scratch;
@@ -151,7 +158,7 @@ impl<M: LaneModel> Cut<'_, M> {
                     Criterion::Above(threshold) => node.error > threshold,
                 };
                 if opens {
-                    expand(&node, first_leaf, frontier, open, of_open);
+                    expand(node.id, first_leaf, frontier, open);
                 } else if nodes.get(ids[i] as usize).is_some_and(|n| n.flux > 0.0) {
                     closed.push(node);
                 }
@@ -198,25 +205,30 @@ impl<M: LaneModel> Cut<'_, M> {
         self.scratch.picks.len() as u64
     }
 
-    /// All samples of open leaves.
+    /// All samples of open leaves but the first, that were added before; returns how many there are.
     #[inline(always)]
-    fn add_open(&self, sum: &mut Accumulator) -> u64 {
-        for tile in &self.scratch.open {
+    fn add_open(&self, added: usize, sum: &mut Accumulator) -> usize {
+        for tile in &self.scratch.open[added..] {
             let (block, flux) = self.samples.block(*tile as usize, self.exit);
             sum.add(&self.model.bare(&block, self.exit.normal), &flux, &[1.0; LANES]);
         }
-        (self.scratch.open.len() * TILE) as u64
+        self.scratch.open.len()
     }
+}
+
+/// What open leaves contribute, the sum over channels. It depends on nothing that was picked.
+#[inline(always)]
+fn of_open(sum: &Accumulator) -> f32 {
+    sum.total().element_sum() as f32
 }
 
 /// Replaces a node by its children, or a leaf by its samples.
 #[inline(always)]
-fn expand(node: &Closed, first_leaf: u32, frontier: &mut Vec<u32>, open: &mut Vec<u32>, of_open: &mut f32) {
-    if node.id >= first_leaf {
-        open.push(node.id - first_leaf);
-        *of_open += node.value;
+fn expand(id: u32, first_leaf: u32, frontier: &mut Vec<u32>, open: &mut Vec<u32>) {
+    if id >= first_leaf {
+        open.push(id - first_leaf);
     } else {
-        frontier.extend([2 * node.id, 2 * node.id + 1]);
+        frontier.extend([2 * id, 2 * id + 1]);
     }
 }
 

@@ -24,6 +24,6 @@ impl<M: LaneModel> Kernel for Exhaustive<'_, M> {
             let (block, flux) = self.samples.block(index, self.exit);
             sum.add(&self.model.bare(&block, self.exit.normal), &flux, &[1.0; LANES]);
         }
-        Sum { radiance: sum.total(), evaluations: self.samples.len() as u64, nodes: 0 }
+        Sum { radiance: sum.total(), evaluations: self.samples.len() as u64, nodes: 0, predicted: 0.0 }
     }
 }

@@ -3,11 +3,13 @@
 //!
 //! Each estimator returns the sum before the division by K.
 
+mod calibration;
 mod cut;
 mod exhaustive;
 mod radial;
 mod roulette;
 
+pub use calibration::Calibration;
 pub use cut::{Cut, Scratch};
 pub use exhaustive::Exhaustive;
 pub use radial::Radial;
@@ -39,6 +41,8 @@ pub struct Sum {
     pub evaluations: u64,
     /// Nodes of the tree that were looked at.
     pub nodes: u64,
+    /// A rough estimate of the radiance, summed over channels, that does not depend on what the cut picks; 0 of others.
+    pub predicted: f32,
 }
 
 /// Running sums of sixteen lanes, in float64 and in a fixed order.

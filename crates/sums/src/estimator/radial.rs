@@ -1,13 +1,15 @@
 //! How fast a BSSRDF varies, by distance: what the cut decides by. Only its efficiency depends on these numbers.
 
 use bssrdf::{Bssrdf, DVec3, Medium, Separation, fresnel};
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 /// Bits of a float32 that are dropped to index the tables: sixteen steps for each doubling of the squared distance.
 const SHIFT: u32 = 19;
 const ENTRIES: usize = 1 << (32 - 1 - SHIFT);
 
-/// Tables over all float32 squared distances, m²; sums over the channels.
+/// Tables over all float32 squared distances, m²; means over the channels, and over how the surface may turn from one point
+/// to the other. That matters in nearly clear media alone: where light passes the other point at a grazing angle, the
+/// directional dipole has a pole.
 #[derive(Clone, Debug)]
 pub struct Radial {
     /// Mean of `S_bare`, 1/(m² sr).
@@ -30,11 +32,12 @@ struct Variation {
 }
 
 impl Radial {
-    pub fn new(medium: &Medium, model: &dyn Bssrdf) -> Radial {
+    /// For a surface of this size, m: nearer than that it is nearly a plane. An infinite one is a plane.
+    pub fn new(medium: &Medium, model: &dyn Bssrdf, size: f64) -> Radial {
         let table = || -> Box<[f32; ENTRIES]> { Box::new([0.0; ENTRIES]) };
         let mut radial = Radial { value: table(), disc: table(), slope: table(), scatter: table() };
         let (nearest, farthest) = reach(medium, model);
-        let known = variations(model, &directions(medium.eta), nearest, farthest);
+        let known = variations(model, &directions(medium.eta), nearest, farthest, size);
         let mut slope = 0.0f64;
         for k in (0..ENTRIES).rev() {
             let distance = f64::from(middle(k)).sqrt();
@@ -121,11 +124,29 @@ fn directions(eta: f64) -> [Vec<DVec3>; 8] {
     })
 }
 
-/// `S_bare` on a plane, by channel, for all directions in order.
-fn on_plane(model: &dyn Bssrdf, channel: usize, distance: f64, directions: &[Vec<DVec3>; 8]) -> Vec<f64> {
+/// The normals where light leaves that the tables are a mean over: that of a plane, and four at right angles to
+/// it, each at 45 degrees to the offset.
+fn normals() -> [DVec3; 5] {
+    let slant = FRAC_1_SQRT_2;
+    let across = |x: f64, y: f64| DVec3::new(slant * x, slant * y, 0.0);
+    [DVec3::Z, across(1.0, 1.0), across(-1.0, 1.0), across(-1.0, -1.0), across(1.0, -1.0)]
+}
+
+/// How much the normals other than a plane's count together where the surface's size is reached; less before, as a
+/// surface is nearly a plane near any point.
+const BENT: f64 = 0.5;
+
+/// `S_bare` by channel, for all directions in order, at a distance across the normal where light enters.
+fn values(
+    model: &dyn Bssrdf,
+    channel: usize,
+    distance: f64,
+    normal_out: DVec3,
+    directions: &[Vec<DVec3>; 8],
+) -> Vec<f64> {
     let value = |refracted: &DVec3| {
         let offset = DVec3::new(distance, 0.0, 0.0);
-        let separation = Separation { offset, normal_in: DVec3::Z, refracted: *refracted, normal_out: DVec3::Z };
+        let separation = Separation { offset, normal_in: DVec3::Z, refracted: *refracted, normal_out };
         model.bare(channel, &separation)
     };
     directions.iter().flatten().map(value).collect()
@@ -134,15 +155,36 @@ fn on_plane(model: &dyn Bssrdf, channel: usize, distance: f64, directions: &[Vec
 /// Ratio of the distances that the model is evaluated at.
 const STEP: f64 = 1.1;
 
-/// The variation at `nearest`, and at every [`STEP`] from there.
-fn variations(model: &dyn Bssrdf, directions: &[Vec<DVec3>; 8], nearest: f64, farthest: f64) -> Vec<Variation> {
+/// The variation at `nearest`, and at every [`STEP`] from there, on a surface of this size, m.
+fn variations(
+    model: &dyn Bssrdf,
+    directions: &[Vec<DVec3>; 8],
+    nearest: f64,
+    farthest: f64,
+    size: f64,
+) -> Vec<Variation> {
     let steps = ((farthest / nearest).ln() / STEP.ln()).ceil().clamp(1.0, 2000.0) as i32;
-    let at = |step: i32| {
-        let distance = nearest * STEP.powi(step);
-        (distance, [0, 1, 2].map(|channel| on_plane(model, channel, distance, directions)))
+    let distance = |step: i32| nearest * STEP.powi(step);
+    let toward = |normal: DVec3| {
+        let at = |step| (distance(step), [0, 1, 2].map(|c| values(model, c, distance(step), normal, directions)));
+        let rows: Vec<(f64, [Vec<f64>; 3])> = (-1..=steps + 1).map(at).collect();
+        rows.windows(3).map(|rows| variation(&rows[0], &rows[1], &rows[2])).collect()
     };
-    let rows: Vec<(f64, [Vec<f64>; 3])> = (-1..=steps + 1).map(at).collect();
-    rows.windows(3).map(|rows| variation(&rows[0], &rows[1], &rows[2])).collect()
+    let by_normal: [Vec<Variation>; 5] = normals().map(toward);
+    let bent = (by_normal.len() - 1) as f64;
+    let mean = |step: i32| {
+        let share = BENT * (distance(step) / size).min(1.0);
+        let weights = std::iter::once(1.0 - share).chain(std::iter::repeat(share / bent));
+        let mut mean = Variation::default();
+        for (weight, known) in weights.zip(&by_normal) {
+            let here = &known[step as usize];
+            mean.value += weight * here.value;
+            mean.slope += weight * here.slope * here.slope;
+            mean.scatter += weight * here.scatter * here.scatter;
+        }
+        Variation { slope: mean.slope.sqrt(), scatter: mean.scatter.sqrt(), ..mean }
+    };
+    (0..=steps).map(mean).collect()
 }
 
 /// Between two known ones by the geometric mean.
@@ -154,7 +196,7 @@ fn interpolate(known: &[Variation], place: f64) -> Variation {
     Variation { value: mean(a.value, b.value), slope: mean(a.slope, b.slope), scatter: mean(a.scatter, b.scatter) }
 }
 
-/// What three rows of values say of the distance of the middle one.
+/// What three rows of values say of the distance of the middle one: means over the channels.
 fn variation(near: &(f64, [Vec<f64>; 3]), here: &(f64, [Vec<f64>; 3]), far: &(f64, [Vec<f64>; 3])) -> Variation {
     let mut sum = Variation::default();
     let (distance, width) = (here.0, far.0 - near.0);
@@ -166,9 +208,9 @@ fn variation(near: &(f64, [Vec<f64>; 3]), here: &(f64, [Vec<f64>; 3]), far: &(f6
         // The next azimuth lies as many directions further on as an azimuth has.
         let turned = here.iter().cycle().skip(here.len() / 8).zip(here);
         let across = turned.take(here.len()).map(|(a, b)| ((a - b) / (PI / 4.0 * distance)).powi(2)).sum::<f64>() / n;
-        sum.value += mean;
-        sum.slope += (0.5 * (radial + across)).sqrt();
-        sum.scatter += (here.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt();
+        sum.value += mean / 3.0;
+        sum.slope += (0.5 * (radial + across)).sqrt() / 3.0;
+        sum.scatter += (here.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt() / 3.0;
     }
     sum
 }

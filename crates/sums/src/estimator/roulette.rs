@@ -120,7 +120,7 @@ impl<M: LaneModel> Roulette<'_, M> {
             }
         }
         self.evaluate(&mut accepted, &mut sum);
-        Sum { radiance: sum.total(), evaluations: accepted.evaluations, nodes: 0 }
+        Sum { radiance: sum.total(), evaluations: accepted.evaluations, nodes: 0, predicted: 0.0 }
     }
 
     /// `p` and 32 bits of ξ for a block, and a bit for each lane that may be accepted.
