@@ -45,3 +45,34 @@ impl Region {
         cosine * cos_spread + (1.0 - cosine * cosine).max(0.0).sqrt() * sin_spread
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::{Purpose, Stream};
+
+    /// No normal of a region has a larger cosine with a direction than is said, and all points lie within.
+    /// Planted: the spread left out; the cone of the mean of the first two normals.
+    #[test]
+    fn regions_hold_their_points_and_normals() {
+        let stream = Stream::new(6, Purpose::Surface);
+        for index in 0..2000 {
+            let item = stream.item(index);
+            let vector = |d: u64| DVec3::from_array([0, 1, 2].map(|k| 2.0 * item.uniform(3 * d + k) - 1.0));
+            let size = 4.0 * item.uniform(100);
+            let point = |k: u64| {
+                let normal = (DVec3::Y + size * vector(2 * k)).normalize();
+                SurfacePoint { position: vector(2 * k + 1), normal, geometric_normal: normal, triangle: 0, material: 0 }
+            };
+            let points: Vec<SurfacePoint> = (0..5).map(point).collect();
+            let region = Region::around(&points).expect("points");
+            let direction = vector(20).normalize();
+            let most = region.most_cosine(region.middle.normal.dot(direction));
+            for p in &points {
+                assert!(p.normal.dot(direction) <= most, "{index}: {} {most}", p.normal.dot(direction));
+                assert!(p.position.distance(region.middle.position) <= region.radius);
+            }
+        }
+        assert!(Region::around(&[]).is_none());
+    }
+}

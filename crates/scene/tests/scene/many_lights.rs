@@ -70,7 +70,7 @@ fn everything() -> Vec<Box<dyn Light>> {
 /// outside in 1700 runs with other numbers. Lights that are not picked at all would have to be faint.
 ///
 /// Seen to catch: a share that lacks the choice between near and distant lights; one that lacks the way down the tree;
-/// a cone, a range or a horizon that cuts lights off; candidates compared by a number that drew them.
+/// a range that cuts lights off; a light that is left out of the tree; candidates compared by the number that drew them.
 #[test]
 fn every_light_is_picked_as_often_as_its_share_says() {
     let lights = everything();
@@ -104,7 +104,7 @@ fn every_light_is_picked_as_often_as_its_share_says() {
 /// What one picked light gives, over its probability, is on average what all give. Of the 64 decisions at 4.5 standard
 /// errors one fails by chance in 2300 runs with other numbers.
 ///
-/// Seen to catch: as above, and lights that are left out of the tree.
+/// Seen to catch: most of the above; a cone that cuts lights off.
 #[test]
 fn one_of_many_lights_has_the_mean_of_all() {
     let lights = everything();
