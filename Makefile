@@ -118,7 +118,7 @@ CURVE  := $(CARGO) run --release --quiet --package pipeline-tests --bin curve --
 curve: build
 	$(CURVE)
 
-## curve-full: the same with larger clouds and more runs (hours)
+## curve-full: the same with larger clouds and more runs (an hour)
 curve-full: build
 	$(CURVE) --full
 

@@ -55,13 +55,12 @@ pub fn crossed(bench: &mut Bench, shot: &Shot, clouds: u64) -> Result<Vec<[Pictu
 /// Errors of clouds of one kind, at the full size of the image: larger pixels would average some of it away.
 pub fn cloud_facts(bench: &mut Bench, case: &Case, kind: CloudKind) -> Result<CloudFacts, Error> {
     let effort = bench.effort;
-    let counts =
-        effort.of(vec![2_000, 8_000], vec![100_000, 400_000, 1_600_000], vec![100_000, 400_000, 1_600_000, 6_400_000]);
+    let counts = effort.of(vec![2_000, 8_000], vec![100_000, 400_000, 1_600_000], vec![100_000, 400_000, 1_600_000]);
     let (mut errors, mut seconds) = (Vec::new(), Vec::new());
     for samples in counts {
         let shot = case.shot(bench, bench.best_on(kind));
         let shot = Shot { samples, ..shot };
-        let pictures = crossed(bench, &shot, effort.of(2, 2, 4))?;
+        let pictures = crossed(bench, &shot, effort.of(2, 2, 2))?;
         let parts = measure::parts(&pictures, case.reference.mean_square());
         errors.push((samples as f64, measure::root(parts.cloud.unwrap_or(0.0))));
         seconds.push((samples as f64, bench.cloud(&shot)?.1.wall));
@@ -73,7 +72,7 @@ pub fn cloud_facts(bench: &mut Bench, case: &Case, kind: CloudKind) -> Result<Cl
 
 /// How the paths' squared error falls with their number, on a small cloud.
 pub fn falls(bench: &mut Bench, case: &Case) -> Result<f64, Error> {
-    let samples = bench.effort.of(1_000, 30_000, 100_000);
+    let samples = bench.effort.of(1_000, 30_000, 30_000);
     let mut points = Vec::new();
     for spp in [1, 4, 16] {
         let shot = Shot { samples, spp, ..case.shot(bench, bench.all()) };
@@ -95,7 +94,7 @@ pub fn behaviour(
     let tree = matches!(configuration.summing, Summing::Cut(_));
     let counts = match tree {
         true => effort.of(vec![1_000, 10_000], vec![100_000, 1_000_000], vec![100_000, 1_000_000, 10_000_000]),
-        false => effort.of(vec![1_000, 4_000], vec![10_000, 60_000], vec![10_000, 100_000, 400_000]),
+        false => effort.of(vec![1_000, 4_000], vec![10_000, 60_000], vec![10_000, 60_000]),
     };
     let pixels = (case.side * case.side) as f64;
     let (mut paths, mut overhead, mut per_path) = (Vec::new(), Vec::new(), Vec::new());

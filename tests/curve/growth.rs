@@ -16,7 +16,7 @@ pub fn growth(bench: &mut Bench, subject: &Subject) -> Result<Findings, Error> {
         vec![10_000, 100_000, 1_000_000, 10_000_000],
         vec![10_000, 100_000, 1_000_000, 10_000_000, 100_000_000],
     );
-    let side = effort.of(32, 256, 512);
+    let side = effort.of(32, 256, 256);
     let shot = Shot { spp: 4, size: [side; 2], ..bench.shot(subject, MARBLE, bench.all()) };
     let (mut rows, mut ours) = (Vec::new(), Vec::new());
     for samples in counts {
@@ -50,7 +50,7 @@ pub fn growth(bench: &mut Bench, subject: &Subject) -> Result<Findings, Error> {
 fn note(bench: &mut Bench, shot: &Shot) -> Result<Vec<(f64, f64)>, Error> {
     let Some(note) = bench.configuration("note") else { return Ok(Vec::new()) };
     let mut points = Vec::new();
-    for samples in bench.effort.of(vec![1_000, 10_000], vec![10_000, 100_000], vec![10_000, 100_000, 1_000_000]) {
+    for samples in bench.effort.of(vec![1_000, 10_000], vec![10_000, 100_000], vec![10_000, 100_000]) {
         let taken = bench.take(&Shot { samples, configuration: note, ..shot.clone() })?;
         points.push((samples as f64, taken.gathering.wall));
     }

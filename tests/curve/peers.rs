@@ -66,12 +66,12 @@ fn scene(bench: &mut Bench, subject: &Subject, medium: Medium) -> Result<Vec<Poi
     let side = effort.of(32, SIDE, SIDE);
     let configuration = bench.configuration(FINE_NAME).unwrap_or_else(|| bench.all());
     let shot = Shot { size: [side; 2], threads: 1, ..bench.shot(subject, medium, configuration) };
-    let quality = Quality { clouds: 4, samples: effort.of(20_000, 4_000_000, 10_000_000), spp: effort.of(4, 64, 128) };
+    let quality = Quality { clouds: 4, samples: effort.of(20_000, 4_000_000, 8_000_000), spp: effort.of(4, 64, 128) };
     let converged = reference(bench, &shot, quality)?;
     let rows = effort.of(vec![configuration], vec![configuration], vec![bench.all(), configuration]);
     let mut points = Vec::new();
-    for samples in effort.of(vec![1_000], vec![300_000, 3_000_000], vec![10_000, 100_000, 1_000_000, 4_000_000]) {
-        for spp in effort.of(vec![1], vec![4, 16], vec![1, 4, 16, 64]) {
+    for samples in effort.of(vec![1_000], vec![1_000_000, 3_000_000], vec![100_000, 1_000_000, 3_000_000]) {
+        for spp in effort.of(vec![1], vec![8, 32], vec![1, 8, 32]) {
             for configuration in &rows {
                 let shot = Shot { samples, spp, ..shot.clone() };
                 points.push(point(bench, &shot, *configuration, &converged)?);
@@ -83,7 +83,7 @@ fn scene(bench: &mut Bench, subject: &Subject, medium: Medium) -> Result<Vec<Poi
 }
 
 fn point(bench: &mut Bench, shot: &Shot, configuration: Configuration, reference: &Reference) -> Result<Point, Error> {
-    let seeds = bench.effort.of(2, 3, 6);
+    let seeds = bench.effort.of(2, 3, 3);
     bench.say(&format!("{} {}: K {}, {} paths", shot.subject.name, shot.medium.name, count(shot.samples), shot.spp));
     let (mut error, mut cpu) = (0.0, 0.0);
     for seed in 1..=seeds {
