@@ -93,7 +93,7 @@ pub fn behaviour(
     let effort = bench.effort;
     let tree = matches!(configuration.summing, Summing::Cut(_));
     let counts = match tree {
-        true => effort.of(vec![1_000, 10_000], vec![100_000, 1_000_000], vec![100_000, 1_000_000, 10_000_000]),
+        true => effort.of(vec![1_000, 10_000], vec![100_000, 1_000_000], vec![100_000, 1_000_000]),
         false => effort.of(vec![1_000, 4_000], vec![10_000, 60_000], vec![10_000, 60_000]),
     };
     let pixels = (case.side * case.side) as f64;

@@ -23,6 +23,6 @@ impl Effort {
 
     /// The longest single run that is started, seconds as predicted.
     pub fn longest_run(self) -> f64 {
-        self.of(2.0, 100.0, 400.0)
+        self.of(2.0, 100.0, 100.0)
     }
 }

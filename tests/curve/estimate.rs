@@ -43,11 +43,11 @@ pub fn estimate(bench: &mut Bench, subjects: &[Subject]) -> Result<Findings, Err
 
 fn one(bench: &mut Bench, subject: &Subject, medium: Medium) -> Result<Found, Error> {
     let effort = bench.effort;
-    let side = effort.of(32, 128, 192);
+    let side = effort.of(32, 128, 128);
     let shot = Shot { size: [side; 2], ..bench.shot(subject, medium, bench.all()) };
-    let quality = Quality { clouds: 4, samples: effort.of(20_000, 2_000_000, 4_000_000), spp: effort.of(4, 16, 32) };
+    let quality = Quality { clouds: 4, samples: effort.of(20_000, 2_000_000, 2_000_000), spp: effort.of(4, 16, 16) };
     let converged = reference(bench, &shot, quality)?;
-    let seeds = effort.of(2, 3, 4);
+    let seeds = effort.of(2, 3, 3);
     let (mut estimated, mut measured, mut bias) = (0.0, 0.0, 0.0);
     for seed in 1..=seeds {
         let samples = effort.of(3_000, 300_000, 1_000_000);

@@ -70,8 +70,8 @@ fn scene(bench: &mut Bench, subject: &Subject, medium: Medium) -> Result<Vec<Poi
     let converged = reference(bench, &shot, quality)?;
     let rows = effort.of(vec![configuration], vec![configuration], vec![bench.all(), configuration]);
     let mut points = Vec::new();
-    for samples in effort.of(vec![1_000], vec![1_000_000, 3_000_000], vec![100_000, 1_000_000, 3_000_000]) {
-        for spp in effort.of(vec![1], vec![8, 32], vec![1, 8, 32]) {
+    for samples in effort.of(vec![1_000], vec![1_000_000, 3_000_000], vec![100_000, 1_000_000]) {
+        for spp in effort.of(vec![1], vec![8, 32], vec![8, 32]) {
             for configuration in &rows {
                 let shot = Shot { samples, spp, ..shot.clone() };
                 points.push(point(bench, &shot, *configuration, &converged)?);

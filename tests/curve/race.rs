@@ -33,9 +33,9 @@ struct Runner {
 pub fn race(bench: &mut Bench, subject: &Subject, medium: Medium) -> Result<Findings, Error> {
     let effort = bench.effort;
     // Smaller pictures do for media without a target.
-    let side = effort.of(64, 512, if is_target(subject, medium) { 512 } else { 256 });
+    let side = effort.of(64, 512, if is_target(subject, medium) { 512 } else { 192 });
     let shot = Shot { size: [side; 2], ..bench.shot(subject, medium, bench.all()) };
-    let quality = Quality { clouds: 4, samples: effort.of(20_000, 4_000_000, 8_000_000), spp: effort.of(4, 8, 16) };
+    let quality = Quality { clouds: 4, samples: effort.of(20_000, 4_000_000, 4_000_000), spp: effort.of(4, 8, 8) };
     let converged = reference(bench, &shot, quality)?;
     bench.forget_clouds();
     let mut case = Case { subject, medium, side, reference: &converged, falls: 1.0 };
@@ -75,7 +75,7 @@ fn is_target(subject: &Subject, medium: Medium) -> bool {
 /// Runs a configuration where the model says that it spends a given time best, as far as its clouds were measured.
 fn check(bench: &mut Bench, case: &Case, runner: &mut Runner, cloud: &CloudFacts) -> Result<(), Error> {
     let most = cloud.errors.iter().map(|(k, _)| *k).fold(0.0, f64::max);
-    for seconds in bench.effort.of(vec![0.5], vec![4.0], vec![4.0, 20.0]) {
+    for seconds in bench.effort.of(vec![0.5], vec![4.0], vec![4.0]) {
         let best = runner.behaviour.best_within(seconds, most);
         if let Some(spending) = best {
             let run = run(bench, case, runner, spending, seconds as u64)?;

@@ -9,8 +9,8 @@ use crate::{
 
 /// All three.
 pub fn scaling(bench: &mut Bench, subject: &Subject) -> Result<Findings, Error> {
-    let samples = bench.effort.of(3_000, 1_000_000, 4_000_000);
-    let side = bench.effort.of(32, 256, 512);
+    let samples = bench.effort.of(3_000, 1_000_000, 1_000_000);
+    let side = bench.effort.of(32, 256, 256);
     let shot = Shot { samples, spp: 4, size: [side; 2], ..bench.shot(subject, MARBLE, bench.all()) };
     let mut findings = Findings::default();
     let setting = format!("{}, marble, K = {}, 4 paths a pixel", subject.name, count(samples));

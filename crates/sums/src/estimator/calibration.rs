@@ -47,7 +47,7 @@ mod tests {
     #[test]
     fn the_factor_goes_from_one_known_one_to_the_next() {
         let calibration = Calibration::new(&[(1e2, 0.25), (1e6, 4.0)]);
-        for (sum, factor) in [(0.0, 0.25), (1.0, 0.25), (1e4, 1.0), (1e6, 4.0), (1e30, 4.0), (f32::INFINITY, 4.0)] {
+        for (sum, factor) in [(0.0, 0.25), (1.0, 0.25), (1e4, 1.0), (1e6, 4.0), (1e30, 4.0), (f32::MAX, 4.0)] {
             // One step of the table is a tenth of a doubling of the factor.
             let close = (calibration.factor(sum) / factor).ln().abs() < 0.1;
             assert!(close, "{sum}: {}", calibration.factor(sum));
