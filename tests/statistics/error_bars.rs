@@ -95,6 +95,18 @@ fn of_the_whole_sum() {
     }
 }
 
+/// In so thin a medium, with so many samples, the noise is that of the body's edge, which pixels know from rays.
+///
+/// Seen to catch: halves taken for independent that take their factors from each other.
+#[test]
+fn of_edges() {
+    let scene = Scene { environment: DVec3::ZERO, ..edge(grey(30.0, 300.0, 0.0, 1.3)) };
+    for (k, paths) in [2, 4, 8].into_iter().enumerate() {
+        let settings = of_paths(Estimator::Exhaustive, paths);
+        assert_error_bars(&format!("edges, {paths} paths"), &scene, &settings, 80_000 + 1000 * k as u64);
+    }
+}
+
 /// One path through the centre of each pixel of a body of index 1 has no noise of its own: what is left is that of cloud
 /// and gather, and known.
 ///

@@ -1,6 +1,7 @@
 //! Lists that the programs print.
 
 use crate::{Failure, scene_medium};
+use bssrdf::Medium;
 use scene::{Camera, Projection, Scene};
 
 /// A table with a header, columns aligned.
@@ -68,12 +69,16 @@ pub fn material_table(scene: &Scene) -> Result<String, Failure> {
             (false, false) => "opaque",
         };
         let three = |v: [f64; 3]| v.map(|x| format!("{x:.4e}")).join(" ");
-        let medium = scene_medium(material)?.map(|m| {
+        let text = |m: Medium| {
             let (absorbs, scatters) = (three(m.map(|c| c.sigma_a)), three(m.map(|c| c.sigma_s)));
             format!("{absorbs}, {scatters}, g {}, eta {} ({})", m.channels[0].asymmetry, m.eta, m.name)
-        });
+        };
+        let medium = match scene_medium(material) {
+            Ok(medium) => medium.map_or_else(|| "-".into(), text),
+            Err(fault) => fault.to_string(),
+        };
         let row = [index.to_string(), material.name.clone(), kind.into(), counts[index].to_string()];
-        let tail = [format!("{:.4e}", areas[index]), medium.unwrap_or_else(|| "-".into())];
+        let tail = [format!("{:.4e}", areas[index]), medium];
         table.0.push(row.into_iter().chain(tail).collect());
     }
     Ok(table.text())

@@ -39,9 +39,13 @@ impl Panorama {
     }
 }
 
+/// Most pixels of a picture.
+const MAX_PIXELS: usize = 1 << 27;
+
 /// `R`, `G` and `B`, or `Y` alone.
 fn from_channels(image: &Image) -> Result<Panorama, String> {
-    let plane = |name: &str| image.channel(name).or_else(|| image.channel("Y"));
+    let grey = ["R", "G", "B", "RY", "BY"].iter().all(|name| image.channel(name).is_none());
+    let plane = |name: &str| image.channel(if grey { "Y" } else { name });
     let (Some(r), Some(g), Some(b)) = (plane("R"), plane("G"), plane("B")) else {
         let names: Vec<&str> = image.channels.iter().map(|c| c.name.as_str()).collect();
         return Err(format!("channels: R, G and B, or Y, are needed; it has {}", names.join(", ")));
@@ -85,6 +89,7 @@ mod tests {
         assert_eq!(grey.pixels[5], [1e5; 3]);
         let message = Panorama::decode(&exr(&["sky.R", "sky.G"])).expect_err("no colour");
         assert!(message.contains("sky.G") && message.contains("R, G and B"), "{message}");
+        assert!(Panorama::decode(&exr(&["R", "Y"])).is_err() && Panorama::decode(&exr(&["Y", "RY", "BY"])).is_err());
     }
 
     #[test]

@@ -74,6 +74,9 @@ impl Item {
     }
 }
 
+/// The largest number below 1.
+pub const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
+
 /// The number in [0, 1) that 64 bits stand for, to 53 of them.
 pub fn unit(bits: u64) -> f64 {
     (bits >> 11) as f64 * (1.0 / (1u64 << 53) as f64)

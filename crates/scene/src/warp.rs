@@ -29,12 +29,6 @@ pub fn halved_square(xi: [f64; 2], shares: [f64; 2]) -> ([f64; 2], bool) {
     }
 }
 
-/// The numbers that [`triangle`] maps to these weights.
-pub fn triangle_inverse(weights: [f64; 3]) -> [f64; 2] {
-    let root = weights[1] + weights[2];
-    [root * root, if root > 0.0 { weights[2] / root } else { 0.0 }]
-}
-
 /// Cosine-distributed unit direction about the unit `normal`; its density per solid angle is
 /// [`cosine_hemisphere_pdf_solid_angle`].
 pub fn cosine_hemisphere(normal: DVec3, xi: [f64; 2]) -> DVec3 {
@@ -53,14 +47,6 @@ pub fn cosine_hemisphere_pdf_solid_angle(cosine: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn triangle_map_is_inverted() {
-        for xi in [[0.25, 0.5], [0.9, 0.1], [1e-8, 0.7]] {
-            let back = triangle_inverse(triangle(xi));
-            assert!((back[0] - xi[0]).abs() < 1e-9 && (back[1] - xi[1]).abs() < 1e-7);
-        }
-    }
 
     /// Planted: shares exchanged; a column cut in the middle.
     #[test]

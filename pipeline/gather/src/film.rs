@@ -62,7 +62,9 @@ impl PixelSum {
             let rest = mean(half) - of_mean;
             (self.squares[half] / n - of_square - rest * rest).max(DVec3::ZERO) / (n - 1.0).max(1.0)
         });
-        [(even - odd) * (even - odd) / 4.0, (within[0] + within[1]) / 4.0]
+        // Each half of an edge takes its factor from the other, so that both err together.
+        let together = edge.map_or(DVec3::ZERO, |e| e.correction(0) * e.correction(1));
+        [(even - odd) * (even - odd) / 4.0 + together, (within[0] + within[1]) / 4.0]
     }
 
     /// Light in each layer.
@@ -75,8 +77,8 @@ impl PixelSum {
         layers
     }
 
-    /// The finished pixel. The halves are independent and have one mean, so a quarter of the square of their difference
-    /// has the variance of their mean as its mean.
+    /// The finished pixel. The halves have one mean, so a quarter of the square of their difference has the variance of
+    /// their mean as its mean if they are independent; at edges their covariance is that of their corrections.
     pub fn pixel(&self, edge: Option<&Edge>, guide: Guide) -> Pixel {
         Pixel { layers: self.layers(edge), variance: self.variances(edge)[0], guide }
     }
@@ -105,7 +107,7 @@ impl Errors {
         if power == 0.0 {
             return Errors::default();
         }
-        Errors { total: (total / power).sqrt(), cloud: ((total - paths).max(0.0) / power).sqrt() }
+        Errors { total: (total.max(0.0) / power).sqrt(), cloud: ((total - paths).max(0.0) / power).sqrt() }
     }
 }
 
@@ -123,7 +125,7 @@ pub struct Guide {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Pixel {
     layers: Layers,
-    /// Variance of the mean.
+    /// Variance of the mean, an estimate: at edges it may be negative.
     variance: DVec3,
     guide: Guide,
 }
@@ -141,7 +143,11 @@ impl Pixel {
     /// All numbers that reach the file, in the order of [`channel_names`].
     fn values(&self) -> [f32; 28] {
         let mut values = [0.0; 28];
-        let vectors = [&[self.beauty()], &self.layers[..], &[self.variance, self.guide.normal, self.guide.position]];
+        let vectors = [
+            &[self.beauty()],
+            &self.layers[..],
+            &[self.variance.max(DVec3::ZERO), self.guide.normal, self.guide.position],
+        ];
         let numbers = vectors.concat().into_iter().flat_map(|v| v.to_array()).chain([self.guide.depth]);
         values.iter_mut().zip(numbers).for_each(|(value, x)| *value = x as f32);
         values
@@ -180,7 +186,7 @@ pub fn image(pixels: &[Pixel], width: usize, height: usize) -> Image {
 pub fn relative_error(pixels: &[Pixel]) -> Option<f64> {
     let variance: f64 = pixels.iter().map(|p| p.variance.element_sum()).sum();
     let power: f64 = pixels.iter().map(|p| p.beauty().length_squared()).sum();
-    (power > 0.0).then(|| (variance / power).sqrt())
+    (power > 0.0).then(|| (variance.max(0.0) / power).sqrt())
 }
 
 /// What [`relative_error`] and the variance of an image cover.

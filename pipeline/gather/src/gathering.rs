@@ -22,6 +22,13 @@ pub struct Body<'a, M> {
     pub halves: [LitSamples<'a>; 2],
 }
 
+impl<M> Body<'_, M> {
+    /// Nothing leaves it scattered.
+    pub fn is_dark(&self) -> bool {
+        self.medium.is_clear() || self.halves.iter().all(|h| h.is_empty())
+    }
+}
+
 /// How the samples of a body are summed.
 pub enum Method {
     Exhaustive,
@@ -44,7 +51,7 @@ impl<M: LaneModel> Renderer<'_, M> {
         light: &mut PathLight,
         worker: &mut Worker,
     ) {
-        if body.medium.is_clear() || body.halves.iter().all(|h| h.is_empty()) {
+        if body.is_dark() {
             return;
         }
         worker.counts.gathers += 1;

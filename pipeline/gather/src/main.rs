@@ -151,7 +151,8 @@ fn check_fit(
 /// Refuses what cannot fit before any work is done: the image thrice. The cloud is mapped.
 fn check_memory(settings: &Settings) -> Result<(), Failure> {
     let pixels = settings.width as u64 * settings.height as u64;
-    let needed = pixels * 3 * 256;
+    // Sums, their copies while a pass is joined, the pixels and the channels, if all pixels are edges.
+    let needed = pixels * 1280;
     match cli::available_memory_bytes() {
         Some(available) if needed > available => Err(Failure::usage(format!(
             "this image needs {:.1} GiB of memory, {:.1} GiB are free; make it smaller",

@@ -292,7 +292,7 @@ impl<M: LaneModel> Renderer<'_, M> {
                 counts.cut_by_depth += u64::from(mirrored.is_none());
             }
             walker.throughput *= transmittance;
-            light.through = transmittance;
+            light.through = if body.is_dark() { 0.0 } else { transmittance };
         }
         let emission = self.scene.materials[point.material as usize].emission;
         light.add(walker, Layer::Emission, emission);
@@ -358,8 +358,9 @@ impl<M: LaneModel> Renderer<'_, M> {
         let point = self.scene.mesh.point(hit.triangle, hit.weights, self.normals);
         let view = -direction;
         match &self.bodies[point.material as usize] {
-            Some(body) if view.dot(point.geometric_normal) > 0.0 => {
-                let normal = facing_normal(point.normal, point.geometric_normal, view, counts);
+            Some(body) if view.dot(point.geometric_normal) > 0.0 && !body.is_dark() => {
+                // What these rays meet is no event of a path.
+                let normal = facing_normal(point.normal, point.geometric_normal, view, &mut Counts::default());
                 fresnel::transmittance(normal.dot(view), body.medium.eta)
             }
             _ => 0.0,

@@ -60,6 +60,7 @@ impl Facts<'_> {
         put("pcsss/scene", Attribute::Text(hex(&self.cloud.geometry)));
         put("pcsss/samplesDrawn", Attribute::Double(self.cloud.samples_drawn as f64));
         put("pcsss/cloudSeed", Attribute::Text(self.cloud.options.seed.to_string()));
+        put("pcsss/metresPerUnit", Attribute::Double(self.cloud.options.metres_per_unit));
         put("pcsss/lightUnit", Attribute::Text(self.cloud.options.light_unit.clone()));
         put("pcsss/seed", Attribute::Text(self.settings.seed.to_string()));
         put("pcsss/bssrdf", text(self.settings.model.name()));

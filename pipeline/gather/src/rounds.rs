@@ -47,12 +47,11 @@ pub fn render_to(target: f64, input: &Input, settings: &Settings, common: &Commo
     session.finish()
 }
 
-/// What remains of an error that was `before` with half the paths and is `now`, if the variance of well-spread paths falls
-/// as their number to the power 3/2; what the cut may add does not fall, because it is asked of the pixel.
+/// What remains of an error that was `before` with half the paths and is `now`, if the variance of paths falls as their
+/// number: that of well-spread ones falls faster. What the cut may add does not fall, because it is asked of the pixel.
 fn lasting(now: f64, before: f64, estimator: Estimator) -> f64 {
-    let fall = 2f64.powf(1.5);
     let added = if let Estimator::Cut { accuracy } = estimator { accuracy } else { 0.0 };
-    ((fall * now * now - before * before) / (fall - 1.0) - added * added).max(0.0).sqrt()
+    (2.0 * now * now - before * before - added * added).max(0.0).sqrt()
 }
 
 /// Paths of the first pass of `--target-error`: two for each half of the cloud.

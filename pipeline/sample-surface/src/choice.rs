@@ -5,7 +5,7 @@ use crate::{
     ribbon::{Link, Part, ribbons},
 };
 use clap::ValueEnum;
-use scene::{Mesh, warp};
+use scene::{Mesh, random::BELOW_ONE, warp};
 
 /// The rule that triangles are chosen by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -118,6 +118,3 @@ impl TriangleChoice {
         (self.chosen(place), weights)
     }
 }
-
-/// The largest number below 1.
-pub const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;

@@ -2,10 +2,10 @@
 //!
 //! The samples are two independent halves, even and odd ones: what they differ by tells the error of both.
 
-use crate::choice::{BELOW_ONE, TriangleChoice};
+use crate::choice::TriangleChoice;
 use clap::ValueEnum;
 use scene::{
-    random::{Item, Purpose, Stream, unit},
+    random::{BELOW_ONE, Item, Purpose, Stream, unit},
     sequence::Sequence,
     warp,
 };

@@ -1,7 +1,7 @@
 //! Radiance HDR bytes to pixels (Ward 1994, "Real pixels", and the reference manual's picture format). The bytes are
 //! not trusted.
 
-use super::Panorama;
+use super::{MAX_PIXELS, Panorama};
 
 /// Widths that the scan lines of run-length coding have.
 const CODED_WIDTHS: std::ops::Range<usize> = 8..32768;
@@ -17,7 +17,11 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Panorama, String> {
     if width.checked_mul(height).is_none_or(|pixels| pixels > limit) {
         return Err(format!("{width} x {height} pixels are more than a file of {} bytes can hold", bytes.len()));
     }
+    if width * height > MAX_PIXELS {
+        return Err(format!("{width} x {height} pixels; scale the picture down to at most {MAX_PIXELS}"));
+    }
     let mut pixels = Vec::new();
+    pixels.try_reserve_exact(width * height).map_err(|e| format!("{width} x {height} pixels: {e}; scale it down"))?;
     let mut line = Vec::new();
     for _ in 0..height {
         reader.scan_line(width, &mut line)?;

@@ -1,4 +1,5 @@
-//! The choice of one light, in time that does not depend on their number.
+//! The choice of one light, in time that does not depend on the number of those that are somewhere; directional lights are
+//! weighed one by one.
 //!
 //! Points that lie together share one list of lights with what each sends to their middle, and of nodes of the tree for
 //! those that send little. A few are drawn from it, and one of them is chosen by what it sends to the point itself. Lights
@@ -6,11 +7,11 @@
 
 use super::{
     Light,
-    pyramid::{BELOW_ONE, split},
+    pyramid::split,
     region::Region,
     tree::{Kind, LightTree},
 };
-use crate::mesh::SurfacePoint;
+use crate::{mesh::SurfacePoint, random::BELOW_ONE};
 use std::collections::BinaryHeap;
 
 /// Lights that are weighed at every point because they are near, at most.

@@ -20,9 +20,11 @@ const MAX_PIXELS: usize = 1 << 27;
 /// Why pixels are no map.
 #[derive(Debug, thiserror::Error)]
 pub enum MapError {
-    #[error("pixel {column}, {row} is {value}; radiance must be finite and not negative")]
+    #[error(
+        "pixel {column}, {row} is {value}; radiance must be finite and not negative: clamp the picture and save it again"
+    )]
     Pixel { column: usize, row: usize, value: Vec3 },
-    #[error("{width} x {height} pixels; an environment has between 1 and {MAX_PIXELS}")]
+    #[error("{width} x {height} pixels; an environment has between 1 and {MAX_PIXELS}: scale the picture down")]
     Size { width: usize, height: usize },
 }
 

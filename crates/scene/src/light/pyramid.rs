@@ -1,6 +1,8 @@
 //! A choice of one cell of a grid in proportion to its weight, which keeps well-spread numbers well spread (Clarberg et
 //! al. 2005, hierarchical sample warping).
 
+use crate::random::BELOW_ONE;
+
 /// Sums of weights over squares of 1, 2, 4, ... cells a side, the finest first. Weights are relative to each other, and
 /// the probability of a cell is made of the stored sums: rounding moves no density.
 #[derive(Debug)]
@@ -98,9 +100,6 @@ impl Pyramid {
         Cell { column: x, row: y, probability, xi }
     }
 }
-
-/// The largest number below 1.
-pub(super) const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
 
 /// True if a uniform number chooses the second of two weights; it becomes uniform in the one that is chosen.
 pub(super) fn split(xi: &mut f64, first: f64, second: f64, probability: &mut f64) -> bool {

@@ -13,7 +13,11 @@ impl Calibration {
     /// From predicted sums, W/(m² sr), in ascending order, and the factor at each. Between them the factor's logarithm is
     /// linear in that of the sum; beyond, the factor is the last. It is 1 if nothing is known.
     pub fn new(known: &[(f64, f64)]) -> Calibration {
-        let middle = |k: usize| f64::from(f32::from_bits((k as u32) << SHIFT | 1 << (SHIFT - 1)));
+        let middle = |k: usize| {
+            let middle = f64::from(f32::from_bits((k as u32) << SHIFT | 1 << (SHIFT - 1)));
+            // The last entries are for what is not finite.
+            if middle.is_nan() { f64::INFINITY } else { middle }
+        };
         Calibration(Box::new(std::array::from_fn(|k| interpolate(known, middle(k)) as f32)))
     }
 
@@ -47,7 +51,7 @@ mod tests {
     #[test]
     fn the_factor_goes_from_one_known_one_to_the_next() {
         let calibration = Calibration::new(&[(1e2, 0.25), (1e6, 4.0)]);
-        for (sum, factor) in [(0.0, 0.25), (1.0, 0.25), (1e4, 1.0), (1e6, 4.0), (1e30, 4.0), (f32::MAX, 4.0)] {
+        for (sum, factor) in [(0.0, 0.25), (1.0, 0.25), (1e4, 1.0), (1e6, 4.0), (1e30, 4.0), (f32::INFINITY, 4.0)] {
             // One step of the table is a tenth of a doubling of the factor.
             let close = (calibration.factor(sum) / factor).ln().abs() < 0.1;
             assert!(close, "{sum}: {}", calibration.factor(sum));
