@@ -1,10 +1,10 @@
-//! A picture for looking at: exposure, a soft shoulder, sRGB, 8 bits.
+//! A picture for looking at: exposure, a filmic curve, sRGB, 8 bits.
 
 use crate::film::Pixel;
 use scene::DVec3;
 
-/// Luminance that is shown as white, before exposure.
-const WHITE: f64 = 4.0;
+/// What the curve's argument is multiplied by: so a middle grey of 0.18 stays 0.18, and the curve meets 1 at about 10.
+const MIDDLE: f64 = 0.7232;
 
 /// The pixels as a PNG file, brighter by `stops` powers of two. Not colour-managed: values are linear sRGB.
 pub fn png(pixels: &[Pixel], width: usize, height: usize, stops: f64) -> Result<Vec<u8>, png::EncodingError> {
@@ -19,11 +19,17 @@ pub fn png(pixels: &[Pixel], width: usize, height: usize, stops: f64) -> Result<
     Ok(file)
 }
 
-/// Reinhard's curve on luminance with a white point (Reinhard, Stark, Shirley, Ferwerda 2002, eq. 4), then sRGB.
+/// Each channel by the curve, then sRGB.
 fn tone(linear: DVec3) -> [u8; 3] {
-    let luminance = linear.dot(DVec3::new(0.2126, 0.7152, 0.0722));
-    let factor = if luminance > 0.0 { (1.0 + luminance / (WHITE * WHITE)) / (1.0 + luminance) } else { 1.0 };
-    (linear * factor).to_array().map(|x| (255.0 * srgb(x.clamp(0.0, 1.0))).round() as u8)
+    linear.to_array().map(|x| (255.0 * srgb(filmic(x))).round() as u8)
+}
+
+/// A toe, a straight part and a shoulder: the curve of the ACES output transform as Krzysztof Narkowicz fitted it ("ACES
+/// Filmic Tone Mapping Curve", 2016), 0 to 1. Applied to each channel, it takes what is far too bright to white.
+fn filmic(linear: f64) -> f64 {
+    // Beyond, the curve is 1; its squares could overflow.
+    let x = (MIDDLE * linear).clamp(0.0, 100.0);
+    (x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14)).min(1.0)
 }
 
 /// The sRGB transfer curve (IEC 61966-2-1).
@@ -36,10 +42,36 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ends_of_the_curve() {
+    fn black_middle_grey_and_white_are_where_they_should_be() {
         assert_eq!(tone(DVec3::ZERO), [0; 3]);
-        assert_eq!(tone(DVec3::splat(WHITE)), [255; 3]);
-        assert_eq!(tone(DVec3::splat(1e9)), [255; 3]);
+        // sRGB shows 0.18 as 118. Seen to catch: a curve without its scale (141).
+        assert_eq!(tone(DVec3::splat(0.18)), [118; 3]);
+        assert_eq!(tone(DVec3::splat(10.1)), [255; 3]);
+        assert_eq!(tone(DVec3::splat(f64::MAX)), [255; 3]);
         assert!((srgb(0.5) - 0.735_36).abs() < 1e-4);
+    }
+
+    #[test]
+    fn the_curve_rises_and_its_shoulder_flattens() {
+        let curve: Vec<f64> = (0..100).map(|k| filmic(0.1 * f64::from(k))).collect();
+        assert!(curve.windows(2).all(|w| w[0] < w[1]), "{curve:?}");
+        // Beyond white paper, 0.9, two stops are worth less than half of one.
+        assert!(filmic(3.6) < 1.4 * filmic(0.9));
+    }
+
+    /// A warm light stays warm as it becomes too bright, and pales on its way to white: none of its channels overtakes
+    /// another, and it never turns to a clipped yellow. Seen to catch: clipping alone.
+    #[test]
+    fn highlights_keep_their_hue_and_pale() {
+        let mut spread_before = 255;
+        for stops in 0..5 {
+            let [r, g, b] = tone(DVec3::new(1.0, 0.5, 0.25) * f64::from(stops).exp2());
+            assert!(r >= g && g >= b, "{stops}: {r} {g} {b}");
+            // Of a hue between red and yellow the middle channel is 0 to 1 of the way from the least to the most.
+            let (way, spread) = (f64::from(g - b) / f64::from((r - b).max(1)), r - b);
+            assert!((0.2..0.85).contains(&way) || spread < 16, "{stops}: {r} {g} {b}");
+            assert!(spread <= spread_before, "{stops}: {r} {g} {b}");
+            spread_before = spread;
+        }
     }
 }
