@@ -23,6 +23,10 @@ pub struct Arguments {
     /// Camera in a file of its own; beats --camera
     #[arg(long, value_name = "FILE.json")]
     pub view: Option<PathBuf>,
+    /// Turn the camera about the vertical axis through the view's target, or through the middle of the translucent
+    /// surfaces, in N equal steps: IMAGE.0000.exr and so on, previews and statistics likewise
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub orbit: Option<u32>,
     /// Width, pixels [default: 512, or by the height]
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub width: Option<u32>,

@@ -7,7 +7,7 @@ use gather::{
     Filter, Settings,
     estimator::{Estimator, Rule},
 };
-use scene::{Camera, Scene, View, light::Environment};
+use scene::{Camera, DVec3, Scene, View, light::Environment};
 use std::path::Path;
 
 /// Default of `--accuracy`.
@@ -36,17 +36,26 @@ pub fn estimator(arguments: &Arguments) -> Result<Estimator, Failure> {
     }
 }
 
-/// A camera, and the size of image that its view file asks for.
+/// A camera, the point that it turns about, and the size of image that its view file asks for.
 pub struct Chosen {
     pub camera: Camera,
+    /// World, m.
+    pub target: DVec3,
     width: Option<u32>,
     height: Option<u32>,
 }
 
-pub fn camera(arguments: &Arguments, scene: &Scene, scene_path: &Path) -> Result<Chosen, Failure> {
+/// The camera of the view file, which says what it looks at, or one of the scene, which turns about the `middle`.
+pub fn camera(
+    arguments: &Arguments,
+    scene: &Scene,
+    scene_path: &Path,
+    middle: impl Fn() -> DVec3,
+) -> Result<Chosen, Failure> {
     if let Some(path) = &arguments.view {
         let (view, camera) = View::read(path)?;
-        return Ok(Chosen { camera, width: view.width, height: view.height });
+        let target = DVec3::from_array(view.target);
+        return Ok(Chosen { camera, target, width: view.width, height: view.height });
     }
     let cameras = &scene.cameras;
     let names = || cameras.iter().map(|c| format!("`{}`", c.name)).collect::<Vec<_>>().join(", ");
@@ -66,7 +75,7 @@ pub fn camera(arguments: &Arguments, scene: &Scene, scene_path: &Path) -> Result
         let wanted = arguments.camera.as_deref().unwrap_or_default();
         Failure::usage(format!("--camera: {} has no `{wanted}`; it has {}", scene_path.display(), names()))
     })?;
-    Ok(Chosen { camera, width: None, height: None })
+    Ok(Chosen { camera, target: middle(), width: None, height: None })
 }
 
 /// Most pixels of an image.

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod choices;
+mod orbit;
 mod report;
 mod rounds;
 
@@ -15,9 +16,10 @@ use formats::{
     cloud::Cloud,
 };
 use gather::{Input, Rendered, Settings, film, media, preview};
+use orbit::Step;
 use report::{Facts, Seconds};
 use rounds::{render_all, render_to};
-use scene::{Rays, Scene, light::Environment};
+use scene::{DVec3, Rays, Scene, light::Environment};
 use std::{
     fmt::Write as _,
     io::Write as _,
@@ -45,59 +47,79 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let cloud = Cloud::open(cloud_path)?;
     let (scene, environment) = arguments.scene_args.import(scene_path, common)?;
     check_fit(&cloud, cloud_path, (&scene, &environment), scene_path, arguments)?;
-    let camera = camera(arguments, &scene, scene_path)?;
-    let settings = settings(arguments, &camera, estimator, environment)?;
-    check_memory(&settings)?;
     let sampled = |material| cloud.meta().materials.iter().any(|m| m.index == material);
+    let chosen = camera(arguments, &scene, scene_path, || scene.origin + middle(bounds(&scene, sampled)))?;
+    let settings = settings(arguments, &chosen, estimator, environment)?;
+    check_memory(&settings)?;
     let health = arguments.scene_args.check_mesh(&scene, sampled, scene_path, common)?;
     let media = media::assign(&arguments.medium, cloud.meta(), &scene.materials)?;
     show_scale(arguments, &scene, &cloud, &media, &settings);
     let output_path = arguments.output.as_deref().ok_or_else(|| Failure::usage("--output: give IMAGE.exr"))?;
-    let mut output = Output::create(output_path)?;
+    let mut steps = orbit::steps(arguments).peekable();
+    let mut first = steps.peek().map(|step| Output::create(&step.file(output_path))).transpose()?;
     let at_once = cloud.bytes() < VERIFIED_FIRST;
     if at_once {
         cloud.verify(cloud_path)?;
     }
     let mut seconds = Seconds(vec![("open", start.elapsed().as_secs_f64())]);
-    let step = Instant::now();
+    let ray_tree = Instant::now();
     let rays = common.in_pool(|| Rays::new(&scene.mesh))?;
-    seconds.0.push(("ray_tree", step.elapsed().as_secs_f64()));
+    seconds.0.push(("ray_tree", ray_tree.elapsed().as_secs_f64()));
 
-    let input = Input { scene: &scene, rays: &rays, cloud: &cloud, media: &media, camera: &camera.camera };
-    let step = Instant::now();
-    let rendered = std::thread::scope(|scope| {
-        let verified = (!at_once).then(|| scope.spawn(|| cloud.verify(cloud_path)));
+    let mut start = start;
+    let mut unverified = !at_once;
+    for step in steps {
+        let path = step.file(output_path);
+        let output = first.take().map_or_else(|| Output::create(&path), Ok)?;
+        let camera = step.turned(&chosen.camera, chosen.target);
+        let input = Input { scene: &scene, rays: &rays, cloud: &cloud, media: &media, camera: &camera };
+        let render = Instant::now();
+        let rendered = rendered(arguments, &input, &settings, unverified.then_some(cloud_path))?;
+        seconds.0.push(("render", render.elapsed().as_secs_f64()));
+        let facts = Facts {
+            settings: &Settings { paths_per_pixel: rendered.paths_per_pixel, ..settings.clone() },
+            cloud: cloud.meta(),
+            media: &media,
+            camera: &camera,
+            turned_degrees: step.degrees(),
+            warnings: &scene.warnings,
+            health,
+        };
+        let write = Instant::now();
+        if rendered.non_finite_count == 0 {
+            write_image(arguments, step, &facts, &rendered, output, &path)?;
+        }
+        seconds.0.push(("write", write.elapsed().as_secs_f64()));
+        seconds.0.push(("total", start.elapsed().as_secs_f64()));
+        if let Some(path) = &arguments.stats {
+            let seconds = (!arguments.no_timings).then_some(&seconds);
+            atomic::write(&step.file(path), &facts.statistics(&rendered, seconds, common.thread_count()))?;
+        }
+        finish(arguments, &facts, &rendered)?;
+        (start, seconds, unverified) = (Instant::now(), Seconds::default(), false);
+    }
+    Ok(())
+}
+
+/// The image; a cloud of which the path is given is checked beside the work.
+fn rendered(
+    arguments: &Arguments,
+    input: &Input,
+    settings: &Settings,
+    unverified: Option<&Path>,
+) -> Result<Rendered, Failure> {
+    let common = &arguments.common;
+    std::thread::scope(|scope| {
+        let verified = unverified.map(|path| (path, scope.spawn(|| input.cloud.verify(path))));
         let rendered = common.in_pool(|| match arguments.target_error {
-            None => render_all(&input, &settings, common),
-            Some(target) => render_to(target, &input, &settings, common),
+            None => render_all(input, settings, common),
+            Some(target) => render_to(target, input, settings, common),
         })?;
-        let panicked = || Err(formats::Error::invalid(cloud_path, "its check came to no end"));
-        verified.map_or(Ok(()), |check| check.join().unwrap_or_else(|_| panicked()))?;
-        Ok::<Rendered, Failure>(rendered)
-    })?;
-    seconds.0.push(("render", step.elapsed().as_secs_f64()));
-
-    let settings = Settings { paths_per_pixel: rendered.paths_per_pixel, ..settings };
-    let facts = Facts {
-        settings: &settings,
-        cloud: cloud.meta(),
-        media: &media,
-        camera: &camera.camera,
-        warnings: &scene.warnings,
-        health,
-    };
-    let step = Instant::now();
-    if rendered.non_finite_count == 0 {
-        write_image(arguments, &facts, &rendered, &mut output, output_path)?;
-        output.commit()?;
-    }
-    seconds.0.push(("write", step.elapsed().as_secs_f64()));
-    seconds.0.push(("total", start.elapsed().as_secs_f64()));
-    if let Some(path) = &arguments.stats {
-        let seconds = (!arguments.no_timings).then_some(&seconds);
-        atomic::write(path, &facts.statistics(&rendered, seconds, common.thread_count()))?;
-    }
-    finish(arguments, &facts, &rendered)
+        if let Some((path, check)) = verified {
+            check.join().unwrap_or_else(|_| Err(formats::Error::invalid(path, "its check came to no end")))?;
+        }
+        Ok(rendered)
+    })
 }
 
 /// Clouds of fewer bytes are checked before the work, in milliseconds; larger ones beside it, before anything is written.
@@ -166,10 +188,11 @@ fn check_memory(settings: &Settings) -> Result<(), Failure> {
 /// Prints each medium's lengths beside its object's.
 fn show_scale(arguments: &Arguments, scene: &Scene, cloud: &Cloud, media: &[Medium], settings: &Settings) {
     for (material, medium) in cloud.meta().materials.iter().zip(media) {
-        let (diagonal, extent) = size(scene, material.index);
+        let (low, high) = bounds(scene, |m| m == material.index);
+        let extent = low.abs().max(high.abs()).max_element();
         let object = media::Object {
             material: &material.name,
-            diagonal,
+            diagonal: (high - low).length(),
             spacing: (material.area_m2 / material.count().max(1) as f64).sqrt(),
             rounding: 0.5 * f64::from(f32::EPSILON) * extent,
         };
@@ -187,21 +210,24 @@ fn show_scale(arguments: &Arguments, scene: &Scene, cloud: &Cloud, media: &[Medi
     }
 }
 
-/// Diagonal of the box around one material's triangles, and their largest coordinate, m.
-fn size(scene: &Scene, material: u16) -> (f64, f64) {
+/// The box around the triangles of the materials that are meant, m from the scene's origin.
+fn bounds(scene: &Scene, meant: impl Fn(u16) -> bool) -> (DVec3, DVec3) {
     let mesh = &scene.mesh;
-    let own = (0..mesh.triangles.len()).filter(|k| mesh.triangles[*k].material == material);
-    let start = (scene::DVec3::INFINITY, scene::DVec3::NEG_INFINITY);
-    let corners = own.flat_map(|k| mesh.corners(k));
-    let (low, high) = corners.fold(start, |(low, high), p| (low.min(p), high.max(p)));
-    ((high - low).length(), low.abs().max(high.abs()).max_element())
+    let own = (0..mesh.triangles.len()).filter(|k| meant(mesh.triangles[*k].material));
+    let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    own.flat_map(|k| mesh.corners(k)).fold(start, |(low, high), p| (low.min(p), high.max(p)))
+}
+
+fn middle((low, high): (DVec3, DVec3)) -> DVec3 {
+    0.5 * (low + high)
 }
 
 fn write_image(
     arguments: &Arguments,
+    step: Step,
     facts: &Facts,
     rendered: &Rendered,
-    output: &mut Output,
+    mut output: Output,
     path: &Path,
 ) -> Result<(), Failure> {
     let settings = facts.settings;
@@ -212,8 +238,9 @@ fn write_image(
     output.write_all(&bytes).map_err(|source| formats::Error::write(path, source))?;
     if let Some(preview_path) = &arguments.preview {
         let png = preview::png(&rendered.pixels, settings.width, settings.height, arguments.exposure)?;
-        atomic::write(preview_path, &png)?;
+        atomic::write(&step.file(preview_path), &png)?;
     }
+    output.commit()?;
     Ok(())
 }
 

@@ -16,6 +16,8 @@ pub struct Facts<'a> {
     pub cloud: &'a Meta,
     pub media: &'a [Medium],
     pub camera: &'a Camera,
+    /// How far an orbit has turned it.
+    pub turned_degrees: f64,
     /// What was left out of the scene or looks wrong.
     pub warnings: &'a [String],
     pub health: Health,
@@ -83,8 +85,12 @@ impl Facts<'_> {
             Some(_) => "--view".to_owned(),
             None => format!("--camera {}", self.camera.name),
         };
+        let turned = match self.turned_degrees {
+            0.0 => String::new(),
+            degrees => format!(" turned by {degrees} degrees"),
+        };
         format!(
-            "{camera} --width {} --height {} --bssrdf {} --estimator {} --spp {} --filter {} --max-depth {} --seed {} \
+            "{camera}{turned} --width {} --height {} --bssrdf {} --estimator {} --spp {} --filter {} --max-depth {} --seed {} \
              --environment {} --normals {}",
             s.width,
             s.height,
