@@ -6,6 +6,7 @@ use glam::{DVec3, Vec3};
 use crate::field::{Shape, smooth_max, smooth_min};
 use crate::mesh::Mesh;
 use crate::scene::{Light, LightKind, Part, Scene, Shot, Surface, View};
+use crate::sculpture::{Stroke, blob, carve, join, limb, mirrored, sculpt};
 use crate::surface_nets::{Grid, polygonise};
 
 const METRES_PER_MM: f64 = 1e-3;
@@ -20,20 +21,6 @@ const HEAD_LEAN: f64 = 0.12;
 /// Height at which the underside is cut flat, as if by its weight.
 const SEAT_MM: f64 = 1.0;
 const NECK_MM: DVec3 = DVec3::new(0.0, 30.0, 0.0);
-
-/// One step of modelling: a shape joined to, or cut out of, what is there already.
-struct Stroke {
-    effect: Effect,
-    shape: Shape,
-    /// Width of the fillet, mm.
-    blend_mm: f64,
-}
-
-#[derive(Clone, Copy)]
-enum Effect {
-    Join,
-    Carve,
-}
 
 pub fn scene() -> Scene {
     let front = shot("Front", [0.002, 0.08, 0.178]);
@@ -112,27 +99,16 @@ fn floor_mesh() -> Mesh {
 
 fn figure_mesh() -> Mesh {
     let grid = Grid { low: DVec3::new(-23.1, -1.1, -20.1), cell: CELL_MM, cells: [72, 88, 68] };
-    let net = polygonise(&field_mm, &grid);
-    let lowest_mm = net.positions.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
-    let seated = |&p: &DVec3| (METRES_PER_MM * (p - lowest_mm * DVec3::Y)).as_vec3();
-    Mesh {
-        positions: net.positions.iter().map(seated).collect(),
-        normals: net.normals.iter().map(|n| n.as_vec3()).collect(),
-        triangles: net.triangles,
-    }
+    polygonise(&field_mm, &grid).seated(METRES_PER_MM)
 }
 
 /// The whole figure, looking along +z; mm.
-fn field_mm(p: DVec3) -> f64 {
+pub fn field_mm(p: DVec3) -> f64 {
     let torso = sculpt(TORSO, mirrored(p));
     let arms = sculpt(ARMS, p);
     let head = sculpt(HEAD, mirrored(into_head(p)));
     let all = smooth_min(smooth_min(torso, arms, 5.0), head, 6.0);
     smooth_max(all, -Shape::Below { height: SEAT_MM }.distance(p), 1.5)
-}
-
-fn mirrored(p: DVec3) -> DVec3 {
-    DVec3::new(p.x.abs(), p.y, p.z)
 }
 
 /// From the figure's axes to those of its head, which leans about the neck.
@@ -141,32 +117,6 @@ fn into_head(p: DVec3) -> DVec3 {
     let sin = HEAD_LEAN * cos;
     let q = p - NECK_MM;
     NECK_MM + DVec3::new(cos * q.x - sin * q.y, sin * q.x + cos * q.y, q.z)
-}
-
-fn sculpt(strokes: &[Stroke], p: DVec3) -> f64 {
-    strokes.iter().fold(f64::INFINITY, |field, stroke| {
-        let shape = stroke.shape.distance(p);
-        match stroke.effect {
-            Effect::Join => smooth_min(field, shape, stroke.blend_mm),
-            Effect::Carve => smooth_max(field, -shape, stroke.blend_mm),
-        }
-    })
-}
-
-const fn join(shape: Shape, blend_mm: f64) -> Stroke {
-    Stroke { effect: Effect::Join, shape, blend_mm }
-}
-
-const fn carve(shape: Shape, blend_mm: f64) -> Stroke {
-    Stroke { effect: Effect::Carve, shape, blend_mm }
-}
-
-const fn blob(center: [f64; 3], radii: [f64; 3]) -> Shape {
-    Shape::Ellipsoid { center: DVec3::from_array(center), radii: DVec3::from_array(radii) }
-}
-
-const fn limb(from: [f64; 3], to: [f64; 3], radii: [f64; 2]) -> Shape {
-    Shape::Limb { ends: [DVec3::from_array(from), DVec3::from_array(to)], radii }
 }
 
 /// Right half, the left is its mirror image.

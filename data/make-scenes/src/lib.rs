@@ -4,22 +4,41 @@
 //! roots, which IEEE 754 rounds alike everywhere, and no order depends on a hash. Hence the files can be committed
 //! and a change of one byte is a change of the scene.
 
+pub mod candle;
+pub mod chess;
 pub mod field;
 pub mod figure;
 pub mod glb;
+pub mod gummies;
 pub mod lattice;
 pub mod mesh;
+pub mod milk;
+pub mod piglet;
 pub mod scene;
+pub mod sculpture;
+pub mod sky;
 pub mod slab;
 pub mod slivers;
 pub mod sphere;
+pub mod studio;
 pub mod surface_nets;
+pub mod turned;
 
 use scene::Scene;
 
 /// Every scene, in the order in which a newcomer should look at them.
 pub fn all() -> Vec<Scene> {
-    vec![slab::scene(), sphere::scene(), slivers::scene(), figure::scene()]
+    vec![
+        slab::scene(),
+        sphere::scene(),
+        slivers::scene(),
+        figure::scene(),
+        gummies::scene(),
+        chess::scene(),
+        piglet::scene(),
+        candle::scene(),
+        milk::scene(),
+    ]
 }
 
 /// Built once for all tests, which only read them.

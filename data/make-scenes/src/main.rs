@@ -1,11 +1,11 @@
-//! `make-scenes DIR` writes `DIR/scenes/<scene>.glb` and `DIR/views/<scene>/<view>.json`.
+//! `make-scenes DIR` writes `DIR/scenes/<scene>.glb`, `DIR/views/<scene>/<view>.json` and `DIR/environments/sky.hdr`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 const USAGE: &str = "usage: make-scenes DIR
-Writes DIR/scenes/<scene>.glb and DIR/views/<scene>/<view>.json, the same bytes on every run.";
+Writes DIR/scenes/<scene>.glb, DIR/views/<scene>/<view>.json and DIR/environments/sky.hdr, the same bytes on every run.";
 
 fn main() -> ExitCode {
     let arguments: Vec<_> = std::env::args_os().skip(1).collect();
@@ -39,7 +39,7 @@ fn run(directory: &Path) -> Result<(), String> {
             write(&path, view.to_json().as_bytes())?;
         }
     }
-    Ok(())
+    write(&directory.join("environments").join("sky.hdr"), &make_scenes::sky::encode())
 }
 
 fn write(path: &PathBuf, bytes: &[u8]) -> Result<(), String> {

@@ -12,6 +12,38 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// A flat rectangle around `center` (m) that faces `u` × `v`; these lead from there to the middles of two sides.
+    pub fn panel(center: DVec3, u: DVec3, v: DVec3) -> Self {
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        Self {
+            positions: corners.map(|(x, y)| (center + x * u + y * v).as_vec3()).to_vec(),
+            normals: Vec::new(),
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+        }
+    }
+
+    /// A panel of this half width and height that faces `target` from `center`, level at its lower side.
+    pub fn lamp(center: DVec3, target: DVec3, half_width: f64, half_height: f64) -> Self {
+        let facing = (target - center).normalize();
+        let side = if facing.y.abs() < 0.999 { DVec3::Y.cross(facing).normalize() } else { DVec3::X };
+        Self::panel(center, half_width * side, half_height * facing.cross(side))
+    }
+
+    /// Both meshes as one.
+    pub fn and(mut self, other: Self) -> Self {
+        let first = self.positions.len() as u32;
+        self.positions.extend(other.positions);
+        self.normals.extend(other.normals);
+        self.triangles.extend(other.triangles.iter().map(|t| t.map(|vertex| vertex + first)));
+        self
+    }
+
+    /// Moved by `offset`, m.
+    pub fn moved(mut self, offset: DVec3) -> Self {
+        self.positions.iter_mut().for_each(|p| *p = (p.as_dvec3() + offset).as_vec3());
+        self
+    }
+
     pub fn corners(&self, triangle: [u32; 3]) -> [DVec3; 3] {
         triangle.map(|vertex| self.positions[vertex as usize].as_dvec3())
     }

@@ -29,6 +29,8 @@ pub enum Surface {
     Translucent { index_of_refraction: f64 },
     /// Lambertian with this reflectance.
     Opaque { base_color: [f64; 3] },
+    /// Shines with this radiance, W/(m² sr), to the side that it faces.
+    Emitting { radiance: [f64; 3] },
 }
 
 impl Surface {
