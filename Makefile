@@ -20,11 +20,34 @@ BIN := target/release
 SAMPLE := $(BIN)/sample-surface
 GATHER := $(BIN)/gather
 MAKE_SCENES := $(BIN)/make-scenes
+CONTACT_SHEET := $(BIN)/contact-sheet
 RUN_NAME := k$(SAMPLES)-s$(SEED)
 
-# The gallery: scene:medium, each from every view of the scene in data/views.
-GALLERY := figure:skin1 figure:wholemilk sphere:skimmilk slivers:ketchup slab:marble
+# The gallery: scene:medium, each from every view of the scene in data/views. A scene of several media has its list,
+# MATERIAL=medium each, in MEDIA_ and the name that stands for them. What a scene stands under is the same in both
+# programs: ENVIRONMENT_<scene>, a picture or R,G,B.
+GALLERY := gummies:fruit chess:stones piglet:skin2 candle:candle_wax milk:wholemilk
+MEDIA_fruit  := Cherry=cherry Orange=orange Lime=lime
+MEDIA_stones := Marble=marble Jade=jade
+ENVIRONMENT_gummies := 0.1,0.11,0.13
+ENVIRONMENT_chess   := 0.05,0.06,0.08
+ENVIRONMENT_piglet  := 0.08,0.09,0.11
+ENVIRONMENT_candle  := 0.006,0.008,0.013
+ENVIRONMENT_milk    := data/environments/sky.hdr
+EXPOSURE_gummies := 0.4
+EXPOSURE_chess   := 0.15
+EXPOSURE_piglet  := 0.25
+EXPOSURE_candle  := 0.7
+EXPOSURE_milk    := 0.4
 
+comma := ,
+space := $(subst ,, )
+media_of       = $(or $(MEDIA_$(1)),$(1))
+# Of a list as above: the media, their files, and the options that say them.
+names_of       = $(foreach m,$(call media_of,$(1)),$(lastword $(subst =, ,$(m))))
+files_of       = $(patsubst %,data/media/%.json,$(call names_of,$(1)))
+medium_options = $(foreach m,$(call media_of,$(1)),--medium $(if $(findstring =,$(m)),$(firstword $(subst =, ,$(m)))=)data/media/$(lastword $(subst =, ,$(m))).json)
+environment_of = $(if $(ENVIRONMENT_$(1)),--environment $(ENVIRONMENT_$(1)))
 pictures_of = $(patsubst data/views/$(1)/%.json,$(OUT)/$(1)/$(RUN_NAME)/$(2)-$(MODEL)/%.exr,$(wildcard data/views/$(1)/*.json))
 PICTURES := $(foreach g,$(GALLERY),$(call pictures_of,$(word 1,$(subst :, ,$(g))),$(word 2,$(subst :, ,$(g)))))
 
@@ -34,15 +57,25 @@ else
 .DEFAULT_GOAL := gallery
 endif
 
-.PHONY: gallery own own-images build test slow accuracy curve curve-full bench lint scenes clouds images help clean clean-images
+# Title=picture, for the contact sheet.
+titled = $(foreach p,$(call pictures_of,$(1),$(2)),"$(1) $(basename $(notdir $(p)))/$(subst $(space),$(comma)$(space),$(call names_of,$(2)))=$(basename $(p)).png")
+
+.PHONY: gallery own own-images contact-sheet build test slow accuracy curve curve-full bench lint scenes clouds images help clean clean-images
 
 ## gallery: build, and render every scene, medium and view of the gallery (what `make` does)
 gallery: build
-	@$(MAKE) --no-print-directory images
-	@echo "The pictures are in $(OUT)/: see $(OUT)/figure/$(RUN_NAME)/*/*.png; beside each lies its OpenEXR image."
+	@$(MAKE) --no-print-directory contact-sheet
+	@echo "All pictures on one sheet: $(OUT)/gallery-$(RUN_NAME).png"
+	@echo "Each by itself: $(OUT)/*/$(RUN_NAME)/*/*.png; beside it lies its OpenEXR image."
 
 ## images: the gallery's images, with programs that are built
 images: $(PICTURES)
+
+## contact-sheet: all pictures of the gallery on one sheet, with their scenes, views and media
+contact-sheet: $(OUT)/gallery-$(RUN_NAME).png
+
+$(OUT)/gallery-$(RUN_NAME).png: $(PICTURES) | $(CONTACT_SHEET)
+	$(CONTACT_SHEET) $(foreach g,$(GALLERY),$(call titled,$(word 1,$(subst :, ,$(g))),$(word 2,$(subst :, ,$(g))))) -o $@
 
 ## clouds: the gallery's clouds
 clouds: $(foreach s,$(sort $(foreach g,$(GALLERY),$(word 1,$(subst :, ,$(g))))),$(OUT)/$(s)/$(RUN_NAME).cloud)
@@ -51,18 +84,22 @@ clouds: $(foreach s,$(sort $(foreach g,$(GALLERY),$(word 1,$(subst :, ,$(g))))),
 build:
 	$(CARGO) build --release --workspace --quiet
 
-# A cloud depends on its scene and on the format's version; programs are order-only, so a rebuild keeps clouds. What
-# else changes a cloud (samples, seed) is in its name.
-$(OUT)/%/$(RUN_NAME).cloud: data/scenes/%.glb crates/formats/cloud-version | $(SAMPLE)
-	@mkdir -p $(@D)
-	$(SUBMIT) $(SAMPLE) --threads $(THREADS) --seed $(SEED) --samples $(SAMPLES) --quiet $< -o $@
+# A cloud depends on its scene, its environment and the format's version; programs are order-only, so a rebuild keeps
+# clouds. What else changes a cloud (samples, seed) is in its name.
+define cloud
+$(OUT)/$(1)/$(RUN_NAME).cloud: data/scenes/$(1).glb $(wildcard $(ENVIRONMENT_$(1))) crates/formats/cloud-version | $(SAMPLE)
+	@mkdir -p $$(@D)
+	$$(SUBMIT) $$(SAMPLE) --threads $$(THREADS) --seed $$(SEED) --samples $$(SAMPLES) $(call environment_of,$(1)) --quiet $$< -o $$@
+endef
+$(foreach s,$(patsubst data/scenes/%.glb,%,$(wildcard data/scenes/*.glb)),$(eval $(call cloud,$(s))))
 
 # $(1) scene, $(2) medium, $(3) view
 define picture
-$(OUT)/$(1)/$(RUN_NAME)/$(2)-$(MODEL)/$(3).exr: $(OUT)/$(1)/$(RUN_NAME).cloud data/media/$(2).json data/views/$(1)/$(3).json | $(GATHER)
+$(OUT)/$(1)/$(RUN_NAME)/$(2)-$(MODEL)/$(3).exr: $(OUT)/$(1)/$(RUN_NAME).cloud $(call files_of,$(2)) data/views/$(1)/$(3).json | $(GATHER)
 	@mkdir -p $$(@D)
-	$$(SUBMIT) $$(GATHER) --threads $$(THREADS) --seed $$(SEED) --spp $$(SPP) --bssrdf $$(MODEL) --medium data/media/$(2).json \
-	  --view data/views/$(1)/$(3).json --preview $$(basename $$@).png --exposure $$(or $$(EXPOSURE_$(1)),0) --quiet $$< data/scenes/$(1).glb -o $$@
+	$$(SUBMIT) $$(GATHER) --threads $$(THREADS) --seed $$(SEED) --spp $$(SPP) --bssrdf $$(MODEL) $(call medium_options,$(2)) \
+	  $(call environment_of,$(1)) --view data/views/$(1)/$(3).json --preview $$(basename $$@).png \
+	  --exposure $$(or $$(EXPOSURE_$(1)),0) --quiet $$< data/scenes/$(1).glb -o $$@
 endef
 $(foreach g,$(GALLERY),$(foreach v,$(notdir $(basename $(wildcard data/views/$(word 1,$(subst :, ,$(g)))/*.json))),\
 $(eval $(call picture,$(word 1,$(subst :, ,$(g))),$(word 2,$(subst :, ,$(g))),$(v)))))
@@ -90,9 +127,9 @@ $(OWN_IMAGES)/camera%.exr: $(OWN).cloud $(wildcard $(MEDIUM)) | $(GATHER)
 	  --preview $(basename $@).png --exposure $(or $(EXPOSURE),0) $< '$(SCENE)' -o $@
 endif
 
-$(SAMPLE) $(GATHER) $(MAKE_SCENES): | build ;
+$(SAMPLE) $(GATHER) $(MAKE_SCENES) $(CONTACT_SHEET): | build ;
 
-## scenes: write data/scenes and data/views again
+## scenes: write data/scenes, data/views and data/environments again
 scenes: build
 	$(MAKE_SCENES) data
 
