@@ -45,7 +45,7 @@ pub enum Light {
 /// A scene with its ray tree.
 pub struct World {
     pub scene: Scene,
-    pub rays: Rays,
+    pub rays: Rays<'static>,
 }
 
 /// Writes the parts and lights to a file and imports it; `environment` is a constant radiance, W/(m² sr).

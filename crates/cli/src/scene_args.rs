@@ -64,14 +64,18 @@ impl SceneArgs {
         Ok((scene, environment))
     }
 
-    /// Examines the surfaces of the translucent materials; warns of faults, or refuses them if `--strict`.
+    /// Examines the surfaces of the translucent materials; warns of what is not used on them, and of faults, or refuses
+    /// those if `--strict`.
     pub fn check_mesh(
         &self,
-        scene: &Scene,
+        scene: &mut Scene,
         translucent: impl Fn(u16) -> bool,
         path: &Path,
         common: &Common,
     ) -> Result<Health, Failure> {
+        let known = scene.warnings.len();
+        scene.warn_of_colors(&translucent);
+        scene.warnings[known..].iter().for_each(|w| common.warn(format_args!("{}: {w}", path.display())));
         let health = scene.health(translucent);
         let line = format!("{}: the translucent surfaces have {health}", path.display());
         match (health.is_good(), self.strict) {

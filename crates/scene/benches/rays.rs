@@ -27,7 +27,7 @@ static SCENE: LazyLock<Scene> = LazyLock::new(|| {
     Scene::import(&path, &options).expect("the scene can be read")
 });
 
-static RAYS: LazyLock<Rays> = LazyLock::new(|| Rays::new(&SCENE.mesh));
+static RAYS: LazyLock<Rays<'static>> = LazyLock::new(|| Rays::new(&SCENE.mesh));
 
 /// Neighbours go nearly the same way.
 static CAMERA: LazyLock<Vec<Ray>> = LazyLock::new(|| {

@@ -3,51 +3,32 @@
 //! Knows neither a medium nor how an image is made. Lengths are metres once imported. Positions are float32 relative
 //! to [`Scene::origin`], the centre of the mesh in float64: an object far from the origin loses no digits.
 
+mod cutouts;
 mod error;
 mod health;
 pub mod import;
 pub mod light;
+mod material;
 mod mesh;
 pub mod random;
 mod rays;
 pub mod sequence;
+pub mod texture;
 mod view;
 mod volume;
 pub mod warp;
 
 pub use error::SceneError;
-pub use glam::{DVec3, Vec3};
+pub use glam::{DVec3, DVec4, Vec3};
 pub use health::Health;
 pub use import::{ImportOptions, LightUnit};
+pub use material::Material;
 pub use mesh::{Mesh, NormalKind, SurfacePoint, Triangle};
 pub use rays::{Hit, Rays};
 pub use view::{Camera, Projection, View};
 pub use volume::{Draft, Scatter, Volume};
 
 use std::collections::BTreeMap;
-
-/// What a surface looks like to light, apart from any medium below it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Material {
-    pub name: String,
-    /// Diffuse albedo of an opaque surface.
-    pub base_color: DVec3,
-    /// Radiance it emits, W/(m² sr).
-    pub emission: DVec3,
-    /// The file marks the surface as the boundary of a volume.
-    pub volume: bool,
-    /// What the file says of that volume, if it does.
-    pub medium: Option<Volume>,
-    /// Emits to both sides.
-    pub double_sided: bool,
-}
-
-impl Material {
-    /// True if any channel emits.
-    pub fn emits(&self) -> bool {
-        self.emission != DVec3::ZERO
-    }
-}
 
 /// An imported scene, checked: indices in range, every number finite, no triangle without area.
 pub struct Scene {
@@ -86,7 +67,7 @@ impl Scene {
         }
     }
 
-    /// Identity of the geometry and of which material covers which triangle, as a BLAKE3 digest.
+    /// Identity of the geometry, holes included, and of which material covers which triangle, as a BLAKE3 digest.
     pub fn geometry_digest(&self) -> [u8; 32] {
         let mut hasher = blake3::Hasher::new();
         let mut put = |bytes: &[u8]| {
@@ -104,6 +85,7 @@ impl Scene {
             put(&(m.name.len() as u64).to_le_bytes());
             put(m.name.as_bytes());
         }
+        self.note_cutouts(&mut put);
         *hasher.finalize().as_bytes()
     }
 }

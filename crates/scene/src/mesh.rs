@@ -1,6 +1,7 @@
 //! Triangles: normals, areas, interpolation.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, DVec4, Vec3};
+use std::ops::{Add, Mul};
 
 /// A triangle by vertex indices, wound counter-clockwise seen from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,6 +18,10 @@ pub struct Mesh {
     /// Unit normals, or zero where the file has none: the triangle's own normal is meant then.
     pub normals: Vec<Vec3>,
     pub triangles: Vec<Triangle>,
+    /// Texture coordinates of the base colour, as its picture has them; none if no vertex has any.
+    pub coordinates: Vec<[f32; 2]>,
+    /// Linear red, green and blue, and alpha; none if no vertex has any.
+    pub colors: Vec<[f32; 4]>,
 }
 
 /// Which normal shading uses.
@@ -61,7 +66,7 @@ impl Mesh {
         let geometric_normal = unit((b - a).cross(c - a));
         let normal = match kind {
             NormalKind::Geometric => geometric_normal,
-            NormalKind::Shading => self.interpolated_normal(index, weights).unwrap_or(geometric_normal),
+            NormalKind::Shading => self.interpolated_normal(triangle, weights).unwrap_or(geometric_normal),
         };
         SurfacePoint {
             position: a * weights[0] + b * weights[1] + c * weights[2],
@@ -73,10 +78,39 @@ impl Mesh {
     }
 
     /// The interpolated vertex normal; none where the vertices have none or cancel.
-    fn interpolated_normal(&self, triangle: usize, weights: [f64; 3]) -> Option<DVec3> {
-        let [a, b, c] = self.triangles[triangle].vertices.map(|i| self.normals[i as usize].as_dvec3());
-        let sum = a * weights[0] + b * weights[1] + c * weights[2];
+    fn interpolated_normal(&self, triangle: u32, weights: [f64; 3]) -> Option<DVec3> {
+        let sum = self.interpolated(triangle, weights, |i| self.normals[i as usize].as_dvec3());
         (sum.length_squared() > 1e-12).then(|| sum.normalize())
+    }
+
+    /// Texture coordinates at the point with barycentric `weights`; 0 where the file has none.
+    pub fn coordinates(&self, triangle: u32, weights: [f64; 3]) -> [f64; 2] {
+        let of =
+            |i: u32| DVec2::from_array(self.coordinates.get(i as usize).copied().unwrap_or_default().map(f64::from));
+        self.interpolated(triangle, weights, of).to_array()
+    }
+
+    /// Colour of the vertices at the point with barycentric `weights`.
+    pub fn color(&self, triangle: u32, weights: [f64; 3]) -> DVec4 {
+        if self.colors.is_empty() {
+            return DVec4::ONE;
+        }
+        self.interpolated(triangle, weights, |i| DVec4::from_array(self.vertex_color(i).map(f64::from)))
+    }
+
+    /// 1 where the file has none.
+    pub(crate) fn vertex_color(&self, vertex: u32) -> [f32; 4] {
+        self.colors.get(vertex as usize).copied().unwrap_or([1.0; 4])
+    }
+
+    fn interpolated<T: Add<Output = T> + Mul<f64, Output = T>>(
+        &self,
+        triangle: u32,
+        weights: [f64; 3],
+        of: impl Fn(u32) -> T,
+    ) -> T {
+        let [a, b, c] = self.triangles[triangle as usize].vertices.map(of);
+        a * weights[0] + b * weights[1] + c * weights[2]
     }
 
     /// Smallest and largest coordinates of the triangles, m.
@@ -110,6 +144,7 @@ mod tests {
             positions: vec![Vec3::ZERO, Vec3::new(3.0, 0.0, 0.0), Vec3::new(0.0, 4.0, 0.0)],
             normals: vec![Vec3::ZERO; 3],
             triangles: vec![Triangle { vertices: [0, 1, 2], material: 0 }],
+            ..Mesh::default()
         };
         assert_eq!(mesh.area(0), 6.0);
         let point = mesh.point(0, [0.2, 0.3, 0.5], NormalKind::Shading);

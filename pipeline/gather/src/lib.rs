@@ -54,7 +54,7 @@ pub struct Settings {
 /// What to render.
 pub struct Input<'a> {
     pub scene: &'a Scene,
-    pub rays: &'a Rays,
+    pub rays: &'a Rays<'a>,
     pub cloud: &'a Cloud,
     /// The medium of each material that the cloud sampled, in the cloud's order.
     pub media: &'a [Medium],

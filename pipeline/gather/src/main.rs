@@ -45,13 +45,13 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (cloud_path, scene_path) = paths(arguments)?;
     let estimator = estimator(arguments)?;
     let cloud = Cloud::open(cloud_path)?;
-    let (scene, environment) = arguments.scene_args.import(scene_path, common)?;
+    let (mut scene, environment) = arguments.scene_args.import(scene_path, common)?;
     check_fit(&cloud, cloud_path, (&scene, &environment), scene_path, arguments)?;
     let sampled = |material| cloud.meta().materials.iter().any(|m| m.index == material);
     let chosen = camera(arguments, &scene, scene_path, || scene.origin + middle(bounds(&scene, sampled)))?;
     let settings = settings(arguments, &chosen, estimator, environment)?;
     check_memory(&settings)?;
-    let health = arguments.scene_args.check_mesh(&scene, sampled, scene_path, common)?;
+    let health = arguments.scene_args.check_mesh(&mut scene, sampled, scene_path, common)?;
     let media = media::assign(&arguments.medium, cloud.meta(), &scene.materials)?;
     show_scale(arguments, &scene, &cloud, &media, &settings);
     let output_path = arguments.output.as_deref().ok_or_else(|| Failure::usage("--output: give IMAGE.exr"))?;
@@ -63,7 +63,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let mut seconds = Seconds(vec![("open", start.elapsed().as_secs_f64())]);
     let ray_tree = Instant::now();
-    let rays = common.in_pool(|| Rays::new(&scene.mesh))?;
+    let rays = common.in_pool(|| Rays::of_scene(&scene, sampled))?;
     seconds.0.push(("ray_tree", ray_tree.elapsed().as_secs_f64()));
 
     let mut start = start;

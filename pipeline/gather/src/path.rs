@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 /// Everything a path needs; shared by all threads.
 pub struct Renderer<'a, M> {
     pub scene: &'a Scene,
-    pub rays: &'a Rays,
+    pub rays: &'a Rays<'a>,
     pub lights: LightTree<'a>,
     pub camera: &'a Camera,
     /// One entry for each material; none for opaque ones.
@@ -183,7 +183,7 @@ impl<M: LaneModel> Renderer<'_, M> {
         }
         match body {
             None => {
-                self.opaque(walker, &point, front, light, &mut worker.counts);
+                self.opaque(walker, &point, &hit, light, &mut worker.counts);
                 false
             }
             Some(_) if front && walker.inside.is_some() => {
@@ -240,14 +240,8 @@ impl<M: LaneModel> Renderer<'_, M> {
     }
 
     /// A Lambertian surface that may emit: the path ends here, lit directly.
-    fn opaque(
-        &self,
-        walker: &mut Walker,
-        point: &SurfacePoint,
-        front: bool,
-        light: &mut PathLight,
-        counts: &mut Counts,
-    ) {
+    fn opaque(&self, walker: &mut Walker, point: &SurfacePoint, hit: &Hit, light: &mut PathLight, counts: &mut Counts) {
+        let front = walker.direction.dot(point.geometric_normal) < 0.0;
         let material = &self.scene.materials[point.material as usize];
         if material.emits() && (front || material.double_sided) {
             light.add(walker, Layer::Emission, material.emission);
@@ -259,7 +253,7 @@ impl<M: LaneModel> Renderer<'_, M> {
         }
         let xi = || [walker.uniform(), walker.uniform()];
         let irradiance = all_light_at(&self.lights, self.rays, &facing, xi, &mut counts.shadow_rays);
-        light.add(walker, Layer::Diffuse, material.base_color / PI * irradiance);
+        light.add(walker, Layer::Diffuse, self.scene.color(hit.triangle, hit.weights).truncate() / PI * irradiance);
     }
 
     /// Reflection with probability R, else refraction, which shows emitted and scattered light and goes on inside. The
@@ -369,7 +363,7 @@ impl<M: LaneModel> Renderer<'_, M> {
 
     /// What the ray meets first.
     pub fn guide(&self, origin: DVec3, direction: DVec3) -> Guide {
-        let Some(hit): Option<Hit> = self.rays.closest(origin, direction, None) else {
+        let Some(hit) = self.rays.closest(origin, direction, None) else {
             return Guide::default();
         };
         let point = self.scene.mesh.point(hit.triangle, hit.weights, self.normals);

@@ -98,14 +98,14 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let goal = medium.as_ref().zip(arguments.target_error);
     let goal = goal.map(|(medium, error)| Goal { medium, error, most: room.min(MAX_SAMPLES - 1) });
     let mut seconds = Seconds::default();
-    let (scene, environment) = arguments.scene_args.import(&arguments.scene, common)?;
+    let (mut scene, environment) = arguments.scene_args.import(&arguments.scene, common)?;
     let settings = settings(arguments, &environment);
     let mut plan = Plan::new(&scene, &settings).map_err(|e| named(&arguments.scene, &e))?;
     if let Some(goal) = &goal {
         plan.depends_on(goal);
     }
     let sampled = |material| plan.materials.contains(&material);
-    let health = arguments.scene_args.check_mesh(&scene, sampled, &arguments.scene, common)?;
+    let health = arguments.scene_args.check_mesh(&mut scene, sampled, &arguments.scene, common)?;
     seconds.add("import", start);
     if plan.unmarked {
         common.say("no material is marked as a volume: all surfaces that do not emit are translucent");
@@ -200,7 +200,7 @@ struct Work<'a> {
 impl Work<'_> {
     fn sample_and_write(&self, mut output: Output, seconds: &mut Seconds) -> Result<(), Failure> {
         let start = Instant::now();
-        let rays = Rays::new(&self.scene.mesh);
+        let rays = Rays::of_scene(self.scene, |m| self.plan.materials.contains(&m));
         seconds.add("ray_tree", start);
         let start = Instant::now();
         let sampled = self.sample(&rays).map_err(|e| named(&self.arguments.scene, &e))?;

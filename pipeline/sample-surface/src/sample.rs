@@ -10,7 +10,7 @@ use scene::{
 /// A surface and its light.
 pub struct LitSurface<'a> {
     pub mesh: &'a Mesh,
-    pub rays: &'a Rays,
+    pub rays: &'a Rays<'a>,
     pub lights: LightTree<'a>,
     pub normals: NormalKind,
 }

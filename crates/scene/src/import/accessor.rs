@@ -1,7 +1,11 @@
 //! Accessors with every range checked before anything is read.
 
-use super::{Fault, container::Document, get, number::Number};
-use glam::Vec3;
+use super::{
+    Fault,
+    container::{Document, part},
+    get,
+    number::Number,
+};
 use gltf::json::{
     Accessor, Index,
     accessor::{ComponentType, Type, sparse::Sparse},
@@ -53,6 +57,32 @@ impl<'a> Column<'a> {
         }
     }
 
+    /// A list of texture coordinates, of float32 or integers.
+    pub fn coordinates(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self, Fault> {
+        let accessor = get(&document.root.accessors, index, &field)?;
+        let number = component(accessor).and_then(|c| Number::of_vector(c, accessor.normalized));
+        match number {
+            Some(number) if accessor.type_ == Checked::Valid(Type::Vec2) => {
+                Column::new(document, accessor, number, 2, field)
+            }
+            _ => Err(format!("{field}: the accessor must hold VEC2 of 32-bit float, or of 8 or 16-bit integers")),
+        }
+    }
+
+    /// A list of colours with or without alpha, of float32 or of normalized integers.
+    pub fn colors(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self, Fault> {
+        let accessor = get(&document.root.accessors, index, &field)?;
+        let number = component(accessor).and_then(|c| Number::of_color(c, accessor.normalized));
+        match (number, &accessor.type_) {
+            (Some(number), Checked::Valid(Type::Vec3)) => Column::new(document, accessor, number, 3, field),
+            (Some(number), Checked::Valid(Type::Vec4)) => Column::new(document, accessor, number, 4, field),
+            _ => Err(format!(
+                "{field}: the accessor must hold VEC3 or VEC4 of 32-bit float, or of normalized 8 or 16-bit unsigned \
+                 integers"
+            )),
+        }
+    }
+
     /// A list of vertex indices.
     pub fn indices(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self, Fault> {
         let accessor = get(&document.root.accessors, index, &field)?;
@@ -96,18 +126,18 @@ impl<'a> Column<'a> {
         self.elements.count
     }
 
-    /// The vectors, every component finite.
-    pub fn read_vectors(&self) -> Result<Vec<Vec3>, Fault> {
+    /// The elements, every number finite; numbers that they do not have are 1.
+    pub fn read_reals<const N: usize>(&self) -> Result<Vec<[f32; N]>, Fault> {
         let (number, size) = (self.number, self.number.size());
-        let vectors = self.read(|bytes| {
-            let at = |c: usize| number.real(&bytes[c * size..(c + 1) * size]);
-            Vec3::new(at(0), at(1), at(2))
+        let list = self.read(|bytes| {
+            let mut numbers = bytes.chunks_exact(size).map(|b| number.real(b));
+            std::array::from_fn(|_| numbers.next().unwrap_or(1.0))
         })?;
-        match vectors.iter().enumerate().find(|(_, v)| !v.is_finite()) {
+        match list.iter().enumerate().find(|(_, v)| !v.iter().all(|x| x.is_finite())) {
             Some((k, v)) => {
-                Err(format!("{}: element {k} is {v}, not finite; repair the mesh and export again", self.field))
+                Err(format!("{}: element {k} is {v:?}, not finite; repair the mesh and export again", self.field))
             }
-            None => Ok(vectors),
+            None => Ok(list),
         }
     }
 
@@ -164,19 +194,13 @@ impl Run<'_> {
     /// The elements, if all lie within view and buffer.
     fn elements<'a>(&self, document: &'a Document) -> Result<Elements<'a>, Fault> {
         let view = get(&document.root.buffer_views, self.view, "accessor.bufferView")?;
-        let buffer = view.buffer.value();
-        let data = document.buffer(buffer).ok_or_else(|| format!("bufferView.buffer {buffer} is out of range"))?;
         let (size, count) = (self.size, self.count);
         let stride = view.byte_stride.map_or(size, |s| s.0);
         if stride < size || stride % self.unit != 0 {
             return Err(format!("byteStride {stride} does not fit elements of {size} bytes"));
         }
-        let (start, length) = (view.byte_offset.map_or(0, |o| o.0), view.byte_length.0);
-        let Some(bytes) = part(data, start, length) else {
-            let have = data.len();
-            return Err(format!("the bufferView (bytes {start} + {length}) exceeds its buffer of {have} bytes"));
-        };
-        let bytes = part(bytes, self.offset, length.saturating_sub(self.offset)).unwrap_or_default();
+        let bytes = document.view(self.view)?;
+        let bytes = part(bytes, self.offset, (bytes.len() as u64).saturating_sub(self.offset)).unwrap_or_default();
         let needed = count.checked_sub(1).map_or(Some(0), |n| n.checked_mul(stride as u64)?.checked_add(size as u64));
         if needed.is_none_or(|n| n > bytes.len() as u64) {
             let have = bytes.len();
@@ -191,16 +215,11 @@ const MAX_ZEROS: u64 = 1 << 22;
 
 /// What a sparse accessor without a buffer view starts from.
 fn zeros(count: u64, size: usize) -> Result<Elements<'static>, Fault> {
-    const ZEROS: [u8; 12] = [0; 12];
+    const ZEROS: [u8; 16] = [0; 16];
     if count > MAX_ZEROS {
         return Err(format!("{count} elements without a bufferView, at most {MAX_ZEROS} are read"));
     }
     Ok(Elements { bytes: &ZEROS, count: count as usize, stride: 0, size })
-}
-
-fn part(data: &[u8], start: u64, length: u64) -> Option<&[u8]> {
-    let end = start.checked_add(length)?;
-    data.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?)
 }
 
 fn component(accessor: &Accessor) -> Option<ComponentType> {

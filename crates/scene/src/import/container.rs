@@ -3,15 +3,22 @@
 use super::{
     Fault,
     files::{self, Files},
+    get,
     nodes::NodeTransform,
 };
 use crate::SceneError;
-use gltf::json;
+use gltf::json::{self, Index, buffer::View};
 use serde::Deserialize;
-use std::{ops::Range, path::Path, rc::Rc};
+use std::{
+    ops::Range,
+    path::{Path, PathBuf},
+    rc::Rc,
+};
 
 /// A parsed file with its buffers; nothing in it is checked yet.
 pub(super) struct Document {
+    /// Of the file itself.
+    pub path: PathBuf,
     pub root: json::Root,
     /// As the file has them: the gltf crate rounds them to float32. One for each node.
     pub transforms: Vec<NodeTransform>,
@@ -53,7 +60,7 @@ impl Document {
         for (k, buffer) in root.buffers.iter().enumerate() {
             buffers.push(locate(k, buffer, chunk.clone(), &mut files)?);
         }
-        Ok(Document { root, transforms: transforms.nodes, bytes, buffers })
+        Ok(Document { path: path.to_owned(), root, transforms: transforms.nodes, bytes, buffers })
     }
 
     /// The bytes of a buffer, as many as its `byteLength` says.
@@ -63,6 +70,24 @@ impl Document {
             Buffer::Loaded(data, length) => data.get(..*length),
         }
     }
+
+    /// The bytes of a buffer view.
+    pub fn view(&self, index: &Index<View>) -> Result<&[u8], Fault> {
+        let view = get(&self.root.buffer_views, index, "bufferView")?;
+        let buffer = view.buffer.value();
+        let data = self.buffer(buffer).ok_or_else(|| format!("bufferView.buffer {buffer} is out of range"))?;
+        let (start, length) = (view.byte_offset.map_or(0, |o| o.0), view.byte_length.0);
+        part(data, start, length).ok_or_else(|| {
+            let have = data.len();
+            format!("the bufferView (bytes {start} + {length}) exceeds its buffer of {have} bytes")
+        })
+    }
+}
+
+/// Some of the bytes, if they are there.
+pub(super) fn part(data: &[u8], start: u64, length: u64) -> Option<&[u8]> {
+    let end = start.checked_add(length)?;
+    data.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?)
 }
 
 fn check_version(asset: &json::Asset) -> Result<(), Fault> {

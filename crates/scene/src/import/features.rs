@@ -14,6 +14,7 @@ const SUPPORTED: &[&str] = &[
     "KHR_materials_volume",
     "KHR_materials_volume_scatter",
     "KHR_mesh_quantization",
+    "KHR_texture_transform",
 ];
 
 /// Extensions that change what is there: without them the picture would be wrong, required or not.

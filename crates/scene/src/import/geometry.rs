@@ -2,6 +2,7 @@
 
 use super::{
     Fault,
+    accessor::Column,
     nodes::Placed,
     primitive::{MeshParts, Part},
 };
@@ -49,6 +50,9 @@ struct Builder {
     positions: Vec<DVec3>,
     normals: Vec<Vec3>,
     triangles: Vec<Triangle>,
+    /// As far as vertices have any.
+    coordinates: Vec<[f32; 2]>,
+    colors: Vec<[f32; 4]>,
 }
 
 impl Builder {
@@ -78,9 +82,11 @@ impl Builder {
 
     /// Adds a primitive on a node.
     fn add(&mut self, part: &Part, placed: &Placed) -> Result<(), Fault> {
-        let positions = part.positions.read_vectors()?;
+        let vectors =
+            |column: &Column| Ok::<_, Fault>(column.read_reals()?.into_iter().map(Vec3::from_array).collect());
+        let positions: Vec<Vec3> = vectors(&part.positions)?;
         let normals = match &part.normals {
-            Some(normals) => normals.read_vectors()?,
+            Some(normals) => vectors(normals)?,
             None => vec![Vec3::ZERO; positions.len()],
         };
         let indices = match &part.indices {
@@ -88,12 +94,27 @@ impl Builder {
             None => (0..positions.len() as u32).collect(),
         };
         let first = self.positions.len() as u32; // the limits keep it in range
+        self.add_looks(part)?;
         let mirrored = self.add_vertices(&positions, &normals, placed)?;
         for mut vertices in part.triangles(&indices) {
             if mirrored {
                 vertices.swap(1, 2);
             }
             self.triangles.push(Triangle { vertices: vertices.map(|i| i + first), material: part.material });
+        }
+        Ok(())
+    }
+
+    /// Adds what colours the vertices that come next.
+    fn add_looks(&mut self, part: &Part) -> Result<(), Fault> {
+        if let Some((column, place)) = &part.coordinates {
+            self.coordinates.resize(self.positions.len(), [0.0; 2]);
+            self.coordinates.extend(column.read_reals()?.into_iter().map(|uv| place.place(uv)));
+        }
+        if let Some(column) = &part.colors {
+            self.colors.resize(self.positions.len(), [1.0; 4]);
+            // glTF: clamped.
+            self.colors.extend(column.read_reals::<4>()?.into_iter().map(|c| c.map(|x| x.clamp(0.0, 1.0))));
         }
         Ok(())
     }
@@ -143,7 +164,8 @@ impl Builder {
         }
         let triangles = std::mem::take(&mut self.triangles);
         let count = triangles.len();
-        let mut mesh = Mesh { positions, normals: self.normals, triangles };
+        let (coordinates, colors) = (self.coordinates, self.colors);
+        let mut mesh = Mesh { positions, normals: self.normals, triangles, coordinates, colors };
         let keep: Vec<bool> = (0..count).map(|k| mesh.area(k) > 0.0).collect();
         let (mut flags, mut degenerate) = (keep.iter(), BTreeMap::new());
         mesh.triangles.retain(|t| {

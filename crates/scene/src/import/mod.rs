@@ -15,6 +15,7 @@ mod materials;
 mod nodes;
 mod number;
 mod primitive;
+mod textures;
 mod volumes;
 
 use crate::{Material, Scene, SceneError, light::Light};
@@ -68,7 +69,7 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Fault> 
     let mut warnings = features::check(root)?;
     let nodes = nodes::place(document, options.metres_per_unit)?;
     features::check_nodes(root, &nodes, &mut warnings)?;
-    let mut materials = materials::read(root, options, &mut warnings)?;
+    let mut materials = materials::read(document, options, &mut warnings)?;
     let Geometry { mesh, origin, degenerate } = geometry(document, &nodes, &mut warnings)?;
     if mesh.triangles.iter().any(|t| usize::from(t.material) == materials.len()) {
         materials.push(materials::default());

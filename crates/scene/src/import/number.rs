@@ -21,6 +21,16 @@ impl Number {
         allowed.then_some(Number { component, normalized })
     }
 
+    /// Of a colour: float32, or an integer of 8 or 16 bits that stands for 0 to 1.
+    pub fn of_color(component: ComponentType, normalized: bool) -> Option<Number> {
+        let allowed = match component {
+            ComponentType::F32 => !normalized,
+            ComponentType::U8 | ComponentType::U16 => normalized,
+            _ => false,
+        };
+        allowed.then_some(Number { component, normalized })
+    }
+
     /// Of a vertex index.
     pub fn of_index(component: ComponentType) -> Option<Number> {
         let allowed = matches!(component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32);

@@ -1,8 +1,8 @@
 //! The primitives of a mesh, checked but not read: a mesh may be placed many times, or be too large to place at all.
 
-use super::{Fault, accessor::Column, container::Document};
+use super::{Fault, accessor::Column, container::Document, textures::Coordinates};
 use gltf::json::{
-    self,
+    self, Accessor, Index,
     mesh::{Mode, Primitive, Semantic},
     validation::Checked,
 };
@@ -20,6 +20,9 @@ pub(super) struct Part<'a> {
     pub positions: Column<'a>,
     pub normals: Option<Column<'a>>,
     pub indices: Option<Column<'a>>,
+    /// Texture coordinates, and where the texture puts them.
+    pub coordinates: Option<(Column<'a>, Coordinates)>,
+    pub colors: Option<Column<'a>>,
     /// The material's index; one past the file's last for primitives without.
     pub material: u16,
     mode: Mode,
@@ -43,7 +46,7 @@ impl<'a> MeshParts<'a> {
                 warnings.push(format!("{name}: points and lines are left out"));
                 continue;
             }
-            let part = Part::new(document, primitive, mode, &name)?;
+            let part = Part::new(document, primitive, mode, &name, warnings)?;
             let triangles = part.triangle_count();
             if triangles == 0 {
                 warnings.push(format!("{name}: makes no triangle"));
@@ -56,16 +59,32 @@ impl<'a> MeshParts<'a> {
     }
 }
 
+/// How a list of vertices is found.
+type ColumnOf<'a> = fn(&'a Document, &Index<Accessor>, String) -> Result<Column<'a>, Fault>;
+
 impl<'a> Part<'a> {
-    fn new(document: &'a Document, primitive: &Primitive, mode: Mode, name: &str) -> Result<Self, Fault> {
+    fn new(
+        document: &'a Document,
+        primitive: &Primitive,
+        mode: Mode,
+        name: &str,
+        warnings: &mut Vec<String>,
+    ) -> Result<Self, Fault> {
         let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic));
         let position = attribute(Semantic::Positions).ok_or_else(|| format!("{name}: no POSITION"))?;
         let positions = Column::vectors(document, position, format!("{name}: POSITION"))?;
-        let normals = attribute(Semantic::Normals);
-        let normals = normals.map(|n| Column::vectors(document, n, format!("{name}: NORMAL"))).transpose()?;
-        if let Some(normals) = normals.as_ref().filter(|n| n.len() != positions.len()) {
-            return Err(format!("{name}: NORMAL has {} elements, POSITION {}", normals.len(), positions.len()));
-        }
+        let beside = |semantic: Semantic, column: ColumnOf<'a>| {
+            let field = format!("{name}: {}", semantic.to_string());
+            let column = attribute(semantic).map(|a| column(document, a, field.clone())).transpose()?;
+            match column {
+                Some(column) if column.len() != positions.len() => {
+                    Err(format!("{field} has {} elements, POSITION {}", column.len(), positions.len()))
+                }
+                column => Ok(column),
+            }
+        };
+        let normals = beside(Semantic::Normals, Column::vectors)?;
+        let colors = beside(Semantic::Colors(0), Column::colors)?;
         let indices = primitive.indices.as_ref();
         let indices = indices.map(|i| Column::indices(document, i, format!("{name}: indices"))).transpose()?;
         let materials = document.root.materials.len();
@@ -74,7 +93,20 @@ impl<'a> Part<'a> {
             return Err(format!("{name}: material index {material} is out of range, there are {materials}"));
         }
         let material = u16::try_from(material).map_err(|_| format!("{name}: too many materials"))?;
-        Ok(Part { positions, normals, indices, material, mode })
+        let texture = document.root.materials.get(usize::from(material));
+        let texture = texture.and_then(|m| m.pbr_metallic_roughness.base_color_texture.as_ref());
+        let place = texture.map(Coordinates::new).transpose().map_err(|e| format!("{name}: {e}"))?;
+        let coordinates = match place {
+            None => None,
+            Some(place) => match beside(Semantic::TexCoords(place.set), Column::coordinates)? {
+                Some(column) => Some((column, place)),
+                None => {
+                    warnings.push(format!("{name}: no TEXCOORD_{}: one texel of its texture is taken", place.set));
+                    None
+                }
+            },
+        };
+        Ok(Part { positions, normals, indices, coordinates, colors, material, mode })
     }
 
     fn triangle_count(&self) -> u64 {

@@ -18,9 +18,9 @@ mod triangle;
 mod vectors;
 mod wide;
 
-use crate::mesh::Mesh;
+use crate::{Scene, cutouts::Cutouts, mesh::Mesh};
 use glam::{DVec3, Vec3};
-use query::{Closest, Occluded};
+use query::{Closest, Occluded, Whole};
 use ray::Ray;
 use tree::Tree;
 use triangle::Leaf;
@@ -49,7 +49,7 @@ pub struct Hit {
 }
 
 /// Ray queries on a mesh.
-pub struct Rays {
+pub struct Rays<'a> {
     tree: Tree,
     /// Scaled triangles.
     leaves: Vec<Leaf>,
@@ -61,11 +61,13 @@ pub struct Rays {
     scale: f64,
     /// m per scaled unit.
     metres: f64,
+    /// Where rays pass through triangles.
+    cutouts: Option<Cutouts<'a>>,
 }
 
-impl Rays {
+impl<'a> Rays<'a> {
     /// Builds the tree. The same mesh gives the same tree for any number of threads.
-    pub fn new(mesh: &Mesh) -> Rays {
+    pub fn new(mesh: &Mesh) -> Self {
         let (low, high) = mesh.bounds();
         let scale = if mesh.triangles.is_empty() { 1.0 } else { scale_of((high - low).length()) };
         let scaled = |i: u32| (mesh.positions[i as usize].as_dvec3() * scale).as_vec3();
@@ -78,7 +80,12 @@ impl Rays {
         }
         let padding = f64::from(build::PADDING) * DIAGONAL;
         let bounds = [low * scale - padding, high * scale + padding];
-        Rays { tree, leaves, places, bounds, scale, metres: 1.0 / scale }
+        Rays { tree, leaves, places, bounds, scale, metres: 1.0 / scale, cutouts: None }
+    }
+
+    /// The same on the mesh of a scene, where rays pass through the holes of opaque surfaces.
+    pub fn of_scene(scene: &'a Scene, translucent: impl Fn(u16) -> bool) -> Self {
+        Rays { cutouts: Cutouts::new(scene, translucent), ..Rays::new(&scene.mesh) }
     }
 
     /// The nearest triangle along the ray, other than the one it starts `from`; of those equally near the first of the
@@ -96,7 +103,10 @@ impl Rays {
         if reach.is_nan() || reach < 0.0 {
             return None;
         }
-        let hit = vectors::run(Closest { rays: self, ray, limit: reach })?;
+        let hit = match &self.cutouts {
+            None => vectors::run(Closest { rays: self, solid: Whole, ray, limit: reach }),
+            Some(cutouts) => vectors::run(Closest { rays: self, solid: cutouts, ray, limit: reach }),
+        }?;
         let distance = (hit.distance.max(0.0) + ray.skipped) * self.metres;
         (distance <= limit).then_some(Hit { distance, ..hit })
     }
@@ -109,7 +119,11 @@ impl Rays {
         };
         let limit = distance * self.scale - ray.skipped - CLEARANCE;
         let nowhere = limit.is_nan() || limit <= 0.0;
-        nowhere || !vectors::run(Occluded { rays: self, ray, limit })
+        nowhere
+            || match &self.cutouts {
+                None => !vectors::run(Occluded { rays: self, solid: Whole, ray, limit }),
+                Some(cutouts) => !vectors::run(Occluded { rays: self, solid: cutouts, ray, limit }),
+            }
     }
 
     /// False for what lies behind the origin, for the triangle that the ray left, and for neighbours that rounding

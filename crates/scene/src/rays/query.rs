@@ -4,50 +4,77 @@ use super::{
     Hit, Rays,
     ray::Ray,
     tree::Visitor,
-    triangle::TriangleTest,
+    triangle::{Crossing, TriangleTest},
     vectors::{Query, Vectors},
 };
+use crate::cutouts::Cutouts;
 use std::ops::ControlFlow;
+
+/// Which points of triangles are there.
+pub(super) trait Solid: Copy {
+    fn is_solid(self, triangle: u32, crossing: &Crossing) -> bool;
+}
+
+/// All of them.
+#[derive(Clone, Copy)]
+pub(super) struct Whole;
+
+impl Solid for Whole {
+    #[inline(always)]
+    fn is_solid(self, _: u32, _: &Crossing) -> bool {
+        true
+    }
+}
+
+impl Solid for &Cutouts<'_> {
+    #[inline(always)]
+    fn is_solid(self, triangle: u32, crossing: &Crossing) -> bool {
+        !self.is_hole(triangle, || crossing.weights())
+    }
+}
 
 /// The nearest hit no farther than `limit`, of those equally near the one with the lowest number. Its distance is that
 /// from the ray's start, in scaled units.
-pub(super) struct Closest<'a> {
-    pub rays: &'a Rays,
+pub(super) struct Closest<'a, S> {
+    pub rays: &'a Rays<'a>,
+    pub solid: S,
     pub ray: &'a Ray,
     pub limit: f64,
 }
 
 /// Whether anything is hit before `limit`.
-pub(super) struct Occluded<'a> {
-    pub rays: &'a Rays,
+pub(super) struct Occluded<'a, S> {
+    pub rays: &'a Rays<'a>,
+    pub solid: S,
     pub ray: &'a Ray,
     pub limit: f64,
 }
 
-impl Query for Closest<'_> {
+impl<S: Solid> Query for Closest<'_, S> {
     type Found = Option<Hit>;
 
     #[inline(always)]
     fn run(self, vectors: impl Vectors) -> Option<Hit> {
-        let Closest { rays, ray, limit } = self;
+        let Closest { rays, solid, ray, limit } = self;
         let test = TriangleTest::new(ray.origin, ray.direction);
-        let mut search = SearchClosest { vectors, rays, ray, test, limit, best: None };
+        let mut search = SearchClosest { vectors, rays, solid, ray, test, limit, best: None };
         let walk = rays.tree.walk(vectors, &ray.for_boxes(), limit as f32, &mut search);
         debug_assert!(walk.is_continue());
         search.best
     }
 }
 
-struct SearchClosest<'a, V> {
+struct SearchClosest<'a, V, S> {
     vectors: V,
-    rays: &'a Rays,
+    rays: &'a Rays<'a>,
+    solid: S,
     ray: &'a Ray,
     test: TriangleTest,
     limit: f64,
     best: Option<Hit>,
 }
 
-impl<V: Vectors> Visitor for SearchClosest<'_, V> {
+impl<V: Vectors, S: Solid> Visitor for SearchClosest<'_, V, S> {
     const ORDERED: bool = true;
 
     #[inline(always)]
@@ -59,7 +86,7 @@ impl<V: Vectors> Visitor for SearchClosest<'_, V> {
             // The order in which leaves are visited must not show.
             let first =
                 distance < self.limit || distance == self.limit && self.best.is_none_or(|b| triangle < b.triangle);
-            if first && self.rays.counts(distance, leaf, lane, self.ray) {
+            if first && self.rays.counts(distance, leaf, lane, self.ray) && self.solid.is_solid(triangle, &crossing) {
                 self.limit = distance;
                 self.best = Some(Hit { distance, triangle, weights: crossing.weights() });
             }
@@ -68,35 +95,40 @@ impl<V: Vectors> Visitor for SearchClosest<'_, V> {
     }
 }
 
-impl Query for Occluded<'_> {
+impl<S: Solid> Query for Occluded<'_, S> {
     type Found = bool;
 
     #[inline(always)]
     fn run(self, vectors: impl Vectors) -> bool {
-        let Occluded { rays, ray, limit } = self;
+        let Occluded { rays, solid, ray, limit } = self;
         let test = TriangleTest::new(ray.origin, ray.direction);
-        let mut search = SearchAny { vectors, rays, ray, test, limit };
+        let mut search = SearchAny { vectors, rays, solid, ray, test, limit };
         rays.tree.walk(vectors, &ray.for_boxes(), limit as f32, &mut search).is_break()
     }
 }
 
-struct SearchAny<'a, V> {
+struct SearchAny<'a, V, S> {
     vectors: V,
-    rays: &'a Rays,
+    rays: &'a Rays<'a>,
+    solid: S,
     ray: &'a Ray,
     test: TriangleTest,
     limit: f64,
 }
 
-impl<V: Vectors> Visitor for SearchAny<'_, V> {
+impl<V: Vectors, S: Solid> Visitor for SearchAny<'_, V, S> {
     const ORDERED: bool = false;
 
     #[inline(always)]
     fn visit(&mut self, leaf: u32) -> ControlFlow<(), f32> {
         let leaf = &self.rays.leaves[leaf as usize];
         for lane in lanes(self.vectors.triangles(leaf, &self.test)) {
-            let distance = self.test.crossing(leaf, lane).distance;
-            if distance < self.limit && self.rays.counts(distance, leaf, lane, self.ray) {
+            let crossing = self.test.crossing(leaf, lane);
+            let distance = crossing.distance;
+            if distance < self.limit
+                && self.rays.counts(distance, leaf, lane, self.ray)
+                && self.solid.is_solid(leaf.triangles[lane], &crossing)
+            {
                 return ControlFlow::Break(());
             }
         }

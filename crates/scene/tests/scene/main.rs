@@ -1,6 +1,7 @@
 //! Import, rays and lights from outside the crate.
 
 mod asset;
+mod cutouts;
 mod environment;
 mod exactness;
 mod health;
@@ -10,6 +11,7 @@ mod import_files;
 mod import_lights;
 mod import_mutations;
 mod import_quantised;
+mod import_textures;
 mod import_volumes;
 mod lights;
 mod many_lights;

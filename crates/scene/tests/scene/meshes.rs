@@ -12,6 +12,7 @@ pub fn mesh(positions: &[DVec3], triangles: &[[u32; 3]]) -> Mesh {
         positions: positions.iter().map(|p| p.as_vec3()).collect(),
         normals: vec![Vec3::ZERO; positions.len()],
         triangles: triangles.iter().map(|t| Triangle { vertices: *t, material: 0 }).collect(),
+        ..Mesh::default()
     }
 }
 

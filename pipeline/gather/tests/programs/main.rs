@@ -4,6 +4,7 @@ mod bad_input;
 mod environment;
 mod hostile;
 mod mutations;
+mod opaque;
 mod orbit;
 mod pipeline;
 mod support;

@@ -1,0 +1,61 @@
+//! What a surface looks like to light.
+
+use crate::{Scene, texture::Texture, volume::Volume};
+use glam::{DVec3, DVec4};
+
+/// What a surface looks like to light, apart from any medium below it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    pub name: String,
+    /// Diffuse albedo of an opaque surface, and alpha: times that of texture and vertices.
+    pub base_color: DVec4,
+    pub base_texture: Option<Texture>,
+    /// Where alpha is less, an opaque surface has a hole.
+    pub cutoff: Option<f32>,
+    /// Radiance it emits, W/(m² sr).
+    pub emission: DVec3,
+    /// The file marks the surface as the boundary of a volume.
+    pub volume: bool,
+    /// What the file says of that volume, if it does.
+    pub medium: Option<Volume>,
+    /// Emits to both sides.
+    pub double_sided: bool,
+}
+
+impl Material {
+    /// True if any channel emits.
+    pub fn emits(&self) -> bool {
+        self.emission != DVec3::ZERO
+    }
+}
+
+impl Scene {
+    /// Diffuse albedo of an opaque surface, and alpha, at a point with these barycentric weights.
+    pub fn color(&self, triangle: u32, weights: [f64; 3]) -> DVec4 {
+        let material = &self.materials[self.mesh.triangles[triangle as usize].material as usize];
+        let texture = material.base_texture.as_ref();
+        let seen = texture.map_or(DVec4::ONE, |t| t.at(self.mesh.coordinates(triangle, weights)));
+        material.base_color * seen * self.mesh.color(triangle, weights)
+    }
+
+    /// Adds a warning for each translucent material whose texture, alpha or vertex colours are not used.
+    pub fn warn_of_colors(&mut self, translucent: impl Fn(u16) -> bool) {
+        let mut colored = vec![false; self.materials.len()];
+        for t in &self.mesh.triangles {
+            colored[t.material as usize] |= t.vertices.iter().any(|i| self.mesh.vertex_color(*i) != [1.0; 4]);
+        }
+        for (k, material) in self.materials.iter().enumerate() {
+            let unused = [
+                (material.base_texture.is_some(), "base colour texture"),
+                (material.cutoff.is_some(), "alphaMode MASK"),
+                (colored[k], "vertex colours"),
+            ];
+            let unused: Vec<&str> = unused.iter().filter(|u| u.0).map(|u| u.1).collect();
+            if translucent(k as u16) && !unused.is_empty() {
+                let Material { name, .. } = material;
+                let what = unused.join(", ");
+                self.warnings.push(format!("material `{name}`: not used on a translucent surface: {what}"));
+            }
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Pictures on surfaces: eight bits of sRGB as files have them, looked up in linear light.
+
+use glam::{DVec3, DVec4};
+use std::sync::{Arc, LazyLock};
+
+/// A decoded picture. Its first row is the top one, where `v` is 0.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// Texels per row.
+    pub width: usize,
+    /// Red, green and blue in sRGB, and alpha, row after row.
+    pub texels: Vec<[u8; 4]>,
+}
+
+/// What there is beyond a picture's edges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wrap {
+    Repeat,
+    Mirror,
+    Clamp,
+}
+
+/// A picture and how it is laid on surfaces.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Texture {
+    /// Textures that differ in the rest may share it.
+    pub picture: Arc<Picture>,
+    /// Along `u` and `v`.
+    pub wrap: [Wrap; 2],
+    /// The nearest texel is taken instead of the mean of the four around.
+    pub nearest: bool,
+}
+
+/// sRGB to linear (IEC 61966-2-1).
+static LINEAR: LazyLock<[f64; 256]> = LazyLock::new(|| {
+    std::array::from_fn(|code| {
+        let x = code as f64 / 255.0;
+        if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
+    })
+});
+
+impl Wrap {
+    /// The texel that stands for `index` of so many.
+    fn place(self, index: i64, count: i64) -> i64 {
+        match self {
+            Wrap::Repeat => index.rem_euclid(count),
+            Wrap::Clamp => index.clamp(0, count - 1),
+            Wrap::Mirror => {
+                let twice = index.rem_euclid(2 * count);
+                twice.min(2 * count - 1 - twice)
+            }
+        }
+    }
+}
+
+impl Texture {
+    /// Linear red, green and blue, and alpha, at texture coordinates.
+    pub fn at(&self, [u, v]: [f64; 2]) -> DVec4 {
+        let (width, height) = (self.picture.width, self.picture.texels.len() / self.picture.width);
+        let [x, y] = [u * width as f64, v * height as f64];
+        if self.nearest {
+            return self.texel(x.floor() as i64, y.floor() as i64);
+        }
+        // The centre of a texel is half a texel away from its edges.
+        let [x, y] = [x - 0.5, y - 0.5];
+        let [left, top] = [x.floor(), y.floor()];
+        let row = |j: i64| {
+            let i = left as i64;
+            self.texel(i, j).lerp(self.texel(i.saturating_add(1), j), x - left)
+        };
+        row(top as i64).lerp(row((top as i64).saturating_add(1)), y - top)
+    }
+
+    fn texel(&self, i: i64, j: i64) -> DVec4 {
+        let Picture { width, texels } = &*self.picture;
+        let [x, y] = [self.wrap[0].place(i, *width as i64), self.wrap[1].place(j, (texels.len() / width) as i64)];
+        let [r, g, b, a] = texels[y as usize * width + x as usize];
+        DVec3::from_array([r, g, b].map(|c| LINEAR[c as usize])).extend(f64::from(a) / 255.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Red counts texels along a row, green rows.
+    fn texture(wrap: Wrap, nearest: bool) -> Texture {
+        let texels = (0..6).map(|k| [k % 3, k / 3, 0, 51 * k]).collect();
+        Texture { picture: Arc::new(Picture { width: 3, texels }), wrap: [wrap; 2], nearest }
+    }
+
+    /// Planted: the power without the straight piece below; 2.2 instead of 2.4.
+    #[test]
+    fn srgb_known_values() {
+        for (code, linear) in [(0, 0.0), (1, 0.000303527), (10, 0.003035270), (127, 0.212230757), (188, 0.502886458)] {
+            assert!((LINEAR[code] - linear).abs() < 1e-9, "{code}: {}", LINEAR[code]);
+        }
+        assert_eq!(LINEAR[255], 1.0);
+    }
+
+    /// Planted: `v` upwards; the mirror with the edge texel there once; the remainder with the sign of the number.
+    #[test]
+    fn beyond_the_edges() {
+        let rows = [
+            (Wrap::Repeat, [2, 0, 1, 2, 0, 1, 2, 0]),
+            (Wrap::Mirror, [0, 0, 1, 2, 2, 1, 0, 0]),
+            (Wrap::Clamp, [0, 0, 1, 2, 2, 2, 2, 2]),
+        ];
+        for (wrap, expected) in rows {
+            let texture = texture(wrap, true);
+            for (k, code) in expected.into_iter().enumerate() {
+                let u = (k as f64 - 0.5) / 3.0;
+                assert_eq!(texture.at([u, 0.2]).x, LINEAR[code], "{wrap:?} at {u}");
+                assert_eq!(texture.at([u, 0.2]).y, 0.0);
+                assert_eq!(texture.at([u, 0.8]).y, LINEAR[1]);
+            }
+            assert!(texture.at([1e30, -1e30]).is_finite());
+        }
+    }
+
+    /// Planted: texels interpolated before they are made linear; without the half texel.
+    #[test]
+    fn between_texels_light_is_linear() {
+        let texture = texture(Wrap::Clamp, false);
+        let texel = |k: u8| DVec4::new(LINEAR[k as usize % 3], LINEAR[k as usize / 3], 0.0, 0.2 * f64::from(k));
+        assert!(texture.at([0.5, 0.25]).abs_diff_eq(texel(1), 1e-15));
+        let mean = (texel(1) + texel(2)) * 0.5;
+        assert!(texture.at([2.0 / 3.0, 0.25]).abs_diff_eq(mean, 1e-15));
+        let four = (texel(0) + texel(1) + texel(3) + texel(4)) * 0.25;
+        assert!(texture.at([1.0 / 3.0, 0.5]).abs_diff_eq(four, 1e-15));
+        assert!(texture.at([-5.0, 7.0]).abs_diff_eq(texel(3), 1e-15));
+    }
+}
