@@ -76,6 +76,6 @@ mod tests {
         let mesh = turn(&[[0.0, 0.0], [1.0, 0.0], [1.0, 0.001], [1.0, 1.999], [1.0, 2.0], [0.0, 2.0]]);
         let tetrahedron = |[a, b, c]: [DVec3; 3]| a.dot(b.cross(c)) / 6.0;
         let volume: f64 = mesh.triangles.iter().map(|t| tetrahedron(mesh.corners(*t))).sum();
-        assert!((5.0..6.2832).contains(&volume), "{volume}");
+        assert!((5.0..std::f64::consts::TAU).contains(&volume), "{volume}");
     }
 }
