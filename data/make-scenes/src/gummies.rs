@@ -15,7 +15,7 @@ const CELL: f64 = 1.3;
 pub fn scene() -> Scene {
     let bear = |name, x: f64, z: f64| Part { name, mesh: mesh(DVec3::new(x, 0.0, z)), surface: Surface::TRANSLUCENT };
     let views = vec![
-        view("all", [0.014, 0.045, 0.15], [0.0008, 0.0098, 0.0], 22.5),
+        view("all", [0.014, 0.045, 0.15], [0.0005, 0.0098, 0.0], 24.0),
         view("close", [0.035, 0.026, 0.078], [0.004, 0.0115, -0.002], 23.0),
     ];
     Scene {

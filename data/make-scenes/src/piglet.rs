@@ -25,7 +25,7 @@ const EAR_AXES: [DVec3; 3] =
 pub fn scene() -> Scene {
     let views = vec![
         view("face", [0.07, 0.1, 0.3], [0.001, 0.045, 0.0], 23.0),
-        view("profile", [-0.18, 0.115, 0.2], [0.002, 0.055, 0.0], 24.0),
+        view("profile", [-0.18, 0.115, 0.2], [0.002, 0.051, 0.0], 24.0),
     ];
     Scene {
         name: "piglet",
