@@ -5,6 +5,8 @@
 //! the decisions once in a thousand runs (`support::FALSE_ALARM_RATE`). The feature `slow` runs the same statistics
 //! with more samples.
 
+#[path = "statistics/bounce.rs"]
+mod bounce;
 #[path = "statistics/cut.rs"]
 mod cut;
 #[path = "statistics/edges.rs"]
@@ -17,6 +19,8 @@ mod error_bars;
 mod knob;
 #[path = "statistics/means.rs"]
 mod means;
+#[path = "statistics/objects.rs"]
+mod objects;
 #[path = "statistics/paths.rs"]
 mod paths;
 #[path = "statistics/patterns.rs"]

@@ -7,7 +7,7 @@ use crate::{
 use formats::cloud::Cloud;
 use gather::estimator::{Estimator, Rule};
 use glam::{DQuat, DVec3};
-use sample_surface::{Drawn, LitSurface, Numbers, TriangleChoice, draw};
+use sample_surface::{Bounce, Drawn, LitSurface, Numbers, TriangleChoice, draw};
 use scene::light::LightTree;
 use serde_json::json;
 use support::{
@@ -54,7 +54,8 @@ fn placed_as(original: &World, world: &World, shot: &Shot) -> Cloud {
     let choice = TriangleChoice::new(mesh, sampling.choice, |m| m == facts.materials[0].index);
     let numbers = Numbers::new(sampling.pattern, sampling.seed, sampling.samples);
     let lights = LightTree::new(&world.scene.lights);
-    let surface = LitSurface { mesh: &world.scene.mesh, rays: &world.rays, lights, normals: shot.normals };
+    let bounce = Bounce::new(&world.scene, |m| m == facts.materials[0].index);
+    let surface = LitSurface { mesh: &world.scene.mesh, rays: &world.rays, lights, normals: shot.normals, bounce };
     let mut halves = Halves::default();
     for (half, place) in numbers.places(&choice, 0..sampling.samples) {
         draw(&surface, &[(half, place)], &mut 0, |half, drawn| {

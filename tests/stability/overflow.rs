@@ -76,6 +76,7 @@ fn flux_beyond_float32_makes_no_cloud() {
             pattern: sample_surface::Pattern::Stratified,
             normals: NormalKind::Geometric,
             translucent: Vec::new(),
+            shares: Vec::new(),
             options: sampled(&under_a_sun(DVec3::ONE), &by_area(1, 0)).meta.options,
         };
         let plan = Plan::new(&world.scene, &settings).expect("the scene has light and a surface");

@@ -6,7 +6,7 @@
 
 use bssrdf::{Medium, Model};
 use formats::cloud::Cloud;
-use gather::Input;
+use gather::{Input, Rendered};
 use glam::DVec3;
 use rayon::prelude::*;
 use sample_surface::Choice;
@@ -49,11 +49,15 @@ pub fn corner() -> Camera {
 
 /// The sum of all pixels over one cloud.
 pub fn image_sum(world: &World, camera: &Camera, cloud: &Cloud, model: Model) -> DVec3 {
-    let media = [jelly()];
-    let input = Input { scene: &world.scene, rays: &world.rays, cloud, media: &media, camera };
-    let rendered = gather::render(&input, &settings(model, 12, 8), |_| ());
+    let rendered = rendered(world, camera, cloud, &[jelly()], model);
     assert!(rendered.counts.gathers > 40, "{:?}", rendered.counts);
     rendered.pixels.iter().map(|p| p.beauty()).sum()
+}
+
+/// The same picture, of objects of several media.
+pub fn rendered(world: &World, camera: &Camera, cloud: &Cloud, media: &[Medium], model: Model) -> Rendered {
+    let input = Input { scene: &world.scene, rays: &world.rays, cloud, media, camera };
+    gather::render(&input, &settings(model, 12, 8), |_| ())
 }
 
 /// The sum of all pixels, each channel, over clouds with seeds from `first` on.
@@ -141,7 +145,9 @@ fn a_far_point_light_is_a_directional_one() {
 fn blocked_samples_count() {
     const HALF_WIDTH: f64 = 12e-3;
     let square = Part::translucent(quad(HALF_WIDTH, 0.0, 8));
+    // Black, so that no sample looks at it instead of the sun.
     let sheet = Part::opaque(rectangle([-1.5 * HALF_WIDTH, 0.0], 1.5 * HALF_WIDTH, 5e-3, 1));
+    let sheet = Part { color: DVec3::ZERO, ..sheet };
     let above = [Light::Directional { towards: DVec3::Z, irradiance: DVec3::ONE }];
     let open = world(std::slice::from_ref(&square), &above, DVec3::ZERO);
     let covered = world(&[square, sheet], &above, DVec3::ZERO);

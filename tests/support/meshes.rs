@@ -19,17 +19,19 @@ pub struct Part {
     pub mesh: Mesh,
     /// Marked as the boundary of a volume, else opaque.
     pub translucent: bool,
+    /// Diffuse albedo of an opaque one.
+    pub color: DVec3,
     /// Radiance, W/(m² sr).
     pub emission: DVec3,
 }
 
 impl Part {
     pub fn translucent(mesh: Mesh) -> Part {
-        Part { mesh, translucent: true, emission: DVec3::ZERO }
+        Part { mesh, translucent: true, color: DVec3::ONE, emission: DVec3::ZERO }
     }
 
     pub fn opaque(mesh: Mesh) -> Part {
-        Part { mesh, translucent: false, emission: DVec3::ZERO }
+        Part { mesh, translucent: false, color: DVec3::ONE, emission: DVec3::ZERO }
     }
 }
 
@@ -129,7 +131,9 @@ fn material((index, part): (usize, &Part)) -> Value {
         extensions["KHR_materials_volume"] = json!({ "thicknessFactor": 1.0 });
     }
     let emissive = (part.emission / strength).to_array();
-    json!({ "name": format!("part {index}"), "emissiveFactor": emissive, "extensions": extensions })
+    let base = json!({ "baseColorFactor": part.color.extend(1.0).to_array() });
+    let name = format!("part {index}");
+    json!({ "name": name, "pbrMetallicRoughness": base, "emissiveFactor": emissive, "extensions": extensions })
 }
 
 fn light_entry(light: &Light) -> Value {

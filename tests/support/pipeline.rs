@@ -23,12 +23,14 @@ pub struct Sampling {
     pub samples: u64,
     pub choice: Choice,
     pub pattern: Pattern,
+    /// Of the samples, on the first material.
+    pub share: Option<f64>,
     pub seed: u64,
 }
 
 /// Independent samples by area.
 pub fn by_area(samples: u64, seed: u64) -> Sampling {
-    Sampling { samples, choice: Choice::Area, pattern: Pattern::Independent, seed }
+    Sampling { samples, choice: Choice::Area, pattern: Pattern::Independent, share: None, seed }
 }
 
 /// Well-spread samples by area: what the programs draw by default.
@@ -43,16 +45,20 @@ pub fn sampled(world: &World, sampling: &Sampling) -> Sampled {
 
 /// Phase one in memory, with these normals.
 pub fn sampled_with(world: &World, sampling: &Sampling, normals: NormalKind) -> Sampled {
+    let first = world.scene.materials[0].name.clone();
+    let shares: Vec<(String, f64)> = sampling.share.map(|share| (first, share)).into_iter().collect();
     let settings = Settings {
         samples: sampling.samples,
         choice: sampling.choice,
         pattern: sampling.pattern,
         normals,
         translucent: Vec::new(),
+        shares: shares.clone(),
         options: Options {
             seed: sampling.seed,
             choice: sampling.choice.name().into(),
             pattern: sampling.pattern.name().into(),
+            shares,
             normals: if normals == NormalKind::Geometric { "geometric" } else { "shading" }.into(),
             metres_per_unit: 1.0,
             light_unit: "radiometric".into(),

@@ -58,6 +58,7 @@ fn facts() -> Meta {
         seed: 0,
         choice: "area".into(),
         pattern: "independent".into(),
+        shares: Vec::new(),
         normals: "geometric".into(),
         metres_per_unit: 1.0,
         light_unit: "radiometric".into(),

@@ -27,27 +27,3 @@ impl<'a> Cutouts<'a> {
         self.cutoffs[material as usize].is_some_and(|cutoff| alpha() < cutoff)
     }
 }
-
-impl Scene {
-    /// Tells `put` all that holes depend on; nothing if there are none.
-    pub(crate) fn note_cutouts(&self, put: &mut impl FnMut(&[u8])) {
-        let with_holes = |k: u16| self.materials[k as usize].cutoff.is_some();
-        for (k, material) in self.materials.iter().enumerate() {
-            let Some(cutoff) = material.cutoff else { continue };
-            put(b"holes");
-            [k as f64, f64::from(cutoff), material.base_color.w].iter().for_each(|x| put(&x.to_le_bytes()));
-            let Some(texture) = &material.base_texture else { continue };
-            let how = texture.wrap.map(|w| w as u8);
-            put(&[1, how[0], how[1], u8::from(texture.nearest)]);
-            put(&(texture.picture.width as u64).to_le_bytes());
-            put(&(texture.picture.texels.len() as u64).to_le_bytes());
-            texture.picture.texels.chunks(1 << 12).for_each(|c| put(&c.iter().map(|t| t[3]).collect::<Vec<u8>>()));
-        }
-        for t in self.mesh.triangles.iter().filter(|t| with_holes(t.material)) {
-            for i in t.vertices {
-                let [u, v] = self.mesh.coordinates.get(i as usize).copied().unwrap_or_default();
-                [u, v, self.mesh.vertex_color(i)[3]].iter().for_each(|x| put(&x.to_le_bytes()));
-            }
-        }
-    }
-}

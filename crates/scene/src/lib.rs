@@ -67,7 +67,7 @@ impl Scene {
         }
     }
 
-    /// Identity of the geometry, holes included, and of which material covers which triangle, as a BLAKE3 digest.
+    /// Identity of the geometry, of which material covers which triangle, and of its colours and holes, as a BLAKE3 digest.
     pub fn geometry_digest(&self) -> [u8; 32] {
         let mut hasher = blake3::Hasher::new();
         let mut put = |bytes: &[u8]| {
@@ -85,7 +85,7 @@ impl Scene {
             put(&(m.name.len() as u64).to_le_bytes());
             put(m.name.as_bytes());
         }
-        self.note_cutouts(&mut put);
+        self.note_colors(&mut put);
         *hasher.finalize().as_bytes()
     }
 }

@@ -38,6 +38,22 @@ impl Scene {
         material.base_color * seen * self.mesh.color(triangle, weights)
     }
 
+    /// Tells `put` all that colours and holes depend on: they light and shadow what is sampled.
+    pub(crate) fn note_colors(&self, put: &mut impl FnMut(&[u8])) {
+        for material in &self.materials {
+            let cutoff = material.cutoff.map_or(f64::INFINITY, f64::from);
+            material.base_color.to_array().iter().chain([&cutoff]).for_each(|x| put(&x.to_le_bytes()));
+            let Some(texture) = &material.base_texture else { continue };
+            let [along, down] = texture.wrap.map(|w| w as u8);
+            put(&[1, along, down, u8::from(texture.nearest)]);
+            put(&(texture.picture.width as u64).to_le_bytes());
+            put(&(texture.picture.texels.len() as u64).to_le_bytes());
+            put(texture.picture.texels.as_flattened());
+        }
+        self.mesh.coordinates.as_flattened().iter().for_each(|x| put(&x.to_le_bytes()));
+        self.mesh.colors.as_flattened().iter().for_each(|x| put(&x.to_le_bytes()));
+    }
+
     /// Adds a warning for each translucent material whose texture, alpha or vertex colours are not used.
     pub fn warn_of_colors(&mut self, translucent: impl Fn(u16) -> bool) {
         let mut colored = vec![false; self.materials.len()];

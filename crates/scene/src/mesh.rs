@@ -46,6 +46,14 @@ pub struct SurfacePoint {
     pub material: u16,
 }
 
+impl SurfacePoint {
+    /// The point as it is seen along `view`, a direction away from it: with its normals on that side of the triangle.
+    pub fn facing(self, view: DVec3) -> SurfacePoint {
+        let sign = if self.geometric_normal.dot(view) > 0.0 { 1.0 } else { -1.0 };
+        SurfacePoint { normal: self.normal * sign, geometric_normal: self.geometric_normal * sign, ..self }
+    }
+}
+
 impl Mesh {
     /// The corners of a triangle, m.
     pub fn corners(&self, triangle: usize) -> [DVec3; 3] {

@@ -20,6 +20,8 @@ pub enum Purpose {
     Calibration,
     /// Scrambles of the sequences of phase one.
     Scramble,
+    /// Light of surfaces that light the samples of phase one.
+    Bounce,
     /// What one of those sequences leaves open.
     Remainder(u64),
 }
@@ -34,6 +36,7 @@ impl Purpose {
             Purpose::Scramble => 4,
             Purpose::Pixel => 5,
             Purpose::Calibration => 6,
+            Purpose::Bounce => u64::MAX,
             Purpose::Remainder(k) => 7 + k,
         }
     }

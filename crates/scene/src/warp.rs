@@ -32,9 +32,14 @@ pub fn halved_square(xi: [f64; 2], shares: [f64; 2]) -> ([f64; 2], bool) {
 /// Cosine-distributed unit direction about the unit `normal`; its density per solid angle is
 /// [`cosine_hemisphere_pdf_solid_angle`].
 pub fn cosine_hemisphere(normal: DVec3, xi: [f64; 2]) -> DVec3 {
+    let (tangent, bitangent) = normal.any_orthonormal_pair();
+    cosine_hemisphere_in([tangent, bitangent, normal], xi)
+}
+
+/// The same about the last of three orthonormal vectors.
+pub fn cosine_hemisphere_in([tangent, bitangent, normal]: [DVec3; 3], xi: [f64; 2]) -> DVec3 {
     let radius = xi[0].sqrt();
     let (sine, cosine) = (2.0 * PI * xi[1]).sin_cos();
-    let (tangent, bitangent) = normal.any_orthonormal_pair();
     let height = (1.0 - xi[0]).sqrt();
     (tangent * (radius * cosine) + bitangent * (radius * sine) + normal * height).normalize()
 }

@@ -246,11 +246,7 @@ impl<M: LaneModel> Renderer<'_, M> {
         if material.emits() && (front || material.double_sided) {
             light.add(walker, Layer::Emission, material.emission);
         }
-        let mut facing = *point;
-        if !front {
-            facing.normal = -facing.normal;
-            facing.geometric_normal = -facing.geometric_normal;
-        }
+        let facing = point.facing(-walker.direction);
         let xi = || [walker.uniform(), walker.uniform()];
         let irradiance = all_light_at(&self.lights, self.rays, &facing, xi, &mut counts.shadow_rays);
         light.add(walker, Layer::Diffuse, self.scene.color(hit.triangle, hit.weights).truncate() / PI * irradiance);

@@ -39,6 +39,8 @@ pub struct TriangleChoice {
     links: Vec<Link>,
     /// m².
     areas: Vec<f64>,
+    /// For each triangle, what a share of its material multiplies its own by; none without such shares.
+    factors: Vec<f64>,
     /// Sum of [`Self::share`] of each triangle and all before it.
     shares_so_far: Vec<f64>,
 }
@@ -46,12 +48,19 @@ pub struct TriangleChoice {
 impl TriangleChoice {
     /// The triangles of `mesh` that `wanted` accepts by their material.
     pub fn new(mesh: &Mesh, rule: Choice, wanted: impl Fn(u16) -> bool) -> Self {
+        TriangleChoice::with_shares(mesh, rule, wanted, &[])
+    }
+
+    /// The same; triangles of the materials in `shares` are chosen with these probabilities in all, those of the others
+    /// with what is left.
+    pub fn with_shares(mesh: &Mesh, rule: Choice, wanted: impl Fn(u16) -> bool, shares: &[(u16, f64)]) -> Self {
         let mut triangles: Vec<u32> =
             (0..mesh.triangles.len()).filter(|k| wanted(mesh.triangles[*k].material)).map(|k| k as u32).collect();
         curve::sort(mesh, &mut triangles);
         let links = ribbons(mesh, &triangles);
         let areas: Vec<f64> = links.iter().map(|link| mesh.area(link.triangle as usize)).collect();
-        let mut choice = TriangleChoice { rule, links, areas, shares_so_far: Vec::new() };
+        let mut choice = TriangleChoice { rule, links, areas, factors: Vec::new(), shares_so_far: Vec::new() };
+        choice.factors = choice.factors(mesh, shares);
         let mut total = 0.0;
         for k in 0..choice.links.len() {
             total += choice.share(k);
@@ -65,12 +74,33 @@ impl TriangleChoice {
         self.areas.iter().sum()
     }
 
+    /// [`Self::factors`] that give each of these materials its share.
+    fn factors(&self, mesh: &Mesh, shares: &[(u16, f64)]) -> Vec<f64> {
+        if shares.is_empty() {
+            return Vec::new();
+        }
+        let group = |link: &Link| {
+            let material = mesh.triangles[link.triangle as usize].material;
+            shares.iter().position(|(m, _)| *m == material).unwrap_or(shares.len())
+        };
+        let mut totals = vec![0.0; shares.len() + 1];
+        self.links.iter().enumerate().for_each(|(k, link)| totals[group(link)] += self.share(k));
+        let rest = 1.0 - shares.iter().map(|(_, share)| share).sum::<f64>();
+        let share = |k: usize| shares.get(k).map_or(rest, |(_, share)| *share);
+        self.links.iter().map(group).map(|k| share(k) / totals[k]).collect()
+    }
+
     /// What the probability of a triangle is proportional to.
     fn share(&self, place: usize) -> f64 {
-        match self.rule {
+        let own = match self.rule {
             Choice::Area => self.areas[place],
             Choice::Uniform => 1.0,
-        }
+        };
+        own * self.factor(place)
+    }
+
+    fn factor(&self, place: usize) -> f64 {
+        self.factors.get(place).copied().unwrap_or(1.0)
     }
 
     /// Place of the triangle that the uniform number `xi` chooses, and the share up to there that it stands for.
@@ -86,6 +116,7 @@ impl TriangleChoice {
             Choice::Area => 1.0 / total,
             Choice::Uniform => 1.0 / (total * self.areas[place]),
         };
+        let pdf_area = pdf_area * self.factor(place);
         Chosen { triangle: self.links[place].triangle, pdf_area }
     }
 

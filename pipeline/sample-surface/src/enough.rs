@@ -1,7 +1,7 @@
 //! How many samples are enough: the error of the light that leaves the surface, by what the two halves of a cloud differ
 //! by. The one place where phase one knows a medium; the samples themselves depend on their number alone.
 
-use crate::{Numbers, Pattern, Place, Plan, SampleError, Sampled, Settings, TriangleChoice, sample};
+use crate::{Numbers, Pattern, Place, Plan, SampleError, Sampled, Settings, sample};
 use bssrdf::{
     Medium, Model,
     lanes::{DirectionalLanes, LaneModel},
@@ -64,7 +64,7 @@ pub fn sample_enough(
 pub fn relative_error(scene: &Scene, sampled: &Sampled, settings: &Settings, plan: &Plan, goal: &Goal) -> f64 {
     let model = DirectionalLanes::new(goal.medium);
     let radial = Radial::new(goal.medium, &*Model::DirectionalDipole.of(goal.medium), f64::INFINITY);
-    let choice = TriangleChoice::new(&scene.mesh, settings.choice, |m| plan.materials.contains(&m));
+    let choice = plan.choice(scene, settings);
     // The points have nothing to do with the samples: another seed.
     let numbers = Numbers::new(Pattern::Stratified, !settings.options.seed, POINTS);
     let places: Vec<Place> = numbers.places(&choice, 0..POINTS).map(|(_, place)| place).collect();

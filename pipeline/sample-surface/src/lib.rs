@@ -2,6 +2,7 @@
 //!
 //! Knows no medium and no camera: one cloud serves all of them.
 
+mod bounce;
 mod choice;
 mod curve;
 mod enough;
@@ -10,6 +11,7 @@ mod pattern;
 mod ribbon;
 mod sample;
 
+pub use bounce::Bounce;
 pub use choice::{Choice, Chosen, TriangleChoice};
 pub use enough::{Goal, relative_error, sample_enough};
 pub use pattern::{Numbers, Pattern, Place};
@@ -36,6 +38,8 @@ pub struct Settings {
     pub normals: NormalKind,
     /// Names of the materials to sample; empty for the file's own marks.
     pub translucent: Vec<String>,
+    /// Materials with the share of the samples that is drawn on their surfaces; the others share the rest by `choice`.
+    pub shares: Vec<(String, f64)>,
     /// As it is written into the cloud; the seed is used here.
     pub options: Options,
 }
@@ -45,6 +49,12 @@ pub struct Settings {
 pub enum SampleError {
     #[error("--translucent: no surface has a material called `{name}`; there are {known}")]
     UnknownMaterial { name: String, known: String },
+    #[error("--share: no sampled surface has a material called `{name}`; there are {known}")]
+    UnknownShare { name: String, known: String },
+    #[error("--share: `{name}` has two; give one")]
+    TwoShares { name: String },
+    #[error("--share: {sum} in all; {wanted}")]
+    ShareSum { sum: f64, wanted: &'static str },
     #[error("the scene has no light: give it one, or light it with --environment")]
     NoLight,
     #[error("no surface to sample: all of them emit; name one with --translucent")]
@@ -59,6 +69,8 @@ pub enum SampleError {
 pub struct Plan {
     /// Indices of the sampled materials, ascending.
     pub materials: Vec<u16>,
+    /// Materials with a share of their own.
+    pub shares: Vec<(u16, f64)>,
     /// The file marked none of them: every surface that does not emit was taken.
     pub unmarked: bool,
     pub geometry: [u8; 32],
@@ -73,6 +85,7 @@ impl Plan {
             return Err(SampleError::NoLight);
         }
         let (materials, unmarked) = translucent_materials(scene, &settings.translucent)?;
+        let shares = share_of_materials(scene, &materials, &settings.shares)?;
         let geometry = scene.geometry_digest();
         let mut hasher = blake3::Hasher::new();
         hasher.update(&version().to_le_bytes());
@@ -81,11 +94,16 @@ impl Plan {
         hasher.update(&settings.samples.to_le_bytes());
         let options = serde_json::json!({ "options": &settings.options, "materials": &materials });
         hasher.update(options.to_string().as_bytes());
-        Ok(Plan { materials, unmarked, geometry, content: *hasher.finalize().as_bytes() })
+        Ok(Plan { materials, shares, unmarked, geometry, content: *hasher.finalize().as_bytes() })
     }
 }
 
 impl Plan {
+    /// The triangles to choose from.
+    pub fn choice(&self, scene: &Scene, settings: &Settings) -> TriangleChoice {
+        TriangleChoice::with_shares(&scene.mesh, settings.choice, |m| self.materials.contains(&m), &self.shares)
+    }
+
     /// Makes the cloud's identity depend on what its number of samples is chosen by.
     pub fn depends_on(&mut self, goal: &Goal) {
         let what = format!("{:?} {:?} {}", goal.medium.channels, goal.medium.eta, goal.error);
@@ -118,6 +136,33 @@ fn translucent_materials(scene: &Scene, names: &[String]) -> Result<(Vec<u16>, b
     }
 }
 
+/// The named shares by material; every sampled material must be left something.
+fn share_of_materials(
+    scene: &Scene,
+    materials: &[u16],
+    named: &[(String, f64)],
+) -> Result<Vec<(u16, f64)>, SampleError> {
+    let name_of = |m: &u16| &scene.materials[*m as usize].name;
+    let mut shares = Vec::new();
+    for (name, share) in named {
+        let Some(material) = materials.iter().find(|m| name_of(m) == name) else {
+            let known = materials.iter().map(|m| format!("`{}`", name_of(m))).collect::<Vec<_>>().join(", ");
+            return Err(SampleError::UnknownShare { name: name.clone(), known });
+        };
+        if shares.iter().any(|(m, _)| m == material) {
+            return Err(SampleError::TwoShares { name: name.clone() });
+        }
+        shares.push((*material, *share));
+    }
+    let sum: f64 = shares.iter().map(|(_, share)| share).sum();
+    let wanted = if shares.len() < materials.len() {
+        (sum >= 1.0).then_some("less than 1 is needed, for the other materials")
+    } else {
+        (!shares.is_empty() && (sum - 1.0).abs() > 1e-9).then_some("1 is needed where every material has one")
+    };
+    wanted.map_or(Ok(shares), |wanted| Err(SampleError::ShareSum { sum, wanted }))
+}
+
 /// A cloud in memory.
 pub struct Sampled {
     pub content: Content,
@@ -131,6 +176,7 @@ struct Portion {
     facing_away: u64,
     shadowed: u64,
     underflow: u64,
+    no_bounce: u64,
     not_finite: u64,
     shadow_rays: u64,
     flux: scene::DVec3,
@@ -145,12 +191,13 @@ pub fn sample(
     plan: &Plan,
     progress: impl Fn(u64) + Sync,
 ) -> Result<Sampled, SampleError> {
-    let choice = TriangleChoice::new(&scene.mesh, settings.choice, |m| plan.materials.contains(&m));
+    let choice = plan.choice(scene, settings);
     let numbers = Numbers::new(settings.pattern, settings.options.seed, settings.samples);
     let lights = LightTree::new(&scene.lights);
     // Independent samples that follow each other lie anywhere.
     let together = if settings.pattern == Pattern::Stratified || lights.is_flat() { TOGETHER } else { 1 };
-    let surface = LitSurface { mesh: &scene.mesh, rays, lights, normals: settings.normals };
+    let bounce = Bounce::new(scene, |m| plan.materials.contains(&m));
+    let surface = LitSurface { mesh: &scene.mesh, rays, lights, normals: settings.normals, bounce };
     let portion = |chunk: u64| {
         let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(settings.samples);
         progress(range.end - range.start);
@@ -171,9 +218,9 @@ fn draw_portion(
     together: usize,
 ) -> Portion {
     let groups = vec![[Vec::new(), Vec::new()]; plan.materials.len()];
-    let (facing_away, shadowed, underflow, not_finite) = (0, 0, 0, 0);
+    let (facing_away, shadowed, underflow, no_bounce, not_finite) = (0, 0, 0, 0, 0);
     let flux = scene::DVec3::ZERO;
-    let mut p = Portion { groups, facing_away, shadowed, underflow, not_finite, shadow_rays: 0, flux };
+    let mut p = Portion { groups, facing_away, shadowed, underflow, no_bounce, not_finite, shadow_rays: 0, flux };
     let mut shadow_rays = 0;
     let mut neighbours = Vec::with_capacity(together);
     loop {
@@ -191,6 +238,7 @@ impl Portion {
         match drawn {
             Drawn::FacingAway => self.facing_away += 1,
             Drawn::Shadowed => self.shadowed += 1,
+            Drawn::NoBounce => self.no_bounce += 1,
             Drawn::Underflow => self.underflow += 1,
             Drawn::NotFinite => self.not_finite += 1,
             Drawn::Lit { sample, material } => {
@@ -240,6 +288,7 @@ fn join(
             ("facing_away".into(), total(|p| p.facing_away)),
             ("shadowed".into(), total(|p| p.shadowed)),
             ("underflow".into(), total(|p| p.underflow)),
+            ("no_bounce".into(), total(|p| p.no_bounce)),
         ]),
         shadow_rays: total(|p| p.shadow_rays),
         surface_area_m2: choice.area(),

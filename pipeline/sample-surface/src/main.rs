@@ -42,6 +42,10 @@ struct Arguments {
     /// Which triangle: by area, or every one alike as in the note
     #[arg(long, default_value = "area")]
     choice: Choice,
+    /// Share of the samples that is drawn on the surfaces of one material (repeatable); the others share the rest by
+    /// --choice
+    #[arg(long, value_name = "MATERIAL=F", value_parser = parse_share)]
+    share: Vec<(String, f64)>,
     /// Well-spread samples, or independent ones as in the note
     #[arg(long, default_value = "stratified")]
     pattern: Pattern,
@@ -69,6 +73,12 @@ const MAX_SAMPLES: u64 = 2 * scene::sequence::LENGTH;
 fn parse_error(text: &str) -> Result<f64, String> {
     let error = text.parse().ok().filter(|x: &f64| (1e-6..=1.0).contains(x));
     error.ok_or_else(|| "expected a number between 0.000001 and 1".into())
+}
+
+fn parse_share(text: &str) -> Result<(String, f64), String> {
+    let (name, share) = text.rsplit_once('=').ok_or("expected MATERIAL=F")?;
+    let share = share.parse().ok().filter(|f: &f64| *f > 0.0 && *f < 1.0);
+    Ok((name.to_owned(), share.ok_or("expected a share between 0 and 1")?))
 }
 
 fn parse_samples(text: &str) -> Result<u64, String> {
@@ -155,10 +165,12 @@ fn settings(arguments: &Arguments, environment: &Environment) -> Settings {
         pattern: arguments.pattern,
         normals: scene.normal_kind(),
         translucent: arguments.translucent.clone(),
+        shares: arguments.share.clone(),
         options: Options {
             seed: arguments.common.seed,
             choice: arguments.choice.name().into(),
             pattern: arguments.pattern.name().into(),
+            shares: arguments.share.clone(),
             normals: scene.normals.name().into(),
             metres_per_unit: scene.metres_per_unit,
             light_unit: scene.light_unit.name().into(),

@@ -1,6 +1,9 @@
 //! One sample: position, direction to the light, flux.
 
-use crate::pattern::Place;
+use crate::{
+    bounce::{Bounce, SHARE},
+    pattern::Place,
+};
 use formats::cloud::Sample;
 use scene::{
     Mesh, NormalKind, Rays, SurfacePoint,
@@ -13,6 +16,8 @@ pub struct LitSurface<'a> {
     pub rays: &'a Rays<'a>,
     pub lights: LightTree<'a>,
     pub normals: NormalKind,
+    /// What else is lit and lights it.
+    pub bounce: Option<Bounce<'a>>,
 }
 
 /// What became of a drawn sample.
@@ -25,6 +30,8 @@ pub enum Drawn {
     Shadowed,
     /// It is lit, but its flux vanishes in float32.
     Underflow,
+    /// No lit opaque surface lies in the direction that was chosen.
+    NoBounce,
     /// Its flux is not a finite float32.
     NotFinite,
 }
@@ -45,16 +52,30 @@ pub fn draw(
     let Some(region) = Region::around(&points) else { return };
     let choice = LightChoice::new(&surface.lights, &region, ENTRIES[0] + ENTRIES[1] * points.len());
     for ((half, place), point) in places.iter().zip(&points) {
-        tell(*half, drawn(place, point, light_at(&choice, surface.rays, point, place.light, shadow_rays)));
+        tell(*half, drawn(surface, place, point, &choice, shadow_rays));
     }
 }
 
-/// The sample at a place.
-fn drawn(place: &Place, point: &SurfacePoint, light: Lit) -> Drawn {
-    let (direction, irradiance) = match light {
-        Lit::FacingAway => return Drawn::FacingAway,
-        Lit::Shadowed => return Drawn::Shadowed,
-        Lit::Light { direction, irradiance } => (direction, irradiance),
+/// The sample at a place: lit directly or, where there are opaque surfaces, by way of one.
+fn drawn(
+    surface: &LitSurface,
+    place: &Place,
+    point: &SurfacePoint,
+    choice: &LightChoice,
+    shadow_rays: &mut u64,
+) -> Drawn {
+    let [xi, l1, l2] = place.light;
+    let share = if surface.bounce.is_some() { SHARE } else { 0.0 };
+    let (direction, irradiance) = match &surface.bounce {
+        Some(bounce) if xi < share => match bounce.light_at(surface, point, [l1, l2], place.bounce, shadow_rays) {
+            None => return Drawn::NoBounce,
+            Some((direction, irradiance)) => (direction, irradiance / share),
+        },
+        _ => match light_at(choice, surface.rays, point, [(xi - share) / (1.0 - share), l1, l2], shadow_rays) {
+            Lit::FacingAway => return Drawn::FacingAway,
+            Lit::Shadowed => return Drawn::Shadowed,
+            Lit::Light { direction, irradiance } => (direction, irradiance / (1.0 - share)),
+        },
     };
     // note: [flux] Φ = E/pdf(x); the estimator divides by K (method.md 6.5).
     let flux = (irradiance / place.pdf_area).as_vec3();

@@ -135,6 +135,27 @@ fn scenes_without_what_is_needed() {
     let scene = bench.scene(|_| {});
     let named = [&scene, "-n", "10", "-o", "out.cloud", "--translucent", "Glass"];
     bench.refuses(&named, &["--translucent", "`Glass`", "`Slab`"]);
+    for (share, words) in [
+        ("Glass=0.5", ["--share", "`Glass`", "there are `Slab`"]),
+        ("Slab=0.5", ["--share", "0.5 in all", "1 is needed"]),
+        ("Slab=0", ["--share", "between 0 and 1", "Slab=0"]),
+        ("Slab=NaN", ["--share", "between 0 and 1", "Slab=NaN"]),
+        ("Slab", ["--share", "MATERIAL=F", "Slab"]),
+    ] {
+        bench.refuses(&[&scene, "-n", "10", "-o", "out.cloud", "--share", share], &words);
+    }
+    let scene = bench.scene(|root| {
+        root["materials"].as_array_mut().expect("a list").push(root["materials"][0].clone());
+        root["materials"][1]["name"] = json!("Lid");
+        let mut lid = root["meshes"][0]["primitives"][0].clone();
+        lid["material"] = json!(1);
+        root["meshes"][0]["primitives"].as_array_mut().expect("a list").push(lid);
+    });
+    let shares = |second: &str, words: &[&str]| {
+        bench.refuses(&[&scene, "-o", "out.cloud", "--share", "Slab=0.7", "--share", second], words);
+    };
+    shares("Slab=0.2", &["--share", "`Slab` has two"]);
+    shares("Lid=0.7", &["--share", "1.4 in all", "1 is needed"]);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 /// The struct of this version; the number is checked before this is read.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Versioned {
-    V3(Meta),
+    V4(Meta),
 }
 
 /// Facts of a cloud. Holds no time, host or path: the same inputs give the same bytes.
@@ -61,6 +61,8 @@ pub struct Options {
     pub choice: String,
     /// `stratified` or `independent`.
     pub pattern: String,
+    /// Materials with the share of the samples that was asked for.
+    pub shares: Vec<(String, f64)>,
     /// `shading` or `geometric`.
     pub normals: String,
     pub metres_per_unit: f64,

@@ -71,7 +71,7 @@ fn part<'a>(tiles: &'a [Tile], nodes: &'a [Node], group: &Group) -> (&'a [Tile],
 
 /// Writes a cloud; the same content and facts give the same bytes.
 pub fn write(output: &mut Output, path: &Path, content: &Content, meta: &Meta) -> Result<(), Error> {
-    let facts = bincode::serde::encode_to_vec(Versioned::V3(meta.clone()), meta_config())
+    let facts = bincode::serde::encode_to_vec(Versioned::V4(meta.clone()), meta_config())
         .map_err(|e| Error::invalid(path, format!("the cloud's facts do not fit the file: {e}")))?;
     let provenance = serde_json::to_vec_pretty(&provenance(meta))
         .map_err(|e| Error::invalid(path, format!("the cloud's facts do not fit the file: {e}")))?;
@@ -215,7 +215,7 @@ fn read_meta(file: &[u8], header: &Header) -> Result<Meta, String> {
     layout::verify(file, section)?;
     let bytes = &file[section.offset as usize..section.end() as usize];
     let damaged = "the cloud's facts are damaged; sample again";
-    let (Versioned::V3(meta), used) =
+    let (Versioned::V4(meta), used) =
         bincode::serde::decode_from_slice(bytes, meta_config()).map_err(|_| damaged.to_owned())?;
     let fits = used == bytes.len() && groups_fit(&meta, header).is_some() && meta.is_finite();
     if fits { Ok(meta) } else { Err(damaged.into()) }
@@ -246,6 +246,7 @@ mod tests {
             seed: 3,
             choice: "area".into(),
             pattern: "independent".into(),
+            shares: Vec::new(),
             normals: "shading".into(),
             metres_per_unit: 1.0,
             light_unit: "radiometric".into(),

@@ -69,8 +69,9 @@ fn a_hole_shows_what_is_behind_and_lets_light_through() {
     bench.write("card.png", picture());
     let masked = bench.slab("masked.gltf", |root| with_card(root, "MASK"));
     let flux = sample(&bench, &masked);
-    // Half of 0.2 m by 0.2 m; the samples lie evenly to better than a ribbon's share.
-    assert!((flux / 0.02 - 1.0).abs() < 0.01, "{flux}");
+    // Half of 0.2 m by 0.2 m. A sixth of the samples lies there, a quarter of those looks at the card's dark side
+    // instead of the sun: five standard errors.
+    assert!((flux / 0.02 - 1.0).abs() < 5.0 * (1.0f64 / 3.0 / (20_000.0 / 6.0)).sqrt(), "{flux}");
     let size = ["--width", "16", "--height", "16", "--spp", "4"];
     let image = ["card.cloud", &masked, "--medium", "marble", "-o", "card.exr", "--quiet"];
     bench.succeed("gather", &[&image[..], &size].concat());

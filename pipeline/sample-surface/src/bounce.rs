@@ -1,0 +1,59 @@
+//! Light that reaches a sample by way of one opaque surface.
+
+use crate::sample::LitSurface;
+use scene::{DVec3, Scene, SurfacePoint, light::all_light_at, random::Item, warp};
+
+/// Samples that are lit this way where there are opaque surfaces, as a share of all. Of a head on an evenly lit floor,
+/// which gets a third as much light from there as from the lamps, the variance is least at 0.27.
+pub const SHARE: f64 = 0.25;
+
+/// The opaque surfaces of a scene.
+pub struct Bounce<'a> {
+    scene: &'a Scene,
+    /// For each material.
+    opaque: Vec<bool>,
+}
+
+impl<'a> Bounce<'a> {
+    /// None if no opaque surface reflects.
+    pub fn new(scene: &'a Scene, translucent: impl Fn(u16) -> bool) -> Option<Self> {
+        let reflects = |k: usize| scene.materials[k].base_color.truncate() != DVec3::ZERO;
+        let opaque: Vec<bool> = (0..scene.materials.len()).map(|k| !translucent(k as u16) && reflects(k)).collect();
+        let any = scene.mesh.triangles.iter().any(|t| opaque[t.material as usize]);
+        any.then_some(Bounce { scene, opaque })
+    }
+
+    /// Direction to an opaque surface, and the irradiance `π L` from there of cosine-distributed directions, W/m²: its
+    /// light is `L = ρ E/π` (both sides are Lambertian, as phase two shows them). None if there is no light.
+    pub fn light_at(
+        &self,
+        surface: &LitSurface,
+        at: &SurfacePoint,
+        xi: [f64; 2],
+        random: Item,
+        rays: &mut u64,
+    ) -> Option<(DVec3, DVec3)> {
+        // A frame of the triangle's own: what is turned as a whole keeps its samples.
+        let [a, b, _] = surface.mesh.corners(at.triangle as usize);
+        let tangent = (b - a).reject_from_normalized(at.normal).try_normalize();
+        let tangent = tangent.unwrap_or_else(|| at.normal.any_orthonormal_vector());
+        let direction = warp::cosine_hemisphere_in([tangent, at.normal.cross(tangent), at.normal], xi);
+        if direction.dot(at.geometric_normal) <= 0.0 {
+            return None;
+        }
+        *rays += 1;
+        let hit = surface.rays.closest(at.position, direction, Some(at.triangle))?;
+        let point = surface.mesh.point(hit.triangle, hit.weights, surface.normals).facing(-direction);
+        if !self.opaque[point.material as usize] {
+            return None;
+        }
+        let albedo = self.scene.color(hit.triangle, hit.weights).truncate();
+        let mut dimension = 0;
+        let xi = || {
+            dimension += 2;
+            [dimension - 2, dimension - 1].map(|d| random.uniform(d))
+        };
+        let irradiance = albedo * all_light_at(&surface.lights, surface.rays, &point, xi, rays);
+        (irradiance != DVec3::ZERO).then_some((direction, irradiance))
+    }
+}
