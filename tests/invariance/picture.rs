@@ -52,7 +52,7 @@ impl Shot {
     /// samples light a pixel and clouds differ little.
     pub fn smooth(seed: u64) -> Shot {
         let shot = Shot::new(seed).scaled(4.0);
-        let sampling = Sampling { samples: 8000 * EFFORT, ..shot.sampling };
+        let sampling = Sampling { samples: 12_000 * EFFORT, ..shot.sampling };
         Shot { sampling, model: Model::StandardDipole, ..shot }
     }
 

@@ -48,7 +48,8 @@ fn powers_of_two_give_the_same_bits() {
 /// changes by that much where one sample outshines the others, less where many add up. The uniform choice picks the
 /// same triangles; the choice by area can take a neighbour where the sum of areas rounds across the number drawn.
 /// Pixels that one sample outshines are the few exceptions; with this seed no sum of areas rounds across, which would
-/// change many.
+/// change many. Samples that the floor lights have the light of where their ray ends, which moves with the rounding of where it
+/// starts: they are some of the exceptions.
 ///
 /// Seen to catch: the same.
 #[test]
@@ -59,10 +60,10 @@ fn other_factors_give_the_same_image() {
         for world in &worlds {
             let shot = Shot::new(20).choosing(Choice::Uniform);
             let images = [shot.of(&original), shot.clone().scaled(scale).of(world)];
-            assert_close(&format!("{scale}, uniform"), [&images[0], &images[1]], 1e-5, 4);
+            assert_close(&format!("{scale}, uniform"), [&images[0], &images[1]], 1e-5, 8);
             let shot = Shot::new(20);
             let images = [shot.of(&original), shot.clone().scaled(scale).of(world)];
-            assert_close(&format!("{scale}, by area"), [&images[0], &images[1]], 1e-5, 4);
+            assert_close(&format!("{scale}, by area"), [&images[0], &images[1]], 1e-5, 8);
         }
     }
 }
