@@ -145,7 +145,8 @@ fn scenes_without_what_is_needed() {
         bench.refuses(&[&scene, "-n", "10", "-o", "out.cloud", "--share", share], &words);
     }
     let scene = bench.scene(|root| {
-        root["materials"].as_array_mut().expect("a list").push(root["materials"][0].clone());
+        let first = root["materials"][0].clone();
+        root["materials"].as_array_mut().expect("a list").push(first);
         root["materials"][1]["name"] = json!("Lid");
         let mut lid = root["meshes"][0]["primitives"][0].clone();
         lid["material"] = json!(1);
