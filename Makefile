@@ -105,7 +105,7 @@ $(foreach g,$(GALLERY),$(foreach v,$(notdir $(basename $(wildcard data/views/$(w
 $(eval $(call picture,$(word 1,$(subst :, ,$(g))),$(word 2,$(subst :, ,$(g))),$(v)))))
 
 # A user's own file: make SCENE=path.glb MEDIUM=marble [SAMPLES=4M], one image for each of its cameras; with an empty
-# MEDIUM= the file's own media.
+# MEDIUM= the file's own media; ENVIRONMENT=sky.exr or R,G,B lights it from all around.
 ifdef SCENE
 MEDIUM ?= marble
 OWN := $(OUT)/$(notdir $(basename $(SCENE)))/$(RUN_NAME)
@@ -117,14 +117,15 @@ own: build
 
 own-images: $(foreach c,$(CAMERAS),$(OWN_IMAGES)/camera$(c).exr)
 
-$(OWN).cloud: $(SCENE) crates/formats/cloud-version | $(SAMPLE)
+$(OWN).cloud: $(SCENE) $(wildcard $(ENVIRONMENT)) crates/formats/cloud-version | $(SAMPLE)
 	@mkdir -p $(@D)
-	$(SUBMIT) $(SAMPLE) --threads $(THREADS) --seed $(SEED) --samples $(SAMPLES) $(foreach t,$(TRANSLUCENT),--translucent $(t)) '$<' -o $@
+	$(SUBMIT) $(SAMPLE) --threads $(THREADS) --seed $(SEED) --samples $(SAMPLES) $(foreach t,$(TRANSLUCENT),--translucent $(t)) \
+	  $(if $(ENVIRONMENT),--environment $(ENVIRONMENT)) '$<' -o $@
 
 $(OWN_IMAGES)/camera%.exr: $(OWN).cloud $(wildcard $(MEDIUM)) | $(GATHER)
 	@mkdir -p $(@D)
 	$(SUBMIT) $(GATHER) --threads $(THREADS) --seed $(SEED) --spp $(SPP) --bssrdf $(MODEL) $(if $(MEDIUM),--medium $(MEDIUM)) --camera $* \
-	  --preview $(basename $@).png --exposure $(or $(EXPOSURE),0) $< '$(SCENE)' -o $@
+	  $(if $(ENVIRONMENT),--environment $(ENVIRONMENT)) --preview $(basename $@).png --exposure $(or $(EXPOSURE),0) $< '$(SCENE)' -o $@
 endif
 
 $(SAMPLE) $(GATHER) $(MAKE_SCENES) $(CONTACT_SHEET): | build ;
