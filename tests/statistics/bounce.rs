@@ -38,8 +38,6 @@ fn assert_irradiance(what: &str, world: &World, expected: DVec3) {
 }
 
 /// A ceiling without end gives all it gets, `ρ E`.
-///
-/// Seen to catch: no division by the share of such samples; the ceiling's own normal taken for its lit side; π left in.
 #[test]
 fn an_endless_ceiling_gives_what_it_gets() {
     assert_irradiance("ceiling", &below(2000.0, &[]), 0.8 * DVec3::new(1.0, 2.0, 3.0));
@@ -47,9 +45,6 @@ fn an_endless_ceiling_gives_what_it_gets() {
 
 /// A ceiling as wide as it is high above gives the form factor of a square seen from below its centre, 0.55412
 /// (`(4/π√2) atan(1/√2)`), beside direct light that passes it.
-///
-/// Seen to catch: directions uniform in solid angle; direct light not divided by its share; both kinds of light by one
-/// number that is not stretched again.
 #[test]
 fn a_finite_ceiling_beside_direct_light() {
     let sun = Light::Directional { towards: DVec3::new(0.96, 0.0, 0.28), irradiance: DVec3::splat(2.0) };

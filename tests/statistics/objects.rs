@@ -36,8 +36,6 @@ fn two() -> World {
 }
 
 /// Densities times areas add up to the share that was asked for, and the choice follows them.
-///
-/// Seen to catch: the density without the share's factor; the rest shared by the areas of all.
 #[test]
 fn shares_are_kept_and_densities_follow() {
     let world = two();
@@ -61,8 +59,6 @@ fn shares_are_kept_and_densities_follow() {
 }
 
 /// The small slab looks the same whatever share of the samples it gets, by both patterns.
-///
-/// Seen to catch: flux by the density of the areas alone.
 #[test]
 fn a_share_leaves_the_mean() {
     let (world, camera) = (two(), orthographic(DVec3::new(0.2, 0.3, 1.0), 1.5e-3));
@@ -87,8 +83,6 @@ fn a_share_leaves_the_mean() {
 
 /// Two slabs that touch, a sheet over the first: the light of the second one ends at the common face, unless both are of
 /// one material.
-///
-/// Seen to catch: all samples gathered everywhere.
 #[test]
 fn light_does_not_bleed_between_touching_objects() {
     let half = DVec3::new(2e-3, 2e-3, 1e-3);

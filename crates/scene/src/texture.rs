@@ -89,7 +89,7 @@ mod tests {
         Texture { picture: Arc::new(Picture { width: 3, texels }), wrap: [wrap; 2], nearest }
     }
 
-    /// Planted: the power without the straight piece below; 2.2 instead of 2.4.
+    /// Planted: 2.2 instead of 2.4.
     #[test]
     fn srgb_known_values() {
         for (code, linear) in [(0, 0.0), (1, 0.000303527), (10, 0.003035270), (127, 0.212230757), (188, 0.502886458)] {
@@ -118,7 +118,7 @@ mod tests {
         }
     }
 
-    /// Planted: texels interpolated before they are made linear; without the half texel.
+    /// Planted: without the half texel.
     #[test]
     fn between_texels_light_is_linear() {
         let texture = texture(Wrap::Clamp, false);

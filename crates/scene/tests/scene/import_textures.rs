@@ -86,7 +86,6 @@ fn png() -> Vec<u8> {
 const NEAREST: u32 = 9728;
 const LINEAR: u32 = 9729;
 
-/// Seen to catch: rows counted from below; codes taken as linear.
 #[test]
 fn texels_of_an_embedded_png() {
     let scene = with_picture(&png(), textured(json!({})), json!({ "magFilter": NEAREST })).import().expect("imports");
@@ -108,7 +107,7 @@ fn texels_of_an_embedded_png() {
     assert_color(&scene, [0.0, 0.0], linear(0, 0));
 }
 
-/// Seen to catch: the factor left out; a JPEG refused.
+/// Seen to catch: the factor left out.
 #[test]
 fn a_jpeg_in_the_uri_times_the_factor() {
     let grey = RgbaImage::from_pixel(16, 8, Rgba([188, 188, 188, 255]));
@@ -166,7 +165,7 @@ fn coordinates_of_another_set_transformed() {
     assert!(inside > 10, "{inside}");
 }
 
-/// Seen to catch: three components read as four; integers not normalised; vertices of another primitive.
+/// Seen to catch: integers not normalised; vertices of another primitive.
 #[test]
 fn vertex_colours_of_every_kind() {
     let corners = [[0.0, 0.2, 0.4, 1.0], [0.6, 0.8, 1.0, 0.4], [0.2, 0.0, 0.0, 0.8], [1.0, 1.0, 1.0, 0.0f32]];

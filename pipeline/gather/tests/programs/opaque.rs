@@ -61,8 +61,6 @@ fn sample(bench: &Bench, scene: &str) -> f64 {
 }
 
 /// What half of the card hides is dark and hidden; through its other half the slab is lit and seen.
-///
-/// Seen to catch: holes for camera rays only, and for shadow rays only; the texel not made linear; the factor left out.
 #[test]
 fn a_hole_shows_what_is_behind_and_lets_light_through() {
     let bench = Bench::new();
