@@ -6,6 +6,8 @@
 //! are compared with each other; each tolerance has its reason beside it. Where the samples differ, means over clouds
 //! are, as in `statistics`. Every test names the planted errors that it was seen to catch.
 
+#[path = "invariance/expected.rs"]
+mod expected;
 #[path = "invariance/figure.rs"]
 mod figure;
 #[path = "invariance/lights.rs"]

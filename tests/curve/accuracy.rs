@@ -13,7 +13,7 @@ pub fn accuracy(bench: &mut Bench, subjects: &[Subject]) -> Result<Findings, Err
     let mut findings = Findings::default();
     let what = "error of a gather over --accuracy, worst";
     let Some(cut) = bench.configuration("all").filter(|c| matches!(c.summing, Summing::Cut(_))) else {
-        findings.targets.push(Target::at_most(what, 1.0, None, "`cut` is missing"));
+        findings.targets.push(Target::at_most(what, 1.5, None, "`cut` is missing"));
         return Ok(findings);
     };
     let subjects = &subjects[..bench.effort.of(1, 1, subjects.len())];
@@ -40,7 +40,7 @@ pub fn accuracy(bench: &mut Bench, subjects: &[Subject]) -> Result<Findings, Err
         }
         bench.forget_clouds();
     }
-    findings.targets.push(Target::at_most(what, 1.0, Some(worst), "measured"));
+    findings.targets.push(Target::at_most(what, 1.5, Some(worst), "measured"));
     let header = ["scene", "medium", "--accuracy", "error", "error / accuracy", "evaluations a gather"];
     let text =
         "Relative RMSE over the image of single gathers against the sum over all samples, same cloud, same paths.";
