@@ -38,6 +38,8 @@ fn assert_irradiance(what: &str, world: &World, expected: DVec3) {
 }
 
 /// A ceiling without end gives all it gets, `ρ E`.
+///
+/// Seen to catch: a fifth more light off the ceiling.
 #[test]
 fn an_endless_ceiling_gives_what_it_gets() {
     assert_irradiance("ceiling", &below(2000.0, &[]), 0.8 * DVec3::new(1.0, 2.0, 3.0));
