@@ -47,25 +47,27 @@ impl<'a> Elements<'a> {
 impl<'a> Column<'a> {
     /// A list of vectors, of float32 or quantised (KHR_mesh_quantization).
     pub fn vectors(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self, Fault> {
-        let accessor = get(&document.root.accessors, index, &field)?;
-        let number = component(accessor).and_then(|c| Number::of_vector(c, accessor.normalized));
-        match number {
-            Some(number) if accessor.type_ == Checked::Valid(Type::Vec3) => {
-                Column::new(document, accessor, number, 3, field)
-            }
-            _ => Err(format!("{field}: the accessor must hold VEC3 of 32-bit float, or of 8 or 16-bit integers")),
-        }
+        Column::of_vectors(document, index, (Type::Vec3, 3), field)
     }
 
     /// A list of texture coordinates, of float32 or integers.
     pub fn coordinates(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self, Fault> {
+        Column::of_vectors(document, index, (Type::Vec2, 2), field)
+    }
+
+    fn of_vectors(
+        document: &'a Document,
+        index: &Index<Accessor>,
+        (kind, width): (Type, usize),
+        field: String,
+    ) -> Result<Self, Fault> {
         let accessor = get(&document.root.accessors, index, &field)?;
         let number = component(accessor).and_then(|c| Number::of_vector(c, accessor.normalized));
         match number {
-            Some(number) if accessor.type_ == Checked::Valid(Type::Vec2) => {
-                Column::new(document, accessor, number, 2, field)
+            Some(number) if accessor.type_ == Checked::Valid(kind) => {
+                Column::new(document, accessor, number, width, field)
             }
-            _ => Err(format!("{field}: the accessor must hold VEC2 of 32-bit float, or of 8 or 16-bit integers")),
+            _ => Err(format!("{field}: the accessor must hold VEC{width} of 32-bit float, or of 8 or 16-bit integers")),
         }
     }
 
