@@ -60,11 +60,10 @@ endif
 # Title=picture, for the contact sheet.
 titled = $(foreach p,$(call pictures_of,$(1),$(2)),"$(1) $(basename $(notdir $(p)))/$(subst $(space),$(comma)$(space),$(call names_of,$(2)))=$(basename $(p)).png")
 
-.PHONY: gallery own own-images contact-sheet build test slow accuracy curve curve-full bench lint scenes clouds images help clean clean-images
+.PHONY: .FORCE gallery own contact-sheet build test slow accuracy curve curve-full bench lint scenes clouds images help clean clean-images
 
 ## gallery: build, and render every scene, medium and view of the gallery (what `make` does)
-gallery: build
-	@$(MAKE) --no-print-directory contact-sheet
+gallery: contact-sheet
 	@echo "All pictures on one sheet: $(OUT)/gallery-$(RUN_NAME).png"
 	@echo "Each by itself: $(OUT)/*/$(RUN_NAME)/*/*.png; beside it lies its OpenEXR image."
 
@@ -84,19 +83,33 @@ clouds: $(foreach s,$(sort $(foreach g,$(GALLERY),$(word 1,$(subst :, ,$(g))))),
 build:
 	$(CARGO) build --release --workspace --quiet
 
+# What changes a result and is no file lies in one that is written only when it changes: $(1) file, $(2) text.
+define settings
+$(1): .FORCE
+	@mkdir -p $$(@D)
+	@echo '$(2)' | cmp -s - $$@ || echo '$(2)' > $$@
+endef
+
+ifndef SCENE
 # A cloud depends on its scene, its environment and the format's version; programs are order-only, so a rebuild keeps
 # clouds. What else changes a cloud (samples, seed) is in its name.
 define cloud
-$(OUT)/$(1)/$(RUN_NAME).cloud: data/scenes/$(1).glb $(wildcard $(ENVIRONMENT_$(1))) crates/formats/cloud-version | $(SAMPLE)
-	@mkdir -p $$(@D)
+$(OUT)/$(1)/$(RUN_NAME).cloud: data/scenes/$(1).glb $(wildcard $(ENVIRONMENT_$(1))) $(OUT)/$(1)/$(RUN_NAME).settings \
+  crates/formats/cloud-version | $(SAMPLE)
 	$$(SUBMIT) $$(SAMPLE) --threads $$(THREADS) --seed $$(SEED) --samples $$(SAMPLES) $(call environment_of,$(1)) --quiet $$< -o $$@
 endef
-$(foreach s,$(patsubst data/scenes/%.glb,%,$(wildcard data/scenes/*.glb)),$(eval $(call cloud,$(s))))
+SCENES := $(patsubst data/scenes/%.glb,%,$(wildcard data/scenes/*.glb))
+$(foreach s,$(SCENES),$(eval $(call settings,$(OUT)/$(s)/$(RUN_NAME).settings,$(ENVIRONMENT_$(s)))))
+$(foreach s,$(SCENES),$(eval $(call cloud,$(s))))
+
+folder_of = $(OUT)/$(word 1,$(subst :, ,$(1)))/$(RUN_NAME)/$(word 2,$(subst :, ,$(1)))-$(MODEL)
+$(foreach g,$(GALLERY),$(eval $(call settings,$(call folder_of,$(g))/settings,\
+$(SPP) $(MEDIA_$(word 2,$(subst :, ,$(g)))) $(EXPOSURE_$(word 1,$(subst :, ,$(g)))))))
 
 # $(1) scene, $(2) medium, $(3) view
 define picture
-$(OUT)/$(1)/$(RUN_NAME)/$(2)-$(MODEL)/$(3).exr: $(OUT)/$(1)/$(RUN_NAME).cloud $(call files_of,$(2)) data/views/$(1)/$(3).json | $(GATHER)
-	@mkdir -p $$(@D)
+$(OUT)/$(1)/$(RUN_NAME)/$(2)-$(MODEL)/$(3).exr: $(OUT)/$(1)/$(RUN_NAME).cloud $(call files_of,$(2)) data/views/$(1)/$(3).json \
+  $(OUT)/$(1)/$(RUN_NAME)/$(2)-$(MODEL)/settings | $(GATHER)
 	$$(SUBMIT) $$(GATHER) --threads $$(THREADS) --seed $$(SEED) --spp $$(SPP) --bssrdf $$(MODEL) $(call medium_options,$(2)) \
 	  $(call environment_of,$(1)) --view data/views/$(1)/$(3).json --preview $$(basename $$@).png \
 	  --exposure $$(or $$(EXPOSURE_$(1)),0) --quiet $$< data/scenes/$(1).glb -o $$@
@@ -104,28 +117,46 @@ endef
 $(foreach g,$(GALLERY),$(foreach v,$(notdir $(basename $(wildcard data/views/$(word 1,$(subst :, ,$(g)))/*.json))),\
 $(eval $(call picture,$(word 1,$(subst :, ,$(g))),$(word 2,$(subst :, ,$(g))),$(v)))))
 
-# A user's own file: make SCENE=path.glb MEDIUM=marble [SAMPLES=4M], one image for each of its cameras; with an empty
-# MEDIUM= the file's own media; ENVIRONMENT=sky.exr or R,G,B lights it from all around.
-ifdef SCENE
+else
+# A user's own file: make SCENE=path.glb MEDIUM=marble [SAMPLES=4M], one image for each of its cameras, or for each of
+# VIEWS='path/*.json'; with an empty MEDIUM= the file's own media; ENVIRONMENT=sky.exr or R,G,B lights it from all around.
 MEDIUM ?= marble
 OWN := $(OUT)/$(notdir $(basename $(SCENE)))/$(RUN_NAME)
 OWN_IMAGES := $(OWN)/$(or $(notdir $(basename $(MEDIUM))),own)-$(MODEL)
+$(eval $(call settings,$(OWN).settings,$(ENVIRONMENT) $(TRANSLUCENT)))
+$(eval $(call settings,$(OWN_IMAGES)/settings,$(SPP) $(EXPOSURE)))
 
-own: build
-	@$(MAKE) --no-print-directory own-images CAMERAS="$$($(GATHER) --list-cameras --quiet '$(SCENE)' | sed 1d | cut -d ' ' -f1 | tr '\n' ' ')"
-	@echo "The pictures are in $(OWN_IMAGES)/: one .png and one OpenEXR image for each camera, by its number."
+ifdef VIEWS
+OWN_PICTURES := $(patsubst %.json,$(OWN_IMAGES)/%.exr,$(notdir $(wildcard $(VIEWS))))
+$(if $(OWN_PICTURES),,$(error no view at $(VIEWS)))
+else
+# Made, and then read again by make itself: the cameras are those of the file.
+include $(OWN).cameras
+OWN_PICTURES := $(CAMERAS:%=$(OWN_IMAGES)/camera%.exr)
+endif
 
-own-images: $(foreach c,$(CAMERAS),$(OWN_IMAGES)/camera$(c).exr)
+own: $(OWN_PICTURES)
+	@echo "The pictures are in $(OWN_IMAGES)/: one .png and one OpenEXR image for each view."
 
-$(OWN).cloud: $(SCENE) $(wildcard $(ENVIRONMENT)) crates/formats/cloud-version | $(SAMPLE)
+$(OWN).cameras: $(SCENE) | $(GATHER)
 	@mkdir -p $(@D)
+	@$(GATHER) --list-cameras --quiet '$<' > $@.list
+	@sed -e 1d -e 's/ .*//' -e 's/^/CAMERAS += /' $@.list > $@
+	@rm $@.list
+	@test -s $@ || { echo "$<: it has no camera; give VIEWS='path/*.json'" >&2; exit 2; }
+
+$(OWN).cloud: $(SCENE) $(wildcard $(ENVIRONMENT)) $(OWN).settings crates/formats/cloud-version | $(SAMPLE)
 	$(SUBMIT) $(SAMPLE) --threads $(THREADS) --seed $(SEED) --samples $(SAMPLES) $(foreach t,$(TRANSLUCENT),--translucent $(t)) \
 	  $(if $(ENVIRONMENT),--environment $(ENVIRONMENT)) '$<' -o $@
 
-$(OWN_IMAGES)/camera%.exr: $(OWN).cloud $(wildcard $(MEDIUM)) | $(GATHER)
-	@mkdir -p $(@D)
-	$(SUBMIT) $(GATHER) --threads $(THREADS) --seed $(SEED) --spp $(SPP) --bssrdf $(MODEL) $(if $(MEDIUM),--medium $(MEDIUM)) --camera $* \
-	  $(if $(ENVIRONMENT),--environment $(ENVIRONMENT)) --preview $(basename $@).png --exposure $(or $(EXPOSURE),0) $< '$(SCENE)' -o $@
+# $(1) image, $(2) the file of its view if it has one, $(3) option that says the view
+define own_picture
+$(1): $(OWN).cloud $(wildcard $(MEDIUM)) $(2) $(OWN_IMAGES)/settings | $(GATHER)
+	$$(SUBMIT) $(GATHER) --threads $$(THREADS) --seed $$(SEED) --spp $$(SPP) --bssrdf $$(MODEL) $$(if $$(MEDIUM),--medium $$(MEDIUM)) $(3) \
+	  $$(if $$(ENVIRONMENT),--environment $$(ENVIRONMENT)) --preview $$(basename $$@).png --exposure $$(or $$(EXPOSURE),0) $$< '$$(SCENE)' -o $$@
+endef
+$(foreach c,$(CAMERAS),$(eval $(call own_picture,$(OWN_IMAGES)/camera$(c).exr,,--camera $(c))))
+$(foreach v,$(wildcard $(VIEWS)),$(eval $(call own_picture,$(OWN_IMAGES)/$(notdir $(basename $(v))).exr,$(v),--view $(v))))
 endif
 
 $(SAMPLE) $(GATHER) $(MAKE_SCENES) $(CONTACT_SHEET): | build ;
@@ -182,4 +213,5 @@ clean:
 help:
 	@sed -n 's/^## /  make /p' $(MAKEFILE_LIST)
 	@echo "  make SCENE=path.glb MEDIUM=marble [SAMPLES=4M] [TRANSLUCENT=Wax] [EXPOSURE=1]: your own file, one image a camera"
+	@echo "  make SCENE=path.glb MEDIUM=marble VIEWS='views/*.json': the same, one image a view file"
 	@echo "  variables: OUT=$(OUT) THREADS=$(THREADS) SUBMIT=$(SUBMIT) SAMPLES=$(SAMPLES) SEED=$(SEED) SPP=$(SPP) MODEL=$(MODEL)"

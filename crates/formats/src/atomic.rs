@@ -1,10 +1,14 @@
 //! Files written whole or not at all: a temporary file beside the target, then a rename.
 //!
 //! Devices and pipes (`/dev/null`, a fifo) are written in place: a rename would replace them.
+//!
+//! Who writes a temporary file holds a lock on it. A process that was killed holds none, on this machine or another, so
+//! the next that writes the same target removes what it left; that of a live one stays.
 
 use crate::Error;
 use std::{
-    fs::{self, File, OpenOptions},
+    ffi::{OsStr, OsString},
+    fs::{self, File, OpenOptions, TryLockError},
     io::{self, BufWriter, Write},
     path::{Path, PathBuf},
     sync::{
@@ -38,14 +42,12 @@ impl Output {
             Ok(meta) => !meta.is_file(),
             Err(_) => false,
         };
-        let options = OpenOptions::new().write(true).clone();
         if in_place {
-            let file = options.clone().open(target).map_err(fail)?;
+            let file = OpenOptions::new().write(true).open(target).map_err(fail)?;
             return Ok(Output { target: target.clone(), temporary: None, file: BufWriter::new(file) });
         }
-        let temporary = temporary_name(target).map_err(fail)?;
-        let file = options.clone().create_new(true).open(&temporary).map_err(fail)?;
-        registered().push(temporary.clone());
+        remove_abandoned(target);
+        let (temporary, file) = create_temporary(target).map_err(fail)?;
         Ok(Output { target: target.clone(), temporary: Some(temporary), file: BufWriter::new(file) })
     }
 
@@ -109,10 +111,58 @@ fn registered() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
     TEMPORARIES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// A new file beside the target, registered and locked.
+fn create_temporary(target: &Path) -> io::Result<(PathBuf, File)> {
+    loop {
+        let path = temporary_name(target)?;
+        let file = match OpenOptions::new().write(true).create_new(true).open(&path) {
+            // Of a process with the same number on another machine.
+            Err(e) if e.kind() == io::ErrorKind::AlreadyExists => continue,
+            opened => opened?,
+        };
+        registered().push(path.clone());
+        // Where there are no locks nothing is ever taken for abandoned.
+        let taken = matches!(file.try_lock(), Err(TryLockError::WouldBlock));
+        if !taken && path.exists() {
+            return Ok((path, file));
+        }
+        // Another process took it for abandoned before it was locked, and removes it.
+        registered().retain(|p| *p != path);
+    }
+}
+
+/// Removes temporary files of this target that nobody holds. What cannot be removed stays, and harms nobody.
+fn remove_abandoned(target: &Path) {
+    let (Some(folder), Some(name)) = (target.parent(), target.file_name()) else { return };
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        if is_temporary_of(name, &entry.file_name())
+            && let Ok(file) = OpenOptions::new().write(true).open(entry.path())
+            && file.try_lock().is_ok()
+        {
+            fs::remove_file(entry.path()).ok();
+        }
+    }
+}
+
+/// Whether [`temporary_name`] could have given `found` for a target named `name`.
+fn is_temporary_of(name: &OsStr, found: &OsStr) -> bool {
+    let found = found.as_encoded_bytes();
+    let numbers = found
+        .strip_prefix(b".")
+        .and_then(|rest| rest.strip_prefix(name.as_encoded_bytes()))
+        .and_then(|rest| rest.strip_prefix(b"."))
+        .and_then(|rest| rest.strip_suffix(b".tmp"));
+    numbers.is_some_and(|numbers| {
+        let parts: Vec<&[u8]> = numbers.split(|byte| *byte == b'-').collect();
+        parts.len() == 2 && parts.iter().all(|part| !part.is_empty() && part.iter().all(u8::is_ascii_digit))
+    })
+}
+
 fn temporary_name(target: &Path) -> io::Result<PathBuf> {
     static COUNTER: AtomicU64 = AtomicU64::new(0);
     let name = target.file_name().ok_or_else(|| io::Error::other("names no file"))?;
-    let mut hidden = std::ffi::OsString::from(".");
+    let mut hidden = OsString::from(".");
     hidden.push(name);
     hidden.push(format!(".{}-{}.tmp", std::process::id(), COUNTER.fetch_add(1, Ordering::Relaxed)));
     Ok(target.with_file_name(hidden))
@@ -142,6 +192,30 @@ mod tests {
         write(&path, b"new").expect("writes");
         assert_eq!(fs::read(&path).expect("reads"), b"new");
         assert_eq!(fs::read_dir(folder.path()).expect("lists").count(), 1);
+    }
+
+    /// Planted errors that this caught: the lock left out, every temporary file of the folder taken.
+    #[test]
+    fn what_a_killed_process_left_is_removed_and_what_a_live_one_writes_is_not() {
+        let folder = tempfile::tempdir().expect("folder");
+        let path = |name: &str| folder.path().join(name);
+        let names = || {
+            let list = fs::read_dir(folder.path()).expect("lists");
+            let mut names: Vec<_> = list.map(|e| e.expect("entry").file_name().into_string().expect("UTF-8")).collect();
+            names.sort();
+            names
+        };
+        let strangers = [".a.cloud.1-.tmp", ".a.cloud.1-2-3.tmp", ".a.cloud.old.tmp", ".b.cloud.1-2.tmp"];
+        for name in strangers.iter().chain(&[".a.cloud.99-0.tmp", ".a.cloud.99-1.tmp"]) {
+            fs::write(path(name), b"half").expect("writes");
+        }
+        let live = Output::create(&path("a.cloud")).expect("creates");
+        write(&path("a.cloud"), b"whole").expect("writes beside a live one");
+        assert_eq!(names().len(), strangers.len() + 2, "{:?}", names());
+        live.commit().expect("is still there");
+        let mut expected = strangers.map(str::to_owned).to_vec();
+        expected.push("a.cloud".into());
+        assert_eq!(names(), expected);
     }
 
     #[test]
