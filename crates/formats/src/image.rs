@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 mod decode;
 mod encode;
 mod header;
+mod parallel;
 
 /// Most samples of an image (pixels times channels), both ways: 8 GiB as float32.
 const MAX_SAMPLES: u64 = 1 << 31;
@@ -84,7 +85,9 @@ pub enum ImageError {
     #[error("damaged or truncated OpenEXR file: {0}; make it again")]
     Damaged(String),
     /// A valid file of a kind that is not read here.
-    #[error("OpenEXR file of an unsupported kind: {0}; convert it to a flat image with ZIP compression")]
+    #[error(
+        "OpenEXR file of an unsupported kind: {0}; convert it to a flat image of float samples with ZIP compression"
+    )]
     Unsupported(String),
     /// More samples than fit, or than the file can hold.
     #[error("{width} x {height} pixels with {channels} channels are more than {limit}")]
@@ -126,22 +129,29 @@ impl Image {
     /// one part or several of the same data window; no, RLE, ZIP, PIZ or PXR24 compression.
     ///
     /// Channels of several parts get the name of their part as layer. Attributes of kinds that [`Attribute`]
-    /// does not know are left out. A uint beyond 2^24 is rounded to float32.
+    /// does not know are left out. A uint that float32 does not hold (not all beyond 2^24 are held) is refused.
     pub fn decode(bytes: &[u8]) -> Result<Image, ImageError> {
-        decode::decode(bytes)
+        decode::decode(bytes, NonZeroUsize::MIN)
     }
 
     /// Reads an OpenEXR file as [`Image::decode`] does; errors name the file.
     pub fn read(path: &Path) -> Result<Image, ImageError> {
-        read_file(path).map_err(|source| ImageError::File { path: path.to_owned(), source: Box::new(source) })
+        Image::read_with(path, NonZeroUsize::MIN)
+    }
+
+    /// As [`Image::read`], with the same result for any number of threads.
+    ///
+    /// Memory: the file, the samples, and 4 MiB or one block for each thread; then the samples alone.
+    pub fn read_with(path: &Path, threads: NonZeroUsize) -> Result<Image, ImageError> {
+        read_file(path, threads).map_err(|source| ImageError::File { path: path.to_owned(), source: Box::new(source) })
     }
 }
 
-fn read_file(path: &Path) -> Result<Image, ImageError> {
+fn read_file(path: &Path, threads: NonZeroUsize) -> Result<Image, ImageError> {
     if !std::fs::metadata(path)?.is_file() {
         return Err(ImageError::NotAFile);
     }
-    Image::decode(&std::fs::read(path)?)
+    decode::decode(&std::fs::read(path)?, threads)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! OpenEXR bytes to image. The bytes are not trusted.
 
 use std::io::Cursor;
+use std::num::NonZeroUsize;
 
 use exr::block::reader::ChunksReader;
 use exr::block::{UncompressedBlock, read};
@@ -12,31 +13,43 @@ use exr::meta::attribute::SampleType;
 use exr::meta::header::Header;
 use exr::prelude::f16;
 
+use super::parallel::parallel;
 use super::{Channel, Image, ImageError, MAX_SAMPLES, header};
 
 /// First bytes of every OpenEXR file.
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// A file may unpack to this many times its length, and some more: deflate reaches 1032.
 const MAX_EXPANSION: u64 = 2048;
+/// Unpacked bytes that a thread makes before it waits for the others, and the most blocks.
+const BYTES_PER_THREAD: usize = 4 << 20;
+const MAX_BLOCKS_PER_THREAD: usize = 256;
 /// Unpacked bytes that any file may have, however short.
 const ALWAYS_ALLOWED: u64 = 64 << 20;
 
-/// Sequential, so that a program's thread limit is never exceeded by a pool of the library.
-pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageError> {
+/// Blocks are unpacked by threads of our own, so that a pool of the library never exceeds a program's thread limit.
+pub(super) fn decode(bytes: &[u8], threads: NonZeroUsize) -> Result<Image, ImageError> {
     if !bytes.starts_with(&MAGIC) {
         return Err(ImageError::NotOpenExr);
     }
-    let reader = read(Cursor::new(bytes), false).map_err(fault)?;
+    let reader = read(Cursor::new(bytes), false).map_err(|error| refusal(error, bytes))?;
     check_size(reader.headers(), bytes.len())?;
     let mut image = empty_image(reader.headers())?;
     let several = reader.headers().len() > 1;
     let mut parts: Vec<Part> = reader.headers().iter().map(Part::new).collect();
-    let chunks = reader.filter_chunks(false, |_, tile, _| tile.level_index == Vec2(0, 0)).map_err(fault)?;
-    let mut blocks = chunks.sequential_decompressor(true);
-    while let Some(block) = blocks.decompress_next_block() {
-        let block = block.map_err(fault)?;
-        let part = parts.get_mut(block.index.layer).ok_or_else(|| damaged("a block of no part"))?;
-        part.place(&block)?;
+    let mut chunks = reader.filter_chunks(false, |_, tile, _| tile.level_index == Vec2(0, 0)).map_err(fault)?;
+    let meta = chunks.meta_data().clone();
+    let unpack = |chunk: exr::error::Result<_>| UncompressedBlock::decompress_chunk(chunk?, &meta, true);
+    let group = blocks_at_a_time(&meta.headers, threads);
+    loop {
+        let packed: Vec<_> = chunks.by_ref().take(group).collect();
+        if packed.is_empty() {
+            break;
+        }
+        for block in parallel(threads, packed, unpack) {
+            let block = block.map_err(fault)?;
+            let part = parts.get_mut(block.index.layer).ok_or_else(|| damaged("a block of no part"))?;
+            part.place(&block)?;
+        }
     }
     for part in parts {
         image.channels.extend(part.finish(several)?);
@@ -47,6 +60,16 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageError> {
     }
     image.attributes = header::attributes(bytes).ok_or_else(|| damaged("the header ends early"))?;
     Ok(image)
+}
+
+/// Enough for each thread to outweigh its start, few enough for memory.
+fn blocks_at_a_time(headers: &[Header], threads: NonZeroUsize) -> usize {
+    let bytes = |part: &Header| {
+        let Vec2(width, height) = part.max_block_pixel_size();
+        width.saturating_mul(height).saturating_mul(part.channels.bytes_per_pixel)
+    };
+    let largest = headers.iter().map(bytes).max().unwrap_or(0).max(1);
+    (BYTES_PER_THREAD / largest).clamp(1, MAX_BLOCKS_PER_THREAD).saturating_mul(threads.get())
 }
 
 /// The data window of all parts, without their channels.
@@ -141,7 +164,12 @@ impl Part {
                 let (Some(target), Some((line, next))) = (target, source) else {
                     return Err(damaged("a block that is too short or out of place"));
                 };
-                convert(*kind, line, target);
+                if !convert(*kind, line, target) {
+                    let name = &channel.name;
+                    return Err(ImageError::Unsupported(format!(
+                        "channel `{name}` holds whole numbers that float32 does not hold"
+                    )));
+                }
                 rest = next;
             }
         }
@@ -164,8 +192,8 @@ impl Part {
     }
 }
 
-/// One row of one channel, in the byte order of this machine, to float32.
-fn convert(kind: SampleType, line: &[u8], target: &mut [f32]) {
+/// One row of one channel, in the byte order of this machine, to float32; whether all of it is exact.
+fn convert(kind: SampleType, line: &[u8], target: &mut [f32]) -> bool {
     match kind {
         SampleType::F16 => {
             for (value, bytes) in target.iter_mut().zip(line.as_chunks().0) {
@@ -179,9 +207,27 @@ fn convert(kind: SampleType, line: &[u8], target: &mut [f32]) {
         }
         SampleType::U32 => {
             for (value, bytes) in target.iter_mut().zip(line.as_chunks().0) {
-                *value = u32::from_ne_bytes(*bytes) as f32;
+                let whole = u32::from_ne_bytes(*bytes);
+                *value = whole as f32;
+                // In f64, which holds both: back to u32 the largest would saturate and look equal.
+                if f64::from(*value) != f64::from(whole) {
+                    return false;
+                }
             }
         }
+    }
+    true
+}
+
+/// The library does not name the compressions that came after it.
+fn refusal(error: ExrError, bytes: &[u8]) -> ImageError {
+    match (fault(error), header::compression(bytes)) {
+        (ImageError::Unsupported(_), Some(number @ 12..)) => ImageError::Unsupported(match number {
+            12 => "LJ2K compression".to_owned(),
+            13 => "ZSTD compression".to_owned(),
+            _ => format!("compression number {number}"),
+        }),
+        (error, _) => error,
     }
 }
 

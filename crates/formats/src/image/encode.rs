@@ -4,7 +4,6 @@ use std::collections::HashMap;
 use std::io::Cursor;
 use std::num::NonZeroUsize;
 
-use exr::block::chunk::Chunk;
 use exr::block::writer::ChunksWriter;
 use exr::block::{BlockIndex, UncompressedBlock, write};
 use exr::compression::Compression;
@@ -16,6 +15,7 @@ use exr::meta::attribute::{
 use exr::meta::header::{Header, LayerAttributes};
 use exr::prelude::SmallVec;
 
+use super::parallel::parallel;
 use super::{Attribute, Channel, Image, ImageError, MAX_SAMPLES, header};
 
 /// Blocks of 16 rows that a thread compresses at a time: enough to outweigh its start, few enough for memory.
@@ -36,9 +36,10 @@ pub(super) fn encode(image: &Image, threads: NonZeroUsize) -> Result<Vec<u8>, Im
     write(&mut file, SmallVec::from_iter([header]), false, |meta, writer| {
         let blocks: Vec<_> = meta.enumerate_ordered_header_block_indices().collect();
         for group in blocks.chunks(threads.get().saturating_mul(BLOCKS_PER_THREAD)) {
-            let compress = |index| block(image.width, &channels, index).compress_to_chunk(&meta.headers);
-            for ((position, _), chunk) in group.iter().zip(parallel(threads, group, compress)) {
-                writer.write_chunk(*position, chunk?)?;
+            let compress =
+                |(position, index)| (position, block(image.width, &channels, index).compress_to_chunk(&meta.headers));
+            for (position, chunk) in parallel(threads, group.to_vec(), compress) {
+                writer.write_chunk(position, chunk?)?;
             }
         }
         Ok(())
@@ -47,26 +48,6 @@ pub(super) fn encode(image: &Image, threads: NonZeroUsize) -> Result<Vec<u8>, Im
     let mut bytes = file.into_inner();
     header::sort(&mut bytes)?;
     Ok(bytes)
-}
-
-/// What `compress` makes of each block, in order of the blocks.
-fn parallel(
-    threads: NonZeroUsize,
-    blocks: &[(usize, BlockIndex)],
-    compress: impl Fn(BlockIndex) -> exr::error::Result<Chunk> + Sync,
-) -> Vec<exr::error::Result<Chunk>> {
-    let run = |share: &[(usize, BlockIndex)]| share.iter().map(|(_, index)| compress(*index)).collect::<Vec<_>>();
-    if threads.get() == 1 {
-        return run(blocks);
-    }
-    let shares = blocks.chunks(blocks.len().div_ceil(threads.get()).max(1));
-    std::thread::scope(|scope| {
-        let started: Vec<_> = shares.map(|share| scope.spawn(|| run(share))).collect();
-        started
-            .into_iter()
-            .flat_map(|thread| thread.join().expect("compression has no input it cannot handle"))
-            .collect()
-    })
 }
 
 /// The samples of some whole rows as the file stores them: row by row, in it channel by channel.

@@ -111,6 +111,12 @@ pub(super) fn attributes(bytes: &[u8]) -> Option<std::collections::BTreeMap<Stri
     }
 }
 
+/// The number of the compression of the first part.
+pub(super) fn compression(bytes: &[u8]) -> Option<u8> {
+    let (entries, _) = split(bytes.get(PREAMBLE..)?)?;
+    entries.iter().find(|entry| entry.name == b"compression")?.value.first().copied()
+}
+
 /// The attributes up to the zero that ends the list, and what follows it.
 fn split(bytes: &[u8]) -> Option<(Vec<Entry<'_>>, &[u8])> {
     let mut entries = Vec::new();

@@ -1,0 +1,36 @@
+//! Blocks of pixels, packed and unpacked by several threads.
+
+use std::num::NonZeroUsize;
+
+/// What `work` makes of each item, in the order of the items, whatever the number of threads.
+pub(super) fn parallel<T: Send, R: Send>(threads: NonZeroUsize, items: Vec<T>, work: impl Fn(T) -> R + Sync) -> Vec<R> {
+    if threads.get() == 1 || items.len() < 2 {
+        return items.into_iter().map(work).collect();
+    }
+    let share = items.len().div_ceil(threads.get());
+    let mut rest = items.into_iter();
+    let shares = std::iter::from_fn(|| Some(rest.by_ref().take(share).collect::<Vec<T>>()).filter(|s| !s.is_empty()));
+    std::thread::scope(|scope| {
+        let work = &work;
+        let started: Vec<_> =
+            shares.map(|share| scope.spawn(move || share.into_iter().map(work).collect::<Vec<R>>())).collect();
+        started.into_iter().flat_map(|thread| thread.join().expect("no block is one that packing panics at")).collect()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Planted and caught: shares of one item too few, threads joined last first.
+    #[test]
+    fn results_keep_the_order_of_the_items() {
+        for count in [0, 1, 2, 7, 64] {
+            let expected: Vec<usize> = (0..count).map(|n| n * n).collect();
+            for threads in [1, 2, 3, 64, 100] {
+                let found = parallel(NonZeroUsize::new(threads).unwrap(), (0..count).collect(), |n| n * n);
+                assert_eq!(found, expected, "{threads} threads");
+            }
+        }
+    }
+}
