@@ -1,8 +1,10 @@
 //! Letters of five by seven dots.
 
-/// Pixels of a dot's side, of the way from letter to letter, and of the way from line to line.
+/// Pixels of a dot's side.
 const DOT: usize = 2;
-const ADVANCE: usize = 6 * DOT;
+/// From letter to letter, pixels.
+pub const ADVANCE: usize = 6 * DOT;
+/// From line to line, pixels.
 pub const LINE: usize = 9 * DOT;
 
 /// The pixels of a line of text that lie within `width`, from its upper left corner.

@@ -3,29 +3,37 @@
 use std::{
     fs::File,
     io::BufReader,
+    ops::Range,
     path::{Path, PathBuf},
 };
 
 /// Why a picture cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum PictureError {
+    /// The operating system refused.
     #[error("{}: cannot read: {source}", path.display())]
     Read { path: PathBuf, source: std::io::Error },
+    /// Another format, or damaged.
     #[error("{}: not a PNG picture that can be read: {source}", path.display())]
     Decode { path: PathBuf, source: png::DecodingError },
+    /// Grey, with alpha, or of other depth.
     #[error("{}: not red, green and blue of 8 bits; write it with `gather --preview`", .0.display())]
     Kind(PathBuf),
 }
 
+/// Rows of pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
+    /// Pixels per row.
     pub width: usize,
+    /// Rows.
     pub height: usize,
     /// Rows from top to bottom.
     pub pixels: Vec<[u8; 3]>,
 }
 
 impl Picture {
+    /// A picture of one colour.
     pub fn new(width: usize, height: usize, color: [u8; 3]) -> Picture {
         Picture { width, height, pixels: vec![color; width * height] }
     }
@@ -71,10 +79,35 @@ impl Picture {
         }
     }
 
+    /// Sets one pixel, if there is such a one.
     pub fn dot(&mut self, x: usize, y: usize, color: [u8; 3]) {
         if x < self.width && y < self.height {
             self.pixels[y * self.width + x] = color;
         }
+    }
+
+    /// Fills a rectangle; what lies outside the picture is left out.
+    pub fn fill(&mut self, columns: Range<usize>, rows: Range<usize>, color: [u8; 3]) {
+        let columns = columns.start.min(self.width)..columns.end.min(self.width);
+        for row in rows.start.min(self.height)..rows.end.min(self.height) {
+            self.pixels[row * self.width..][columns.clone()].fill(color);
+        }
+    }
+
+    /// The picture as a PNG file, with texts of Latin-1 by their keywords.
+    pub fn encode(&self, pack: png::Compression, texts: &[(&str, &str)]) -> Result<Vec<u8>, png::EncodingError> {
+        let mut file = Vec::new();
+        let mut encoder = png::Encoder::new(&mut file, self.width as u32, self.height as u32);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_compression(pack);
+        encoder.set_filter(png::Filter::Adaptive);
+        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+        for (keyword, text) in texts {
+            encoder.add_text_chunk((*keyword).to_owned(), (*text).to_owned())?;
+        }
+        encoder.write_header()?.write_image_data(self.pixels.as_flattened())?;
+        Ok(file)
     }
 }
 
@@ -99,6 +132,15 @@ mod tests {
         let pixels = vec![[0; 3], [255; 3], [255; 3], [0; 3]];
         let small = Picture { width: 2, height: 2, pixels }.fit(1);
         assert_eq!(small, Picture::new(1, 1, [188; 3]));
+    }
+
+    /// Planted and caught: rows and columns exchanged, no end at the border.
+    #[test]
+    fn a_rectangle_ends_at_the_border() {
+        let mut picture = Picture::new(3, 2, [0; 3]);
+        picture.fill(1..9, 1..5, [7; 3]);
+        let set: Vec<bool> = picture.pixels.iter().map(|pixel| *pixel == [7; 3]).collect();
+        assert_eq!(set, [false, false, false, false, true, true]);
     }
 
     #[test]

@@ -1,7 +1,5 @@
 //! `contact-sheet -o SHEET.png TITLE=FILE.png ...`: pictures side by side, made smaller, each with its title.
 
-mod font;
-mod picture;
 mod sheet;
 
 use clap::Parser;

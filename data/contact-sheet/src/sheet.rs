@@ -1,6 +1,6 @@
 //! Cells in columns: a picture, its title below.
 
-use crate::{font, picture::Picture};
+use picture::{Picture, font};
 
 /// Pixels between cells and around them.
 const GUTTER: usize = 10;
@@ -36,15 +36,7 @@ impl Sheet {
     }
 
     pub fn encode(&self) -> Result<Vec<u8>, png::EncodingError> {
-        let mut file = Vec::new();
-        let mut encoder = png::Encoder::new(&mut file, self.0.width as u32, self.0.height as u32);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_compression(png::Compression::High);
-        encoder.set_filter(png::Filter::Adaptive);
-        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-        encoder.write_header()?.write_image_data(self.0.pixels.as_flattened())?;
-        Ok(file)
+        self.0.encode(png::Compression::High, &[])
     }
 }
 
