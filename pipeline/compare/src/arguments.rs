@@ -1,9 +1,12 @@
 //! What `compare` is asked on the command line.
 
-use std::path::PathBuf;
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
 
 use clap::Parser;
-use compare::{Choice, Gate, Settings};
+use clap::builder::{PathBufValueParser, TypedValueParser};
+use compare::heatmap::DEFAULT_MAX;
+use compare::{Choice, Gate, LimitsError, Settings, read_limits};
 
 /// Compare two OpenEXR images.
 ///
@@ -13,8 +16,10 @@ use compare::{Choice, Gate, Settings};
 #[command(version)]
 pub(crate) struct Arguments {
     /// Image that is right
+    #[arg(value_parser = file())]
     pub(crate) reference: PathBuf,
     /// Image to judge
+    #[arg(value_parser = file())]
     pub(crate) test: PathBuf,
     /// Largest relative difference of the means, of every channel (0.01 is one per cent)
     #[arg(long, value_name = "R", value_parser = limit)]
@@ -34,7 +39,10 @@ pub(crate) struct Arguments {
     /// Every bit must be equal; looks at all layers unless --layer says otherwise
     #[arg(long)]
     pub(crate) exact: bool,
-    /// Layer that the gates look at (beauty is R, G and B), or `all` [default: beauty]
+    /// JSON file of gates, each with its reason, that hold besides those of the command line (docs/compare.md)
+    #[arg(long, value_name = "FILE", value_parser = file())]
+    pub(crate) limits: Option<PathBuf>,
+    /// Layer that gates of the command line and --heatmap look at (beauty is R, G and B), or `all` [default: beauty]
     #[arg(long, value_name = "NAME")]
     pub(crate) layer: Option<String>,
     /// Let NaN and infinity pass; gates on their channel still fail
@@ -44,15 +52,30 @@ pub(crate) struct Arguments {
     #[arg(long)]
     pub(crate) ignore_meta: bool,
     /// Write all metrics and gates as JSON
-    #[arg(short = 'o', long, visible_alias = "output", value_name = "FILE")]
+    #[arg(short = 'o', long, visible_alias = "output", value_name = "FILE", value_parser = file())]
     pub(crate) json: Option<PathBuf>,
+    /// Write test - reference of every channel, signed, as OpenEXR
+    #[arg(long, value_name = "FILE.exr", value_parser = file())]
+    pub(crate) diff_exr: Option<PathBuf>,
+    /// Write the layer's absolute error as a picture with its scale
+    #[arg(long, value_name = "FILE.png", value_parser = file())]
+    pub(crate) heatmap: Option<PathBuf>,
+    /// Error at the end of the heatmap's scale, in units of the channel
+    #[arg(long, value_name = "T", default_value_t = DEFAULT_MAX, value_parser = end_of_scale, requires = "heatmap")]
+    pub(crate) heatmap_max: f64,
+    /// Make the test image the reference, whatever the verdict, and append what changed to REFERENCE.log
+    #[arg(long, requires = "reason")]
+    pub(crate) accept: bool,
+    /// Why the test image is accepted
+    #[arg(long, value_name = "TEXT", requires = "accept", value_parser = reason)]
+    pub(crate) reason: Option<String>,
     #[command(flatten)]
     pub(crate) common: cli::Common,
 }
 
 impl Arguments {
-    /// What is asked of the comparison.
-    pub(crate) fn settings(&self) -> Settings {
+    /// What is asked of the comparison; reads the limits file.
+    pub(crate) fn settings(&self) -> Result<Settings, LimitsError> {
         let gates = [
             self.max_bias.map(Gate::Bias),
             self.max_relmse.map(Gate::RelMse),
@@ -61,17 +84,42 @@ impl Arguments {
             self.max_outliers,
             self.exact.then_some(Gate::Exact),
         ];
-        Settings {
+        Ok(Settings {
             gates: gates.into_iter().flatten().collect(),
-            choice: match self.layer.as_deref() {
-                None => Choice::Default,
-                Some("all") => Choice::All,
-                Some(name) => Choice::Named(name.to_owned()),
-            },
+            limits: self.limits.as_deref().map(read_limits).transpose()?.unwrap_or_default(),
+            choice: Choice::new(self.layer.as_deref()),
             allow_nonfinite: self.allow_nonfinite,
             ignore_meta: self.ignore_meta,
-        }
+        })
     }
+
+    /// Threads for the reading and writing of images.
+    pub(crate) fn threads(&self) -> NonZeroUsize {
+        NonZeroUsize::new(self.common.thread_count()).unwrap_or(NonZeroUsize::MIN)
+    }
+
+    /// Where `--accept` tells what it did.
+    pub(crate) fn log(&self) -> PathBuf {
+        let mut name = self.reference.clone().into_os_string();
+        name.push(".log");
+        name.into()
+    }
+}
+
+/// A program that expects `-` to be a stream would wait for it, or find the file of that name.
+fn file() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| match path == Path::new("-") {
+        true => Err("streams are not accepted; give the name of a file (`./-` if that is its name)"),
+        false => Ok(path),
+    })
+}
+
+fn end_of_scale(text: &str) -> Result<f64, String> {
+    limit(text).ok().filter(|max| *max > 0.0).ok_or_else(|| "not a finite number above 0".to_owned())
+}
+
+fn reason(text: &str) -> Result<String, String> {
+    if text.trim().is_empty() { Err("it is empty; say why".to_owned()) } else { Ok(text.to_owned()) }
 }
 
 fn limit(text: &str) -> Result<f64, String> {

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::layer::{BEAUTY, Layer};
 use crate::metric::{Metrics, bitwise_differences, pixels_beyond};
-use crate::{Choice, Mismatch, Report, Settings};
+use crate::{Choice, Limit, Mismatch, Report, Settings};
 
 /// A limit; those of a metric hold for every channel of the layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,9 +48,43 @@ pub struct Judgement {
     pub threshold: Option<f64>,
     /// Whether it passed.
     pub ok: bool,
+    /// Why the limit is what it is, of a limits file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
 }
 
 impl Gate {
+    /// A gate by the name of its option. Only `max-outliers` has a threshold.
+    pub fn new(name: &str, limit: f64, threshold: Option<f64>) -> Result<Gate, String> {
+        let is_limit = |number: f64| number.is_finite() && number >= 0.0;
+        if !is_limit(limit) || threshold.is_some_and(|threshold| !is_limit(threshold)) {
+            return Err("not a finite number of at least 0".to_owned());
+        }
+        match (name, threshold) {
+            ("max-outliers", None) => Err("`threshold` is missing: the error that makes an outlier".to_owned()),
+            ("max-outliers", Some(threshold)) => match limit as u64 {
+                count if count as f64 == limit => Ok(Gate::Outliers { count, threshold }),
+                _ => Err("not a whole number of pixels".to_owned()),
+            },
+            (_, Some(_)) => Err("`threshold` belongs to `max-outliers` only".to_owned()),
+            ("max-bias", None) => Ok(Gate::Bias(limit)),
+            ("max-relmse", None) => Ok(Gate::RelMse(limit)),
+            ("max-rmse", None) => Ok(Gate::Rmse(limit)),
+            ("max-abs", None) => Ok(Gate::Abs(limit)),
+            ("exact", None) if limit == 0.0 => Ok(Gate::Exact),
+            ("exact", None) => Err("the limit of this gate is 0".to_owned()),
+            _ => Err(format!("there is no gate `{name}`")),
+        }
+    }
+
+    /// Whether two gates ask the same of an image and differ at most in what they allow.
+    pub(crate) fn is_same_question(self, other: Gate) -> bool {
+        match (self, other) {
+            (Gate::Outliers { threshold: one, .. }, Gate::Outliers { threshold: two, .. }) => one == two,
+            _ => self.name() == other.name(),
+        }
+    }
+
     fn name(self) -> &'static str {
         match self {
             Gate::Bias(_) => "max-bias",
@@ -82,7 +116,8 @@ impl Gate {
         };
         let threshold = if let Gate::Outliers { threshold, .. } = self { Some(threshold) } else { None };
         let limit = self.limit();
-        Judgement { gate: self.name(), layer: layer.name.clone(), channel, value, limit, threshold, ok: value <= limit }
+        let (gate, layer) = (self.name(), layer.name.clone());
+        Judgement { gate, layer, channel, value, limit, threshold, ok: value <= limit, reason: None }
     }
 }
 
@@ -93,18 +128,25 @@ pub(crate) fn judge(layers: &[Layer<'_>], report: &Report, settings: &Settings) 
         let value = (report.nonfinite.reference + report.nonfinite.test) as f64;
         let layer = "all".to_owned();
         let (gate, limit) = ("nonfinite", 0.0);
-        judgements.push(Judgement { gate, layer, channel: None, value, limit, threshold: None, ok: value <= limit });
+        let ok = value <= limit;
+        judgements.push(Judgement { gate, layer, channel: None, value, limit, threshold: None, ok, reason: None });
     }
-    for gate in &settings.gates {
-        let looks_at = looks_at(*gate, &settings.choice);
+    for (gate, choice, reason) in asked(settings) {
+        let looks_at = looks_at(gate, choice);
         let chosen = layers.iter().filter(|layer| looks_at.is_none_or(|name| layer.name == name));
-        judgements.extend(chosen.map(|layer| gate.judge(layer, report)));
+        judgements.extend(chosen.map(|layer| Judgement { reason: reason.cloned(), ..gate.judge(layer, report) }));
     }
     judgements
 }
 
+/// Every gate with its layers and, if it has one, its reason: those of the command line first.
+fn asked(settings: &Settings) -> impl Iterator<Item = (Gate, &Choice, Option<&String>)> {
+    let own = settings.gates.iter().map(|gate| (*gate, &settings.choice, None));
+    own.chain(settings.limits.iter().map(|Limit { gate, choice, reason }| (*gate, choice, Some(reason))))
+}
+
 /// The layer, or `None` for all.
-fn looks_at(gate: Gate, choice: &Choice) -> Option<&str> {
+pub(crate) fn looks_at(gate: Gate, choice: &Choice) -> Option<&str> {
     match (choice, gate) {
         (Choice::Default, Gate::Exact) | (Choice::All, _) => None,
         (Choice::Default, _) => Some(BEAUTY),
@@ -114,14 +156,11 @@ fn looks_at(gate: Gate, choice: &Choice) -> Option<&str> {
 
 /// A gate without a layer to look at would always pass.
 pub(crate) fn check_choice(layers: &[Layer<'_>], settings: &Settings) -> Result<(), Mismatch> {
-    let asked = settings.gates.iter().filter_map(|gate| looks_at(*gate, &settings.choice));
+    let asked = asked(settings).filter_map(|(gate, choice, _)| looks_at(gate, choice));
     let named = if let Choice::Named(name) = &settings.choice { Some(name.as_str()) } else { None };
     match asked.chain(named).find(|name| layers.iter().all(|layer| layer.name != *name)) {
         None => Ok(()),
-        Some(name) => Err(Mismatch::NoLayer {
-            name: name.to_owned(),
-            present: layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>().join(", "),
-        }),
+        Some(name) => Err(Mismatch::no_layer(name, layers)),
     }
 }
 

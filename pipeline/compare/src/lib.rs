@@ -6,22 +6,29 @@
 
 use formats::image::Image;
 
+mod difference;
 mod gate;
+pub mod heatmap;
 mod layer;
+mod limits;
 pub mod metric;
 mod report;
 mod structure;
 
+pub use difference::difference;
 pub use gate::{Gate, Judgement};
 pub use layer::Layer;
+pub use limits::{Limit, LimitsError, read_limits};
 pub use report::{ChannelReport, LayerReport, NonFinite, Report};
-pub use structure::Mismatch;
+pub use structure::{Input, Mismatch};
 
 /// What is asked of the comparison.
 #[derive(Clone, Debug, Default)]
 pub struct Settings {
-    /// Limits to hold.
+    /// Limits to hold, on the chosen layers.
     pub gates: Vec<Gate>,
+    /// Limits to hold besides, each on layers of its own.
+    pub limits: Vec<Limit>,
     /// Which layers the gates look at.
     pub choice: Choice,
     /// Values that are not finite do not fail by themselves; they still fail every gate on their channel.
@@ -42,12 +49,24 @@ pub enum Choice {
     Named(String),
 }
 
+impl Choice {
+    /// A layer by its name, or `all`. `beauty` by its name is a layer like any other.
+    pub fn new(name: Option<&str>) -> Choice {
+        match name {
+            None => Choice::Default,
+            Some("all") => Choice::All,
+            Some(name) => Choice::Named(name.to_owned()),
+        }
+    }
+}
+
 /// Measures every channel and layer, and judges by the gates.
 pub fn compare(reference: &Image, test: &Image, settings: &Settings) -> Result<Report, Mismatch> {
-    structure::check(reference, test, settings.ignore_meta)?;
+    let inputs = structure::check(reference, test, settings.ignore_meta)?;
     let layers = layer::layers(reference, test);
     gate::check_choice(&layers, settings)?;
     let mut report = report::measure(test, &layers);
+    report.inputs = inputs;
     report.nonfinite.allowed = settings.allow_nonfinite;
     report.gates = gate::judge(&layers, &report, settings);
     report.pass = report.gates.iter().all(|gate| gate.ok);

@@ -8,6 +8,7 @@ use serde::Serialize;
 use crate::gate::Judgement;
 use crate::layer::Layer;
 use crate::metric::{EPSILON, Metrics, measure as metrics};
+use crate::structure::Input;
 
 /// Changes only when a key of the JSON report changes its meaning or goes.
 const SCHEMA: u32 = 1;
@@ -23,6 +24,8 @@ pub struct Report {
     pub height: usize,
     /// What is added to the squared reference in relMSE.
     pub relmse_epsilon: f64,
+    /// Whether both images were made from the same inputs, as far as they tell.
+    pub inputs: Vec<Input>,
     /// NaN and infinity in all channels.
     pub nonfinite: NonFinite,
     /// The beauty layer first, then by name.
@@ -89,6 +92,7 @@ pub(crate) fn measure(image: &Image, layers: &[Layer<'_>]) -> Report {
         width: image.width,
         height: image.height,
         relmse_epsilon: EPSILON,
+        inputs: Vec::new(),
         nonfinite: NonFinite {
             allowed: false,
             reference: count(|metrics| metrics.nonfinite_reference),
@@ -129,6 +133,15 @@ impl Report {
         // Writing to a string cannot fail, here and below.
         let _ = writeln!(table, "not finite: {reference} samples of the reference, {test} of the test image");
         let _ = writeln!(table, "relMSE = mean of (test - reference)^2 / (reference^2 + {EPSILON})");
+        for note in self.inputs.iter().filter_map(Input::note) {
+            let _ = writeln!(table, "{note}");
+        }
+        for gate in self.gates.iter().filter(|gate| !gate.ok) {
+            if let Some(reason) = &gate.reason {
+                let _ =
+                    writeln!(table, "{} of {} is limited to {}: {reason}", gate.gate, gate.layer, number(gate.limit));
+            }
+        }
         table
     }
 

@@ -3,9 +3,38 @@
 use std::collections::BTreeSet;
 
 use formats::image::{Attribute, Image};
+use serde::Serialize;
+
+use crate::layer::Layer;
 
 /// Hashes that say what an image was made of.
 const HASHES: [&str; 2] = ["pcsss/cloud", "pcsss/scene"];
+
+/// What one of the hashes says of both images.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Input {
+    /// The attribute.
+    pub name: &'static str,
+    /// Its value in the reference, if it has one.
+    pub reference: Option<String>,
+    /// Its value in the test image, if it has one.
+    pub test: Option<String>,
+}
+
+impl Input {
+    /// What a reader should know: nothing if both images have the same value, or none.
+    pub(crate) fn note(&self) -> Option<String> {
+        let Input { name, reference, test } = self;
+        match (reference, test) {
+            (Some(reference), Some(test)) if reference != test => {
+                Some(format!("{name} differs and is ignored: {reference} in the reference, {test} in the test image"))
+            }
+            (Some(_), None) => Some(format!("{name} is in the reference only: other inputs would not be noticed")),
+            (None, Some(_)) => Some(format!("{name} is in the test image only: other inputs would not be noticed")),
+            (Some(_), Some(_)) | (None, None) => None,
+        }
+    }
+}
 
 /// Why two images cannot be compared; said of the test image.
 #[derive(Debug, PartialEq, thiserror::Error)]
@@ -49,7 +78,7 @@ pub enum Mismatch {
         test: String,
     },
     /// The gates have nothing to look at.
-    #[error("no layer `{name}`; it has {present}; choose with --layer")]
+    #[error("no layer `{name}`; it has {present}; choose with --layer, or in the limits file")]
     NoLayer {
         /// The layer asked for.
         name: String,
@@ -58,7 +87,15 @@ pub enum Mismatch {
     },
 }
 
-pub(crate) fn check(reference: &Image, test: &Image, ignore_meta: bool) -> Result<(), Mismatch> {
+impl Mismatch {
+    pub(crate) fn no_layer(name: &str, layers: &[Layer<'_>]) -> Mismatch {
+        let present = layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>().join(", ");
+        Mismatch::NoLayer { name: name.to_owned(), present }
+    }
+}
+
+/// What the hashes say, if the images can be compared.
+pub(crate) fn check(reference: &Image, test: &Image, ignore_meta: bool) -> Result<Vec<Input>, Mismatch> {
     let sizes = [[reference.width, reference.height], [test.width, test.height]];
     if sizes[0] != sizes[1] {
         return Err(Mismatch::Size { reference: sizes[0], test: sizes[1] });
@@ -73,19 +110,24 @@ pub(crate) fn check(reference: &Image, test: &Image, ignore_meta: bool) -> Resul
         let missing = list(expected.difference(&found).collect());
         return Err(Mismatch::Channels { missing, additional: list(found.difference(&expected).collect()) });
     }
-    if ignore_meta { Ok(()) } else { check_inputs(reference, test) }
+    let inputs = HASHES.map(|name| {
+        let value = |image: &Image| image.attributes.get(name).map(show);
+        Input { name, reference: value(reference), test: value(test) }
+    });
+    if !ignore_meta {
+        inputs.iter().try_for_each(check_input)?;
+    }
+    Ok(inputs.into())
 }
 
 /// An image without the hash, as of another renderer, can be compared with any.
-fn check_inputs(reference: &Image, test: &Image) -> Result<(), Mismatch> {
-    for name in HASHES {
-        if let (Some(expected), Some(found)) = (reference.attributes.get(name), test.attributes.get(name))
-            && expected != found
-        {
-            return Err(Mismatch::Inputs { name, reference: show(expected), test: show(found) });
+fn check_input(input: &Input) -> Result<(), Mismatch> {
+    match (input.name, &input.reference, &input.test) {
+        (name, Some(reference), Some(test)) if reference != test => {
+            Err(Mismatch::Inputs { name, reference: reference.clone(), test: test.clone() })
         }
+        _ => Ok(()),
     }
-    Ok(())
 }
 
 fn show(value: &Attribute) -> String {

@@ -1,0 +1,98 @@
+//! Errors as colours: black, violet, red, orange, yellow.
+//!
+//! Equal steps of the error are equal steps of lightness in Oklab (Ottosson, "A perceptual color space for image
+//! processing", 2020), so the picture also reads in grey and without telling red from green.
+
+use std::f64::consts::FRAC_PI_2;
+
+/// Steps of the scale: more than eight bits of lightness can show.
+pub(super) const STEPS: usize = 256;
+/// What is beyond the scale.
+pub(super) const ABOVE: [u8; 3] = [255; 3];
+/// NaN or infinity in either image; no hue of the scale.
+pub(super) const NOT_FINITE: [u8; 3] = [0, 255, 0];
+
+/// Oklab's lightness at the end of the scale: the yellow that is farthest from white.
+const LIGHTEST: f64 = 0.9;
+/// Degrees at both ends; from violet the hue goes up through red.
+const HUES: [f64; 2] = [285.0, 465.0];
+const CHROMA: f64 = 0.185;
+
+/// Colours from no error to the end of the scale.
+pub(super) fn scale() -> [[u8; 3]; STEPS] {
+    std::array::from_fn(|step| colour(step as f64 / (STEPS - 1) as f64))
+}
+
+fn colour(part: f64) -> [u8; 3] {
+    let hue = (HUES[0] + (HUES[1] - HUES[0]) * part).to_radians();
+    let lightness = LIGHTEST * part;
+    let wanted = CHROMA * (FRAC_PI_2 * part).sin().sqrt();
+    // Dark colours cannot be vivid: the most chroma that sRGB has is taken, by halving; black has none.
+    let (mut chroma, mut step) = (wanted, wanted / 2.0);
+    for _ in 0..20 {
+        let shown = linear_srgb(lightness, chroma, hue).iter().all(|light| (0.0..=1.0).contains(light));
+        chroma = (chroma + if shown { step } else { -step }).min(wanted);
+        step /= 2.0;
+    }
+    linear_srgb(lightness, chroma, hue).map(encoded)
+}
+
+/// Oklab's matrices, from the paper's page.
+fn linear_srgb(lightness: f64, chroma: f64, hue: f64) -> [f64; 3] {
+    let (a, b) = (chroma * hue.cos(), chroma * hue.sin());
+    let l = (lightness + 0.396_337_777_4 * a + 0.215_803_757_3 * b).powi(3);
+    let m = (lightness - 0.105_561_345_8 * a - 0.063_854_172_8 * b).powi(3);
+    let s = (lightness - 0.089_484_177_5 * a - 1.291_485_548_0 * b).powi(3);
+    [
+        4.076_741_662_1 * l - 3.307_711_591_3 * m + 0.230_969_929_2 * s,
+        -1.268_438_004_6 * l + 2.609_757_401_1 * m - 0.341_319_396_5 * s,
+        -0.004_196_086_3 * l - 0.703_418_614_7 * m + 1.707_614_701_0 * s,
+    ]
+}
+
+/// The sRGB transfer curve (IEC 61966-2-1), from light to eight bits.
+fn encoded(light: f64) -> u8 {
+    let x = light.clamp(0.0, 1.0);
+    let y = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
+    (255.0 * y).round() as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The paper's other direction: from linear sRGB to lightness.
+    fn lightness(colour: [u8; 3]) -> f64 {
+        let [r, g, b] = colour.map(|byte| {
+            let x = f64::from(byte) / 255.0;
+            if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
+        });
+        let l = (0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b).cbrt();
+        let m = (0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b).cbrt();
+        let s = (0.088_302_461_9 * r + 0.281_718_837_6 * g + 0.629_978_700_5 * b).cbrt();
+        0.210_454_255_3 * l + 0.793_617_785_0 * m - 0.004_072_046_8 * s
+    }
+
+    /// Half a step of eight bits is most in the dark, where the cube root is steep: 0.04 near black, 0.005 beyond.
+    /// Planted and caught: no reduction of chroma, a sign in a matrix.
+    #[test]
+    fn lightness_is_linear_in_the_error() {
+        for (step, colour) in scale().into_iter().enumerate() {
+            let expected = LIGHTEST * step as f64 / 255.0;
+            let tolerance = if step < 26 { 0.04 } else { 0.005 };
+            assert!((lightness(colour) - expected).abs() < tolerance, "{step}: {colour:?} {}", lightness(colour));
+        }
+    }
+
+    #[test]
+    fn ends_and_other_colours_are_told_apart() {
+        let scale = scale();
+        assert_eq!(scale[0], [0; 3]);
+        let [r, g, b] = scale[STEPS - 1];
+        assert!(r > 230 && g > 200 && b < 80, "{:?}", scale[STEPS - 1]);
+        let apart = |one: [u8; 3], two: [u8; 3]| (0..3).map(|c| one[c].abs_diff(two[c])).max().unwrap();
+        for other in [ABOVE, NOT_FINITE] {
+            assert!(scale.iter().all(|colour| apart(*colour, other) > 100));
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! The absolute error as a picture, on a scale that does not depend on the images, so that two pictures compare.
+
+use picture::Picture;
+
+use crate::layer::{Layer, layers};
+use crate::{Choice, Mismatch};
+use formats::image::Image;
+
+mod colour;
+mod legend;
+
+/// End of the scale if no other is asked for, in units of the channel: a tenth of a white surface under unit light.
+pub const DEFAULT_MAX: f64 = 0.1;
+
+/// Most pixels of a picture with its legend: 768 MiB.
+const MAX_PIXELS: usize = 1 << 28;
+/// Most pixels of the picture's side for a pixel of the image.
+const MAX_ZOOM: usize = 16;
+
+/// Why there is no heatmap.
+#[derive(Debug, thiserror::Error)]
+pub enum HeatmapError {
+    /// The layer is not there.
+    #[error(transparent)]
+    Layer(#[from] Mismatch),
+    /// It would take too much memory.
+    #[error(
+        "a heatmap of {width} x {height} pixels with its legend is too large; at most {MAX_PIXELS} pixels are drawn"
+    )]
+    TooLarge {
+        /// Pixels per row.
+        width: usize,
+        /// Rows.
+        height: usize,
+    },
+    /// The PNG library refused.
+    #[error("the heatmap cannot be packed: {0}")]
+    Png(#[from] png::EncodingError),
+}
+
+/// What the scale does not show.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Counts {
+    above: u64,
+    not_finite: u64,
+}
+
+/// A PNG file: the chosen layer's absolute error, largest of its channels, as colour from 0 to `max`, with a legend
+/// below. Small images are enlarged by a whole factor. Of all layers, the first is drawn, which is `beauty` if there is.
+pub fn heatmap(reference: &Image, test: &Image, choice: &Choice, max: f64) -> Result<Vec<u8>, HeatmapError> {
+    let layers = layers(reference, test);
+    let layer = choose(&layers, choice)?;
+    let zoom = (legend::WIDTH / reference.width.max(1)).clamp(1, MAX_ZOOM);
+    let width = reference.width.saturating_mul(zoom).max(legend::WIDTH);
+    let height = reference.height.saturating_mul(zoom).saturating_add(legend::HEIGHT);
+    if width.saturating_mul(height) > MAX_PIXELS {
+        return Err(HeatmapError::TooLarge { width, height });
+    }
+    let mut picture = Picture::new(width, height, legend::PAPER);
+    let (scale, planes, mut counts) = (colour::scale(), layer.samples().planes, Counts::default());
+    for pixel in 0..reference.width * reference.height {
+        let (left, top) = (pixel % reference.width * zoom, pixel / reference.width * zoom);
+        let colour = counts.shade(&scale, error(&planes, pixel), max);
+        picture.fill(left..left + zoom, top..top + zoom, colour);
+    }
+    legend::draw(&mut picture, reference.height * zoom, &layer.name, counts, max);
+    let description = legend::description(&layer.name, max, zoom);
+    Ok(picture.encode(png::Compression::Balanced, &[("Description", description.as_str())])?)
+}
+
+fn choose<'a, 'b>(layers: &'b [Layer<'a>], choice: &Choice) -> Result<&'b Layer<'a>, Mismatch> {
+    let wanted = match choice {
+        Choice::Default => crate::layer::BEAUTY,
+        Choice::All => layers.first().map_or("", |layer| layer.name.as_str()),
+        Choice::Named(name) => name,
+    };
+    layers.iter().find(|layer| layer.name == wanted).ok_or_else(|| Mismatch::no_layer(wanted, layers))
+}
+
+/// The largest absolute error among the channels; `None` where either image is not finite.
+fn error(planes: &[(&[f32], &[f32])], pixel: usize) -> Option<f64> {
+    planes.iter().try_fold(0.0_f64, |worst, (reference, test)| {
+        let error = (f64::from(test[pixel]) - f64::from(reference[pixel])).abs();
+        error.is_finite().then_some(worst.max(error))
+    })
+}
+
+impl Counts {
+    fn shade(&mut self, scale: &[[u8; 3]; colour::STEPS], error: Option<f64>, max: f64) -> [u8; 3] {
+        match error {
+            None => {
+                self.not_finite += 1;
+                colour::NOT_FINITE
+            }
+            Some(error) if error > max => {
+                self.above += 1;
+                colour::ABOVE
+            }
+            Some(error) => scale[(error / max * (colour::STEPS - 1) as f64).round() as usize],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Planted and caught: the sum of the channels, errors with their sign, NaN lost in `max`.
+    #[test]
+    fn the_largest_channel_counts_and_no_number_is_one() {
+        let planes: [(&[f32], &[f32]); 2] = [
+            (&[0.0, 1.0, 0.0, f32::INFINITY], &[0.5, 1.0, f32::NAN, f32::INFINITY]),
+            (&[2.0, 1.0, 0.0, 0.0], &[1.0, 1.0, 9.0, 0.0]),
+        ];
+        assert_eq!([0, 1, 2, 3].map(|pixel| error(&planes, pixel)), [Some(1.0), Some(0.0), None, None]);
+    }
+
+    #[test]
+    fn the_end_of_the_scale_belongs_to_it() {
+        let (scale, mut counts) = (colour::scale(), Counts::default());
+        let mut shade = |error, max| counts.shade(&scale, error, max);
+        assert_eq!(shade(Some(0.25), 0.25), scale[255]);
+        assert_eq!(shade(Some(0.125), 0.25), scale[128]);
+        assert_eq!(shade(Some(0.250_001), 0.25), colour::ABOVE);
+        assert_eq!(shade(Some(0.0), f64::MIN_POSITIVE), scale[0]);
+        assert_eq!(shade(None, 0.25), colour::NOT_FINITE);
+        assert_eq!(counts, Counts { above: 1, not_finite: 1 });
+    }
+
+    #[test]
+    fn a_picture_that_no_machine_holds_is_refused() {
+        let image = Image { width: 1, height: usize::MAX, channels: Vec::new(), ..Image::default() };
+        let channel = formats::image::Channel { name: "R".to_owned(), samples: Vec::new() };
+        let image = Image { channels: vec![channel], ..image };
+        let result = heatmap(&image, &image, &Choice::Default, 1.0);
+        assert!(matches!(result, Err(HeatmapError::TooLarge { .. })), "{result:?}");
+    }
+}

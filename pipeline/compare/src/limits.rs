@@ -1,0 +1,172 @@
+//! The limits file that is kept beside a reference: gates, each with the reason for its limit.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+use crate::gate::looks_at;
+use crate::{Choice, Gate};
+
+/// Longest file that is read, bytes.
+const MAX_LENGTH: u64 = 1 << 20;
+/// The only version of the keys so far.
+const SCHEMA: u32 = 1;
+
+/// A gate with where it looks and why its limit is what it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limit {
+    /// The gate.
+    pub gate: Gate,
+    /// Which layers it looks at.
+    pub choice: Choice,
+    /// Why this much is right.
+    pub reason: String,
+}
+
+/// Why a limits file cannot be used; the message names it.
+#[derive(Debug, thiserror::Error)]
+pub enum LimitsError {
+    /// The operating system refused.
+    #[error("{}: limits cannot be read: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What it said.
+        source: std::io::Error,
+    },
+    /// Not the JSON that docs/compare.md describes.
+    #[error("{}: {what}", path.display())]
+    Invalid {
+        /// The file.
+        path: PathBuf,
+        /// Which entry is wrong, and how.
+        what: String,
+    },
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Document {
+    schema: u32,
+    limits: Vec<Entry>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Entry {
+    gate: String,
+    limit: f64,
+    threshold: Option<f64>,
+    layer: Option<String>,
+    reason: String,
+}
+
+/// Reads a limits file.
+pub fn read_limits(path: &Path) -> Result<Vec<Limit>, LimitsError> {
+    let text = read(path).map_err(|source| LimitsError::Io { path: path.to_owned(), source })?;
+    parse(&text).map_err(|what| LimitsError::Invalid { path: path.to_owned(), what })
+}
+
+fn read(path: &Path) -> std::io::Result<String> {
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(std::io::Error::other("not a regular file"));
+    }
+    let mut text = String::new();
+    std::fs::File::open(path)?.take(MAX_LENGTH + 1).read_to_string(&mut text)?;
+    if text.len() as u64 > MAX_LENGTH {
+        return Err(std::io::Error::other("longer than 1 MiB"));
+    }
+    Ok(text)
+}
+
+fn parse(text: &str) -> Result<Vec<Limit>, String> {
+    let document: Document = serde_json::from_str(text).map_err(|error| error.to_string())?;
+    if document.schema != SCHEMA {
+        return Err(format!("`schema` is {}; this program knows {SCHEMA}", document.schema));
+    }
+    if document.limits.is_empty() {
+        return Err("`limits` is empty, so every image would pass; give at least one".to_owned());
+    }
+    let mut limits: Vec<Limit> = Vec::new();
+    for (number, entry) in document.limits.into_iter().enumerate() {
+        let name = entry.gate.clone();
+        let fault = |what: String| format!("limit {} (`{name}`): {what}", number + 1);
+        let limit = check(entry).map_err(fault)?;
+        let layer = |limit: &Limit| looks_at(limit.gate, &limit.choice).map(str::to_owned);
+        if limits.iter().any(|known| layer(known) == layer(&limit) && known.gate.is_same_question(limit.gate)) {
+            return Err(fault("occurs twice for this layer; keep one".to_owned()));
+        }
+        limits.push(limit);
+    }
+    Ok(limits)
+}
+
+fn check(entry: Entry) -> Result<Limit, String> {
+    if entry.reason.trim().is_empty() {
+        return Err("`reason` is empty; say why this limit is right".to_owned());
+    }
+    let gate = Gate::new(&entry.gate, entry.limit, entry.threshold)?;
+    Ok(Limit { gate, choice: Choice::new(entry.layer.as_deref()), reason: entry.reason })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn one(entry: &str) -> Result<Vec<Limit>, String> {
+        parse(&format!(r#"{{"schema": 1, "limits": [{entry}]}}"#))
+    }
+
+    #[test]
+    fn entries_become_gates() {
+        let found = one(r#"{"gate": "max-bias", "limit": 5e-3, "reason": "energy"},
+            {"gate": "max-outliers", "limit": 3, "threshold": 0.5, "layer": "all", "reason": "edges"},
+            {"gate": "exact", "limit": 0, "layer": "Z", "reason": "no randomness"}"#);
+        let limit = |gate, choice, reason: &str| Limit { gate, choice, reason: reason.to_owned() };
+        let expected = [
+            limit(Gate::Bias(0.005), Choice::Default, "energy"),
+            limit(Gate::Outliers { count: 3, threshold: 0.5 }, Choice::All, "edges"),
+            limit(Gate::Exact, Choice::Named("Z".to_owned()), "no randomness"),
+        ];
+        assert_eq!(found.unwrap(), expected);
+    }
+
+    /// Each line: what is wrong, and the words that say so. Every check was left out once and seen to be missed.
+    #[test]
+    fn what_would_let_faults_pass_is_refused() {
+        for (entry, words) in [
+            (r#"{"gate": "max-bias", "limit": NaN, "reason": "r"}"#, "line 1"),
+            (r#"{"gate": "max-bias", "limit": 1e999, "reason": "r"}"#, "out of range"),
+            (r#"{"gate": "max-bias", "limit": "1", "reason": "r"}"#, "invalid type"),
+            (r#"{"gate": "max-bias", "limit": -1, "reason": "r"}"#, "at least 0"),
+            (r#"{"gate": "max-bias", "reason": "r"}"#, "missing field `limit`"),
+            (r#"{"gate": "max-bias", "limit": 1}"#, "missing field `reason`"),
+            (r#"{"gate": "max-bias", "limit": 1, "reason": " \n"}"#, "`reason` is empty"),
+            (r#"{"gate": "max-bias", "limit": 1, "limit": 2, "reason": "r"}"#, "duplicate field"),
+            (r#"{"gate": "max-bias", "limit": 1, "layr": "Z", "reason": "r"}"#, "unknown field `layr`"),
+            (r#"{"gate": "max-bais", "limit": 1, "reason": "r"}"#, "no gate `max-bais`"),
+            (r#"{"gate": "max-bias", "limit": 1, "threshold": 1, "reason": "r"}"#, "`threshold`"),
+            (r#"{"gate": "max-outliers", "limit": 1, "reason": "r"}"#, "`threshold`"),
+            (r#"{"gate": "max-outliers", "limit": 0.5, "threshold": 1, "reason": "r"}"#, "whole number"),
+            (r#"{"gate": "max-outliers", "limit": 1, "threshold": -1, "reason": "r"}"#, "at least 0"),
+            (r#"{"gate": "exact", "limit": 1, "reason": "r"}"#, "0"),
+            ("", "`limits` is empty"),
+        ] {
+            let message = one(entry).unwrap_err();
+            assert!(message.contains(words), "{entry}: {message}");
+        }
+        assert!(parse(r#"{"schema": 2, "limits": []}"#).unwrap_err().contains("`schema`"));
+    }
+
+    #[test]
+    fn a_question_is_asked_once() {
+        let bias = r#"{"gate": "max-bias", "limit": 1, "reason": "r"}"#;
+        let other = r#"{"gate": "max-bias", "limit": 2, "layer": "beauty", "reason": "r"}"#;
+        assert!(one(&format!("{bias}, {other}")).unwrap_err().contains("limit 2 (`max-bias`): occurs twice"));
+        let outliers =
+            |threshold| format!(r#"{{"gate": "max-outliers", "limit": 1, "threshold": {threshold}, "reason": "r"}}"#);
+        assert!(one(&format!("{}, {}", outliers(1), outliers(2))).is_ok());
+        assert!(one(&format!("{}, {}", outliers(1), outliers(1))).unwrap_err().contains("limit 2"));
+    }
+}

@@ -1,0 +1,88 @@
+//! The files that `compare` writes: only those asked for, each whole, and none over an input.
+
+use std::path::{Path, PathBuf};
+
+use cli::Failure;
+use compare::heatmap::heatmap;
+use compare::{Report, Settings, difference};
+use formats::atomic;
+use formats::image::Image;
+use serde::Serialize;
+
+use crate::arguments::Arguments;
+
+/// The report with the names of its files.
+#[derive(Serialize)]
+struct Document<'a> {
+    #[serde(flatten)]
+    report: &'a Report,
+    reference: String,
+    test: String,
+    verdict: &'a str,
+}
+
+/// Refuses outputs that would replace an input or each other, before any work is done.
+pub(crate) fn check(arguments: &Arguments) -> Result<(), Failure> {
+    let log = arguments.accept.then(|| arguments.log());
+    let outputs = [
+        ("--json", arguments.json.as_ref()),
+        ("--diff-exr", arguments.diff_exr.as_ref()),
+        ("--heatmap", arguments.heatmap.as_ref()),
+        ("the log of --accept", log.as_ref()),
+    ];
+    let mut taken: Vec<(PathBuf, &str)> = [&arguments.reference, &arguments.test]
+        .into_iter()
+        .map(|path| (place(path), "an image"))
+        .chain(arguments.limits.iter().map(|path| (place(path), "the limits")))
+        .collect();
+    for (option, path) in outputs.into_iter().filter_map(|(option, path)| Some((option, path?))) {
+        let here = place(path);
+        if let Some((_, what)) = taken.iter().find(|(place, _)| *place == here) {
+            let path = path.display();
+            return Err(Failure::usage(format!("{path}: {option} would replace {what}; give another name")));
+        }
+        taken.push((here, option));
+    }
+    Ok(())
+}
+
+/// One name for one file, whether or not it is there yet. What cannot be found is left to the writing of it.
+pub(crate) fn place(path: &Path) -> PathBuf {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let beside = || Some(folder.canonicalize().ok()?.join(path.file_name()?));
+    path.canonicalize().ok().or_else(beside).unwrap_or_else(|| path.to_owned())
+}
+
+/// Writes what was asked for, whatever the verdict.
+pub(crate) fn write(
+    arguments: &Arguments,
+    settings: &Settings,
+    [reference, test]: [&Image; 2],
+    report: &Report,
+    verdict: &str,
+) -> Result<(), Failure> {
+    if let Some(path) = &arguments.json {
+        atomic::write(path, json(arguments, report, verdict)?.as_bytes())?;
+    }
+    if let Some(path) = &arguments.diff_exr {
+        let fail = |error| Failure::usage(format!("{}: {error}", path.display()));
+        let bytes = difference(reference, test).encode_with(arguments.threads()).map_err(fail)?;
+        atomic::write(path, &bytes)?;
+    }
+    if let Some(path) = &arguments.heatmap {
+        let fail = |error| Failure::usage(format!("{}: {error}", path.display()));
+        let bytes = heatmap(reference, test, &settings.choice, arguments.heatmap_max).map_err(fail)?;
+        atomic::write(path, &bytes)?;
+    }
+    Ok(())
+}
+
+fn json(arguments: &Arguments, report: &Report, verdict: &str) -> Result<String, Failure> {
+    let document = Document {
+        report,
+        reference: arguments.reference.display().to_string(),
+        test: arguments.test.display().to_string(),
+        verdict: verdict.trim_end(),
+    };
+    Ok(serde_json::to_string_pretty(&document)? + "\n")
+}

@@ -1,0 +1,104 @@
+//! A new reference: what is copied, what is logged, what is refused.
+//!
+//! Planted errors that these tests caught: the log written anew, means of old and new exchanged, acceptance of an image
+//! that is not finite, exit code of the verdict, the image encoded again instead of copied.
+
+use std::fs;
+use std::process::Command;
+
+use formats::image::Image;
+
+use crate::support::{Bench, Run, documented, key_paths, run, scale};
+
+const ACCEPT: [&str; 3] = ["--accept", "--reason", "a lamp was \"too\" dark\n"];
+
+fn accept(bench: &Bench, change: impl FnOnce(&mut Image), options: &[&str]) -> Run {
+    bench.compare(change, &[&ACCEPT[..], options].concat())
+}
+
+fn log(bench: &Bench) -> Vec<serde_json::Value> {
+    let text = fs::read_to_string(bench.path("reference.exr.log")).unwrap_or_default();
+    assert!(text.is_empty() || text.ends_with('\n'));
+    text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+#[test]
+fn the_reference_becomes_the_test_image_byte_by_byte() {
+    let bench = Bench::new();
+    let before = fs::read(bench.path("reference.exr")).unwrap();
+    let mut text = bench.path("reference.exr").into_os_string();
+    text.push(".log");
+    // A log whose last line was cut off keeps it.
+    fs::write(&text, "{}").unwrap();
+    let run = accept(&bench, |image| scale(image, 2.0), &["--max-bias", "0.1"]);
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{}", run.stdout);
+    let last: Vec<&str> = run.stdout.lines().rev().take(2).collect();
+    assert!(last[0].starts_with("ACCEPTED ") && last[1].starts_with("FAIL max-bias 1 > 0.1"), "{}", run.stdout);
+    let after = fs::read(bench.path("reference.exr")).unwrap();
+    assert_eq!(after, fs::read(bench.path("test.exr")).unwrap());
+    let lines = log(&bench);
+    assert_eq!(lines.len(), 2);
+    let line = &lines[1];
+    assert_eq!((&line["reason"], &line["verdict"]), (&ACCEPT[2].into(), &last[1].into()));
+    let digest = |bytes: &[u8]| serde_json::Value::from(blake3::hash(bytes).to_hex().to_string());
+    assert_eq!((&line["old"], &line["new"]), (&digest(&before), &digest(&after)));
+    let red = &line["metrics"][0];
+    assert_eq!((&red["layer"], &red["channel"], &red["bias"]), (&"beauty".into(), &"R".into(), &1.0.into()));
+    assert_eq!(red["mean_new"].as_f64().unwrap(), 2.0 * red["mean_old"].as_f64().unwrap());
+    assert_eq!(key_paths(&documented("<!-- log -->")), key_paths(line));
+}
+
+#[test]
+fn what_is_the_reference_already_is_not_logged() {
+    let bench = Bench::new();
+    let run = accept(&bench, |_| (), &[]);
+    assert_eq!(run.code, Some(0));
+    assert!(run.verdict().starts_with("UNCHANGED "), "{}", run.stdout);
+    assert!(!bench.path("reference.exr.log").exists());
+}
+
+#[test]
+fn the_time_is_that_of_source_date_epoch() {
+    let bench = Bench::new();
+    bench.compare(|image| scale(image, 2.0), &[]);
+    let with = |epoch: &str| {
+        run(Command::new(env!("CARGO_BIN_EXE_compare"))
+            .args([bench.path("reference.exr"), bench.path("test.exr")])
+            .args(ACCEPT)
+            .env("SOURCE_DATE_EPOCH", epoch))
+    };
+    with("tomorrow").cannot_judge(&["SOURCE_DATE_EPOCH"]);
+    assert!(log(&bench).is_empty());
+    assert_eq!(with("1234").code, Some(0));
+    assert_eq!(log(&bench)[0]["time"], 1234);
+}
+
+#[test]
+fn a_refusal_changes_nothing() {
+    let bench = Bench::new();
+    let before = fs::read(bench.path("reference.exr")).unwrap();
+    let unchanged = || {
+        assert_eq!(fs::read(bench.path("reference.exr")).unwrap(), before);
+        assert!(!bench.path("reference.exr.log").exists());
+    };
+    let hole = |image: &mut Image| image.channels[4].samples[0] = f32::INFINITY;
+    accept(&bench, hole, &[]).cannot_judge(&["not accepted", "1 samples are not finite"]);
+    unchanged();
+    accept(&bench, |image| image.window = [1, 0], &["--ignore-meta"]).cannot_judge(&["data window"]);
+    unchanged();
+    accept(&bench, |image| scale(image, 2.0), &["--json", bench.path("no/r.json").to_str().unwrap()])
+        .cannot_judge(&["no/r.json"]);
+    unchanged();
+    bench.run("reference.exr", &ACCEPT).cannot_judge(&["by itself"]);
+    for wrong in [&["--accept"][..], &["--accept", "--reason", " "], &["--reason", "why"]] {
+        assert_eq!(bench.compare(|image| scale(image, 2.0), wrong).code, Some(2));
+        unchanged();
+    }
+    // A log that cannot be written: no silent update.
+    fs::create_dir(bench.path("reference.exr.log")).unwrap();
+    accept(&bench, |image| scale(image, 2.0), &[]).cannot_judge(&["reference.exr.log"]);
+    assert_eq!(fs::read(bench.path("reference.exr")).unwrap(), before);
+    fs::remove_dir(bench.path("reference.exr.log")).unwrap();
+    assert_eq!(accept(&bench, hole, &["--allow-nonfinite"]).code, Some(0));
+    assert_eq!(log(&bench).len(), 1);
+}

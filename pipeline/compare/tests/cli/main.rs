@@ -1,0 +1,14 @@
+//! The program as scripts see it: exit code, the last line of stdout, one line of stderr, the files it writes.
+//!
+//! Planted errors that these tests caught: a gate written as `!(value > limit)`, the worst channel found with
+//! `>`, infinity counted as finite, gates on the channels of a layer together, each structure check left out,
+//! exit code 0 whatever the verdict, a limit that may be NaN.
+
+mod accept;
+mod artefacts;
+mod gates;
+mod limits;
+mod report;
+mod slips;
+mod structure;
+mod support;
