@@ -20,16 +20,21 @@ pub(super) fn parallel<T: Send, R: Send>(threads: NonZeroUsize, items: Vec<T>, w
 
 #[cfg(test)]
 mod tests {
+    use std::collections::HashSet;
+
     use super::*;
 
-    /// Planted and caught: shares of one item too few, threads joined last first.
+    /// Planted and caught: threads joined last first, more shares than threads, the last share left out.
     #[test]
     fn results_keep_the_order_of_the_items() {
         for count in [0, 1, 2, 7, 64] {
             let expected: Vec<usize> = (0..count).map(|n| n * n).collect();
             for threads in [1, 2, 3, 64, 100] {
-                let found = parallel(NonZeroUsize::new(threads).unwrap(), (0..count).collect(), |n| n * n);
+                let work = |n: usize| (n * n, std::thread::current().id());
+                let (found, by): (Vec<usize>, HashSet<_>) =
+                    parallel(NonZeroUsize::new(threads).unwrap(), (0..count).collect(), work).into_iter().unzip();
                 assert_eq!(found, expected, "{threads} threads");
+                assert!(by.len() <= threads, "{} threads instead of {threads}", by.len());
             }
         }
     }
