@@ -61,8 +61,8 @@ fn encoded(light: f64) -> u8 {
 mod tests {
     use super::*;
 
-    /// The paper's other direction: from linear sRGB to lightness.
-    fn lightness(colour: [u8; 3]) -> f64 {
+    /// The paper's other direction: from sRGB to lightness and hue, degrees.
+    fn lightness_and_hue(colour: [u8; 3]) -> [f64; 2] {
         let [r, g, b] = colour.map(|byte| {
             let x = f64::from(byte) / 255.0;
             if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
@@ -70,17 +70,23 @@ mod tests {
         let l = (0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b).cbrt();
         let m = (0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b).cbrt();
         let s = (0.088_302_461_9 * r + 0.281_718_837_6 * g + 0.629_978_700_5 * b).cbrt();
-        0.210_454_255_3 * l + 0.793_617_785_0 * m - 0.004_072_046_8 * s
+        let lightness = 0.210_454_255_3 * l + 0.793_617_785_0 * m - 0.004_072_046_8 * s;
+        let red = 1.977_998_495_1 * l - 2.428_592_205_0 * m + 0.450_593_709_9 * s;
+        let yellow = 0.025_904_037_1 * l + 0.782_771_766_2 * m - 0.808_675_766_0 * s;
+        [lightness, yellow.atan2(red).to_degrees()]
     }
 
-    /// Half a step of eight bits is most in the dark, where the cube root is steep: 0.04 near black, 0.005 beyond.
-    /// Planted and caught: no reduction of chroma, a sign in a matrix.
+    /// Half a step of eight bits is most in the dark, where the cube root is steep: 0.04 of lightness near black, 0.005
+    /// and three degrees of hue beyond. Planted and caught: no reduction of chroma, a sign in a matrix.
     #[test]
     fn lightness_is_linear_in_the_error() {
         for (step, colour) in scale().into_iter().enumerate() {
-            let expected = LIGHTEST * step as f64 / 255.0;
-            let tolerance = if step < 26 { 0.04 } else { 0.005 };
-            assert!((lightness(colour) - expected).abs() < tolerance, "{step}: {colour:?} {}", lightness(colour));
+            let part = step as f64 / 255.0;
+            let [lightness, hue] = lightness_and_hue(colour);
+            let (tolerance, turn) = if step < 26 { (0.04, 360.0) } else { (0.005, 3.0) };
+            assert!((lightness - LIGHTEST * part).abs() < tolerance, "{step}: {colour:?} {lightness}");
+            let off = (hue - HUES[0] - (HUES[1] - HUES[0]) * part + 540.0).rem_euclid(360.0) - 180.0;
+            assert!(off.abs() < turn, "{step}: {colour:?} is off by {off} degrees");
         }
     }
 

@@ -1,4 +1,7 @@
 //! What cannot be judged: images that do not belong together, files that are no images, wrong usage.
+//!
+//! Planted errors that these tests caught: silence about a hash of one image alone, `-` taken for a file, a closed
+//! stdout taken for a failure.
 
 use std::process::Command;
 
