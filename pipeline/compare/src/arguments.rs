@@ -60,6 +60,10 @@ pub(crate) struct Arguments {
     /// Write the layer's absolute error as a picture with its scale
     #[arg(long, value_name = "FILE.png", value_parser = file())]
     pub(crate) heatmap: Option<PathBuf>,
+    /// Write a page with both images, their difference and all numbers; it needs nothing else. `compare --html-index
+    /// FILE REPORT.html...` lists such pages, the worst first
+    #[arg(long, value_name = "FILE", value_parser = file())]
+    pub(crate) html: Option<PathBuf>,
     /// Error at the end of the heatmap's scale, in units of the channel
     #[arg(long, value_name = "T", default_value_t = DEFAULT_MAX, value_parser = end_of_scale, requires = "heatmap")]
     pub(crate) heatmap_max: f64,

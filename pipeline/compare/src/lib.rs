@@ -9,6 +9,7 @@ use formats::image::Image;
 mod difference;
 mod gate;
 pub mod heatmap;
+pub mod html;
 mod layer;
 mod limits;
 pub mod metric;

@@ -5,13 +5,18 @@ use clap::Parser;
 use cli::Failure;
 use compare::compare;
 use formats::image::Image;
+use index_command::IndexArguments;
 
 mod accept;
 mod arguments;
+mod index_command;
 mod outputs;
 
 fn main() {
-    cli::run("compare", || judge(&Arguments::parse()))
+    cli::run("compare", || match IndexArguments::asked_for() {
+        Some(arguments) => arguments.run(),
+        None => judge(&Arguments::parse()),
+    })
 }
 
 fn judge(arguments: &Arguments) -> Result<u8, Failure> {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use cli::Failure;
 use compare::heatmap::heatmap;
-use compare::{Report, Settings, difference};
+use compare::{Report, Settings, difference, html};
 use formats::atomic;
 use formats::image::Image;
 use serde::Serialize;
@@ -28,6 +28,7 @@ pub(crate) fn check(arguments: &Arguments) -> Result<(), Failure> {
         ("--json", arguments.json.as_ref()),
         ("--diff-exr", arguments.diff_exr.as_ref()),
         ("--heatmap", arguments.heatmap.as_ref()),
+        ("--html", arguments.html.as_ref()),
         ("the log of --accept", log.as_ref()),
     ];
     let mut taken: Vec<(PathBuf, &str)> = [&arguments.reference, &arguments.test]
@@ -61,8 +62,13 @@ pub(crate) fn write(
     report: &Report,
     verdict: &str,
 ) -> Result<(), Failure> {
+    let document = document(arguments, report, verdict);
     if let Some(path) = &arguments.json {
-        atomic::write(path, json(arguments, report, verdict)?.as_bytes())?;
+        atomic::write(path, (serde_json::to_string_pretty(&document)? + "\n").as_bytes())?;
+    }
+    if let Some(path) = &arguments.html {
+        let page = arguments.common.in_pool(|| html::page(&document, report, reference, test))??;
+        atomic::write(path, &page)?;
     }
     if let Some(path) = &arguments.diff_exr {
         let fail = |error| Failure::usage(format!("{}: {error}", path.display()));
@@ -77,12 +83,11 @@ pub(crate) fn write(
     Ok(())
 }
 
-fn json(arguments: &Arguments, report: &Report, verdict: &str) -> Result<String, Failure> {
-    let document = Document {
+fn document<'a>(arguments: &Arguments, report: &'a Report, verdict: &'a str) -> Document<'a> {
+    Document {
         report,
         reference: arguments.reference.display().to_string(),
         test: arguments.test.display().to_string(),
         verdict: verdict.trim_end(),
-    };
-    Ok(serde_json::to_string_pretty(&document)? + "\n")
+    }
 }

@@ -1,0 +1,164 @@
+//! Many reports on one page, the worst first.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::embed;
+use super::thumbnail::{HEAT_RANGE, Thumbnails};
+
+/// Most bytes in which a report's numbers and small pictures are looked for.
+const HEAD: u64 = 1 << 28;
+
+/// Why there is no index.
+#[derive(Debug, thiserror::Error)]
+pub enum IndexError {
+    /// The operating system refused.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The report, or the index itself.
+        path: PathBuf,
+        /// What it said.
+        source: std::io::Error,
+    },
+    /// Another file, or another version's.
+    #[error("{}: not a report of compare; make it with --html", path.display())]
+    NotAReport {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The page cannot be made.
+    #[error(transparent)]
+    Json(#[from] serde_json::Error),
+}
+
+/// What the index takes from the JSON of a report; `None` is a number that is not finite.
+#[derive(Deserialize)]
+struct Numbers {
+    reference: String,
+    test: String,
+    verdict: String,
+    pass: bool,
+    judged: Vec<String>,
+    gates: Vec<GateNumbers>,
+    layers: Vec<LayerNumbers>,
+}
+
+#[derive(Deserialize)]
+struct GateNumbers {
+    value: Option<f64>,
+    limit: Option<f64>,
+    ok: bool,
+}
+
+#[derive(Deserialize)]
+struct LayerNumbers {
+    name: String,
+    channels: Vec<ChannelNumbers>,
+}
+
+#[derive(Deserialize)]
+struct ChannelNumbers {
+    relmse: Option<f64>,
+}
+
+/// A line of the index.
+#[derive(Serialize)]
+struct Row {
+    /// From the index to the report; `/` between parts, not yet escaped.
+    link: String,
+    reference: String,
+    test: String,
+    verdict: String,
+    pass: bool,
+    /// Largest value over limit of the gates that failed; infinite without a limit or a number; 0 if none failed.
+    excess: f64,
+    /// Of the worst channel judged; infinite if it is no number.
+    relmse: f64,
+    thumbnails: Thumbnails,
+}
+
+#[derive(Serialize)]
+struct Rows {
+    rows: Vec<Row>,
+    heat_range: [f64; 2],
+}
+
+/// A page of the reports that [`super::page`] made, for a file of the name `target`: those that failed first, by how
+/// far they are beyond a limit, then by relMSE.
+pub fn index(target: &Path, reports: &[PathBuf]) -> Result<Vec<u8>, IndexError> {
+    let folder = target.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let folder = folder.canonicalize().map_err(|source| IndexError::Io { path: target.to_owned(), source })?;
+    let mut rows = reports.iter().map(|report| row(&folder, report)).collect::<Result<Vec<_>, _>>()?;
+    rows.sort_by(|a, b| {
+        let by_numbers = b.excess.total_cmp(&a.excess).then(b.relmse.total_cmp(&a.relmse));
+        a.pass.cmp(&b.pass).then(by_numbers).then_with(|| a.link.cmp(&b.link))
+    });
+    let data = embed::json("comparisons", &Rows { rows, heat_range: HEAT_RANGE })?;
+    Ok(embed::page(include_str!("page/index.html"), &script(), &data))
+}
+
+/// What runs in the page.
+pub(super) fn script() -> String {
+    [super::COMMON, include_str!("page/numbers.js"), include_str!("page/index.js")].concat()
+}
+
+fn row(folder: &Path, report: &Path) -> Result<Row, IndexError> {
+    let fail = |source| IndexError::Io { path: report.to_owned(), source };
+    let (numbers, thumbnails) = read(report).map_err(fail)?;
+    let not_a_report = || IndexError::NotAReport { path: report.to_owned() };
+    let numbers: Numbers = serde_json::from_str(&numbers).map_err(|_| not_a_report())?;
+    let thumbnails: Thumbnails = serde_json::from_str(&thumbnails).map_err(|_| not_a_report())?;
+    let judged = numbers.layers.iter().filter(|layer| numbers.judged.contains(&layer.name));
+    let relmse = judged.flat_map(|layer| &layer.channels).map(|c| c.relmse.unwrap_or(f64::INFINITY));
+    Ok(Row {
+        link: link(folder, report).map_err(fail)?,
+        pass: numbers.pass,
+        excess: numbers.gates.iter().filter(|gate| !gate.ok).map(excess).fold(0.0, f64::max),
+        relmse: relmse.fold(0.0, f64::max),
+        thumbnails: if thumbnails.are_pictures() { thumbnails } else { Thumbnails::default() },
+        reference: numbers.reference,
+        test: numbers.test,
+        verdict: numbers.verdict,
+    })
+}
+
+/// The text of the blocks `report` and `thumbnails`; empty where there is none.
+fn read(path: &Path) -> std::io::Result<(String, String)> {
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(std::io::Error::other("not a regular file; give reports made with --html"));
+    }
+    let (mut report, mut thumbnails) = (String::new(), String::new());
+    let mut reader = BufReader::new(File::open(path)?.take(HEAD));
+    let mut line = Vec::new();
+    while (report.is_empty() || thumbnails.is_empty()) && reader.read_until(b'\n', &mut line)? > 0 {
+        let text = String::from_utf8_lossy(&line);
+        for (id, found) in [("report", &mut report), ("thumbnails", &mut thumbnails)] {
+            let block = text.strip_prefix(embed::json_start(id).as_str());
+            if let Some(block) = block.and_then(|rest| rest.strip_suffix(embed::END)) {
+                *found = block.to_owned();
+            }
+        }
+        line.clear();
+    }
+    Ok((report, thumbnails))
+}
+
+/// Value over limit; without a limit above zero anything is infinitely far beyond it.
+fn excess(gate: &GateNumbers) -> f64 {
+    match (gate.value, gate.limit) {
+        (Some(value), Some(limit)) if limit > 0.0 => value / limit,
+        _ => f64::INFINITY,
+    }
+}
+
+/// The way from the folder of the index, canonical, to a report.
+fn link(folder: &Path, report: &Path) -> std::io::Result<String> {
+    let report = report.canonicalize()?;
+    let common = folder.components().zip(report.components()).take_while(|(a, b)| a == b).count();
+    let up = folder.components().skip(common).map(|_| "..".to_owned());
+    let down = report.components().skip(common).map(|part| part.as_os_str().to_string_lossy().into_owned());
+    Ok(up.chain(down).collect::<Vec<_>>().join("/"))
+}

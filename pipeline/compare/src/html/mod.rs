@@ -1,0 +1,120 @@
+//! The report as one HTML file that needs nothing else: numbers, both images as float32, and the page that shows them.
+//!
+//! Names, paths and attributes come from files and are not trusted. They reach the page as JSON only ([`embed`]),
+//! and the page shows them as text nodes only; nothing is ever pasted into markup.
+
+mod colour;
+mod embed;
+mod fit;
+mod index;
+mod plane;
+mod reduce;
+mod thumbnail;
+
+use formats::image::{Attribute, Image};
+use serde::Serialize;
+
+use crate::{Report, layer};
+use fit::LayerData;
+
+pub use index::{IndexError, index};
+
+/// Scripts that both pages need, then those of the report, in the order of their use.
+const COMMON: &str = concat!(include_str!("page/dom.js"), include_str!("page/theme.js"));
+const SCRIPT: &str = concat!(
+    include_str!("page/data.js"),
+    include_str!("page/colour.js"),
+    include_str!("page/numbers.js"),
+    include_str!("page/state.js"),
+    include_str!("page/paint.js"),
+    include_str!("page/stage.js"),
+    include_str!("page/labels.js"),
+    include_str!("page/readout.js"),
+    include_str!("page/histogram.js"),
+    include_str!("page/tables.js"),
+    include_str!("page/controls.js"),
+    include_str!("page/pointer.js"),
+    include_str!("page/keys.js"),
+    include_str!("page/page.js"),
+);
+
+/// What the page has to know about the pixels.
+#[derive(Serialize)]
+struct Picture<'a> {
+    width: usize,
+    height: usize,
+    /// Column and row of the top left pixel.
+    window: [i32; 2],
+    layers: &'a [LayerData],
+    attributes: Vec<AttributePair<'a>>,
+    /// What is not as the reader expects, in words.
+    notes: Vec<String>,
+    colours: colour::Maps,
+}
+
+/// An attribute of either header, in words.
+#[derive(Serialize)]
+struct AttributePair<'a> {
+    name: &'a str,
+    reference: Option<String>,
+    test: Option<String>,
+}
+
+/// The report on two images as an HTML page. `document` is what `--json` writes, with at least the keys of `report`.
+///
+/// The page is under 100 MB: beyond 2^21 pixels it holds means of blocks of pixels, and where that is still too much,
+/// larger blocks of the layers after the first; it says so itself. The same input gives the same bytes for any number
+/// of threads.
+pub fn page(
+    document: &impl Serialize,
+    report: &Report,
+    reference: &Image,
+    test: &Image,
+) -> Result<Vec<u8>, serde_json::Error> {
+    let layers = layer::layers(reference, test);
+    let fitted = fit::fit(report, &layers, reference, fit::BUDGET);
+    let picture = Picture {
+        width: reference.width,
+        height: reference.height,
+        window: reference.window,
+        layers: &fitted.layers,
+        attributes: attributes(reference, test),
+        notes: fitted.notes,
+        colours: colour::MAPS,
+    };
+    let thumbnails = thumbnail::thumbnails(&layers, reference.width, reference.height);
+    let mut data = embed::json("report", document)? + &embed::json("thumbnails", &thumbnails)?;
+    data += &embed::json("picture", &picture)?;
+    let planes = fitted.layers.iter().flat_map(LayerData::planes);
+    planes.for_each(|plane| data += &embed::plane(plane));
+    Ok(embed::page(include_str!("page/page.html"), &[COMMON, SCRIPT].concat(), &data))
+}
+
+/// Of both headers, by name.
+fn attributes<'a>(reference: &'a Image, test: &'a Image) -> Vec<AttributePair<'a>> {
+    let mut names: Vec<&String> = reference.attributes.keys().chain(test.attributes.keys()).collect();
+    names.sort_unstable();
+    names.dedup();
+    let text = |image: &Image, name: &String| image.attributes.get(name).map(words);
+    names
+        .into_iter()
+        .map(|name| AttributePair { name, reference: text(reference, name), test: text(test, name) })
+        .collect()
+}
+
+fn words(value: &Attribute) -> String {
+    let list = |numbers: &[f32]| numbers.iter().map(f32::to_string).collect::<Vec<_>>().join(", ");
+    match value {
+        Attribute::Text(text) => text.clone(),
+        Attribute::Float(number) => number.to_string(),
+        Attribute::Double(number) => number.to_string(),
+        Attribute::Int(number) => number.to_string(),
+        Attribute::Vector(numbers) => list(numbers),
+        Attribute::Matrix(numbers) => list(numbers),
+        Attribute::Chromaticities(numbers) => list(numbers),
+        Attribute::Texts(texts) => texts.join("\n"),
+    }
+}
+
+#[cfg(test)]
+mod tests;

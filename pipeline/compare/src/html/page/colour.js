@@ -1,0 +1,74 @@
+// From values to colours.
+
+const BINS = 4096;
+
+/** Linear values from which on the sRGB code is at least 0, 1, ..., 255 when rounded. */
+const codeStarts = Float64Array.from({ length: 257 }, (_, code) => {
+  const place = (code - 0.5) / 255;
+  return place <= 0.04045 ? place / 12.92 : ((place + 0.055) / 1.055) ** 2.4;
+});
+codeStarts[256] = Infinity;
+
+/** The code at the beginning of each of BINS equal parts of 0 to 1: the search for the code begins there. */
+const binCodes = Uint8Array.from({ length: BINS + 1 }, (_, bin) => {
+  let code = 0;
+  while (codeStarts[code + 1] <= bin / BINS) code++;
+  return code;
+});
+
+/** The sRGB code of a linear value, 1 is white: exactly the curve, rounded. */
+function srgbCode(linear) {
+  if (!(linear > 0)) return 0;
+  if (linear >= 1) return 255;
+  let code = binCodes[(linear * BINS) | 0];
+  while (codeStarts[code + 1] <= linear) code++;
+  return code;
+}
+
+/** The colour at a part, 0 to 1, of a map. */
+function mapColour(map, part) {
+  const place = Math.min(Math.max(part, 0), 1) * (map.length - 1);
+  const index = Math.min(Math.floor(place), map.length - 2);
+  return [0, 1, 2].map((i) => Math.round(map[index][i] + (map[index + 1][i] - map[index][i]) * (place - index)));
+}
+
+/** A map in 1024 steps, as red, green and blue one after the other. */
+function mapTable(map) {
+  return Uint8ClampedArray.from(Array.from({ length: 1025 }, (_, i) => mapColour(map, i / 1024)).flat());
+}
+
+const mapTables = { signed: mapTable(picture.colours.signed), absolute: mapTable(picture.colours.absolute) };
+
+const cssColour = (rgb) => `rgb(${rgb.join(" ")})`;
+
+/**
+ * How a layer, or one channel of it, is shown: numbers of the channels, and `light` (exposure and sRGB) or a range
+ * `low` to `high` from black to white.
+ */
+function look(layer, channel) {
+  const names = layer.channels;
+  const find = (wanted) => wanted.map((name) => names.indexOf(name));
+  const [colours, vector] = [find(["R", "G", "B"]), find(["X", "Y", "Z"])];
+  const isColour = !colours.includes(-1);
+  const all = channel < 0;
+  if (all && isColour) return { channels: colours, light: true };
+  const channels = all && !vector.includes(-1) ? vector : [Math.max(channel, 0)];
+  if (["R", "G", "B", "Y"].includes(names[channels[0]])) return { channels, light: true };
+  return { channels, light: false, ...range(layer, channels) };
+}
+
+/** Of the finite values of both images; −1 to 1 where vectors have unit length. */
+function range(layer, channels) {
+  let [low, high] = [Infinity, -Infinity];
+  const grid = layer.grids[0];
+  for (const planes of [grid.reference, grid.test]) {
+    for (const channel of channels) {
+      for (const value of planes[channel]) {
+        if (Number.isFinite(value)) [low, high] = [value < low ? value : low, value > high ? value : high];
+      }
+    }
+  }
+  if (low > high) return { low: 0, high: 1 };
+  if (channels.length === 3 && Math.max(-low, high) <= 1.0001) return { low: -1, high: 1 };
+  return { low, high: high > low ? high : low + 1 };
+}

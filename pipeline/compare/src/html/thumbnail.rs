@@ -1,0 +1,136 @@
+//! Small pictures of a comparison, for the index of many.
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde::{Deserialize, Serialize};
+
+use super::colour;
+use super::reduce::{Rectangle, means};
+use crate::layer::Layer;
+use crate::metric::EPSILON;
+
+/// Most pixels of a side.
+const SIDE: usize = 160;
+
+/// The relative errors at both ends of the scale, which is logarithmic: the same for all images of an index.
+pub(super) const HEAT_RANGE: [f64; 2] = [0.001, 1.0];
+
+/// What a picture in a page begins with.
+const PNG: &str = "data:image/png;base64,";
+
+/// PNG images as data addresses; empty where there is nothing to show.
+#[derive(Debug, Default, Deserialize, Serialize)]
+pub(super) struct Thumbnails {
+    /// The test image.
+    pub test: String,
+    /// Error relative to the reference, the largest of each block.
+    pub heat: String,
+}
+
+impl Thumbnails {
+    /// Whether these are what [`thumbnails`] makes; those of a file may be anything.
+    pub fn are_pictures(&self) -> bool {
+        let plain = |c: char| c.is_ascii_alphanumeric() || "+/=".contains(c);
+        [&self.test, &self.heat]
+            .iter()
+            .all(|text| text.is_empty() || text.strip_prefix(PNG).is_some_and(|rest| rest.chars().all(plain)))
+    }
+}
+
+/// Of the first layer.
+pub(super) fn thumbnails(layers: &[Layer<'_>], width: usize, height: usize) -> Thumbnails {
+    let Some(layer) = layers.first().filter(|_| width > 0 && height > 0) else { return Thumbnails::default() };
+    let block = width.max(height).div_ceil(SIDE);
+    let size = [width.div_ceil(block), height.div_ceil(block)];
+    let reduced = |samples: &[f32]| means(samples, width, Rectangle { x: 0, y: 0, width, height }, block);
+    // Colours, or one channel as grey.
+    let planes = layer.samples().planes;
+    let shown = &planes[..if planes.len() < 3 { 1 } else { 3 }];
+    let white = white(&shown.iter().flat_map(|(reference, _)| reduced(reference)).collect::<Vec<f32>>());
+    let test: Vec<Vec<f32>> = shown.iter().map(|(_, test)| reduced(test)).collect();
+    let colours = (0..size[0] * size[1]).map(|i| [0, 1, 2].map(|c| shade(test[c.min(test.len() - 1)][i], white)));
+    let heat = heat(&planes, [width, height], block).into_iter().map(|error| colour::absolute(part(error)));
+    Thumbnails { test: png(size, colours.flatten()), heat: png(size, heat.flatten()) }
+}
+
+/// The value that 99 of 100 do not exceed: it becomes white, so that dark pictures can be seen.
+fn white(values: &[f32]) -> f64 {
+    let mut finite: Vec<f32> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    finite.sort_unstable_by(f32::total_cmp);
+    let value = finite.get((finite.len() * 99).div_ceil(100).saturating_sub(1)).copied();
+    value.map(f64::from).filter(|white| *white > 0.0).unwrap_or(1.0)
+}
+
+fn shade(value: f32, white: f64) -> u8 {
+    colour::srgb(f64::from(value) / white)
+}
+
+/// The largest relative error of each block, as relMSE takes it: over the root of the squared reference plus
+/// [`EPSILON`]. NaN where any value is.
+fn heat(planes: &[(&[f32], &[f32])], size: [usize; 2], block: usize) -> Vec<f64> {
+    let row = size[0].div_ceil(block);
+    let mut errors = vec![0.0_f64; row * size[1].div_ceil(block)];
+    for (reference, test) in planes {
+        for (i, (r, t)) in reference.iter().zip(*test).enumerate() {
+            let (r, t) = (f64::from(*r), f64::from(*t));
+            let error = (t - r).abs() / (r * r + EPSILON).sqrt();
+            let worst = &mut errors[i / size[0] / block * row + i % size[0] / block];
+            *worst = if worst.is_nan() || error.is_nan() { f64::NAN } else { worst.max(error) };
+        }
+    }
+    errors
+}
+
+/// Place on the scale, 0 to 1 between its ends.
+fn part(error: f64) -> f64 {
+    let [low, high] = HEAT_RANGE;
+    if error.is_nan() { error } else { (error.max(low) / low).ln() / (high / low).ln() }
+}
+
+fn png(size: [usize; 2], bytes: impl Iterator<Item = u8>) -> String {
+    let mut file = Vec::new();
+    // Sides are at most SIDE, so they fit.
+    let mut encoder = png::Encoder::new(&mut file, size[0] as u32, size[1] as u32);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    let bytes: Vec<u8> = bytes.collect();
+    let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(&bytes));
+    if written.is_err() { String::new() } else { format!("{PNG}{}", STANDARD.encode(file)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn heat_is_the_worst_of_a_block() {
+        let reference = [0.0, 0.0, 2.0, 0.0, 0.0, 0.0_f32];
+        let test = [0.05, -0.2, 2.0, 0.0, 0.0, f32::NAN];
+        let found = heat(&[(&reference, &test)], [3, 2], 2);
+        // Against black an error of 0.2 is 0.2 / sqrt(0.01).
+        assert!((found[0] - 2.0).abs() < 1e-6, "{found:?}");
+        assert!(found[1].is_nan());
+    }
+
+    #[test]
+    fn equal_factors_are_equal_steps() {
+        let expected = [(0.0, 0.0), (0.001, 0.0), (0.01, 1.0 / 3.0), (1.0, 1.0), (10.0, 4.0 / 3.0)];
+        assert!(expected.iter().all(|(error, place)| (part(*error) - place).abs() < 1e-12));
+        assert!(part(f64::NAN).is_nan());
+    }
+
+    #[test]
+    fn white_is_the_percentile_of_what_is_finite() {
+        let values: Vec<f32> = (1..=200).map(|i| i as f32).chain([f32::NAN, f32::INFINITY]).collect();
+        assert_eq!(white(&values), 198.0);
+        assert_eq!(white(&[f32::NAN]), 1.0);
+        assert_eq!(white(&[-1.0, 0.0]), 1.0);
+    }
+
+    #[test]
+    fn only_pictures_are_taken() {
+        let with = |test: &str| Thumbnails { test: test.to_owned(), heat: String::new() }.are_pictures();
+        assert!(with("") && with("data:image/png;base64,AB+/="));
+        assert!(!with("https://example.org/a.png") && !with("data:image/png;base64,A\"B"));
+    }
+}
