@@ -60,7 +60,7 @@ endif
 # Title=picture, for the contact sheet.
 titled = $(foreach p,$(call pictures_of,$(1),$(2)),"$(1) $(basename $(notdir $(p)))/$(subst $(space),$(comma)$(space),$(call names_of,$(2)))=$(basename $(p)).png")
 
-.PHONY: .FORCE gallery own contact-sheet build test slow accuracy curve curve-full bench lint scenes clouds images help clean clean-images
+.PHONY: .FORCE gallery own contact-sheet build test browser-test slow accuracy curve curve-full bench lint scenes clouds images help clean clean-images
 
 ## gallery: build, and render every scene, medium and view of the gallery (what `make` does)
 gallery: contact-sheet
@@ -168,6 +168,12 @@ scenes: build
 ## test: all fast tests
 test:
 	$(CARGO) test --workspace --quiet
+
+## browser-test: the pages of `compare --html` in headless Chromium (needs chromium and python3; half a minute)
+browser-test:
+	@command -v python3 >/dev/null || { echo "browser-test: no python3 found; install it (Debian: apt install python3)" >&2; exit 1; }
+	$(CARGO) build --release --package compare --quiet
+	python3 -B tests/browser/run.py $(BIN)/compare
 
 ## slow: statistical and stability tests at full sample counts
 slow: build
