@@ -22,7 +22,6 @@ pub mod lanes;
 mod media;
 mod medium;
 mod medium_file;
-pub mod simd;
 mod standard_dipole;
 
 pub use accuracy::GOOD;
@@ -34,6 +33,7 @@ pub use glam::DVec3;
 pub use media::{built_in, built_in_names};
 pub use medium::{Coefficients, ETA_MAX, ETA_MIN, Interface, Medium};
 pub use medium_file::{MediumFile, Optics, Unit};
+pub use simd;
 pub use standard_dipole::StandardDipole;
 
 /// Where light enters: position (m), outward unit normal, unit direction towards the light.
