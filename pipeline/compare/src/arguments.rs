@@ -36,6 +36,9 @@ pub(crate) struct Arguments {
     /// At most N pixels may differ by more than T, in units of the channel
     #[arg(long, value_name = "N@T", value_parser = outliers)]
     pub(crate) max_outliers: Option<Gate>,
+    /// Largest mean of HDR-FLIP of R, G and B, 0 to 1; never the only limit
+    #[arg(long, value_name = "R", value_parser = limit)]
+    pub(crate) max_flip: Option<f64>,
     /// Every bit must be equal; looks at all layers unless --layer says otherwise
     #[arg(long)]
     pub(crate) exact: bool,
@@ -48,6 +51,9 @@ pub(crate) struct Arguments {
     /// Let NaN and infinity pass; gates on their channel still fail
     #[arg(long)]
     pub(crate) allow_nonfinite: bool,
+    /// Measure FLIP, LDR and HDR: the difference as it is seen. Takes longer than all else
+    #[arg(long)]
+    pub(crate) flip: bool,
     /// Compare images of different clouds or scenes
     #[arg(long)]
     pub(crate) ignore_meta: bool,
@@ -86,6 +92,7 @@ impl Arguments {
             self.max_rmse.map(Gate::Rmse),
             self.max_abs.map(Gate::Abs),
             self.max_outliers,
+            self.max_flip.map(Gate::Flip),
             self.exact.then_some(Gate::Exact),
         ];
         Ok(Settings {
@@ -93,6 +100,7 @@ impl Arguments {
             limits: self.limits.as_deref().map(read_limits).transpose()?.unwrap_or_default(),
             choice: Choice::new(self.layer.as_deref()),
             allow_nonfinite: self.allow_nonfinite,
+            flip: self.flip,
             ignore_meta: self.ignore_meta,
         })
     }

@@ -26,6 +26,8 @@ pub enum Gate {
         /// Absolute error that makes an outlier.
         threshold: f64,
     },
+    /// Mean of HDR-FLIP, of the beauty layer whatever layer is chosen.
+    Flip(f64),
     /// Every bit of every sample.
     Exact,
 }
@@ -71,6 +73,7 @@ impl Gate {
             ("max-relmse", None) => Ok(Gate::RelMse(limit)),
             ("max-rmse", None) => Ok(Gate::Rmse(limit)),
             ("max-abs", None) => Ok(Gate::Abs(limit)),
+            ("max-flip", None) => Ok(Gate::Flip(limit)),
             ("exact", None) if limit == 0.0 => Ok(Gate::Exact),
             ("exact", None) => Err("the limit of this gate is 0".to_owned()),
             _ => Err(format!("there is no gate `{name}`")),
@@ -85,6 +88,10 @@ impl Gate {
         }
     }
 
+    pub(crate) fn is_flip(self) -> bool {
+        matches!(self, Gate::Flip(_))
+    }
+
     fn name(self) -> &'static str {
         match self {
             Gate::Bias(_) => "max-bias",
@@ -92,13 +99,14 @@ impl Gate {
             Gate::Rmse(_) => "max-rmse",
             Gate::Abs(_) => "max-abs",
             Gate::Outliers { .. } => "max-outliers",
+            Gate::Flip(_) => "max-flip",
             Gate::Exact => "exact",
         }
     }
 
     fn limit(self) -> f64 {
         match self {
-            Gate::Bias(limit) | Gate::RelMse(limit) | Gate::Rmse(limit) | Gate::Abs(limit) => limit,
+            Gate::Bias(limit) | Gate::RelMse(limit) | Gate::Rmse(limit) | Gate::Abs(limit) | Gate::Flip(limit) => limit,
             Gate::Outliers { count, .. } => count as f64,
             Gate::Exact => 0.0,
         }
@@ -112,6 +120,7 @@ impl Gate {
             Gate::Rmse(_) => worst(|metrics| metrics.rmse),
             Gate::Abs(_) => worst(|metrics| metrics.max.error),
             Gate::Outliers { threshold, .. } => (pixels_beyond(&layer.samples(), threshold) as f64, None),
+            Gate::Flip(_) => (report.picture.flip_hdr.as_ref().map_or(f64::NAN, |hdr| hdr.flip.mean), None),
             Gate::Exact => (bitwise_differences(&layer.samples()) as f64, None),
         };
         let threshold = if let Gate::Outliers { threshold, .. } = self { Some(threshold) } else { None };
@@ -145,9 +154,20 @@ fn asked(settings: &Settings) -> impl Iterator<Item = (Gate, &Choice, Option<&St
     own.chain(settings.limits.iter().map(|Limit { gate, choice, reason }| (*gate, choice, Some(reason))))
 }
 
+/// Whether FLIP is judged.
+pub(crate) fn any_flip(settings: &Settings) -> bool {
+    asked(settings).any(|(gate, ..)| gate.is_flip())
+}
+
+/// Perceptual means hide single bright pixels and a small bias of the whole picture.
+pub(crate) fn flip_alone(settings: &Settings) -> bool {
+    any_flip(settings) && asked(settings).all(|(gate, ..)| gate.is_flip())
+}
+
 /// The layer, or `None` for all.
 pub(crate) fn looks_at(gate: Gate, choice: &Choice) -> Option<&str> {
     match (choice, gate) {
+        (_, Gate::Flip(_)) => Some(BEAUTY),
         (Choice::Default, Gate::Exact) | (Choice::All, _) => None,
         (Choice::Default, _) => Some(BEAUTY),
         (Choice::Named(name), _) => Some(name),

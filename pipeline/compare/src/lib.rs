@@ -1,8 +1,9 @@
 //! Two images in, metrics and a verdict out.
 //!
 //! Nothing is padded, cropped, clamped or left out: a sample that is not a number makes the metrics of its
-//! channel not a number, and no gate accepts that. Sums run over the samples in one order, in `f64`, so a
-//! report never depends on the number of threads.
+//! channel not a number, and no gate accepts that. Sums are in `f64`, of pieces of a fixed size that are added in
+//! one order, so a report never depends on the number of threads. Metrics of the beauty layer as a picture alone are
+//! of displayed values; their files say how.
 
 use formats::image::Image;
 
@@ -34,8 +35,17 @@ pub struct Settings {
     pub choice: Choice,
     /// Values that are not finite do not fail by themselves; they still fail every gate on their channel.
     pub allow_nonfinite: bool,
+    /// FLIP is measured, which takes longer than all else; a gate on it asks for it too.
+    pub flip: bool,
     /// Images of different clouds or scenes may be compared.
     pub ignore_meta: bool,
+}
+
+impl Settings {
+    /// FLIP never judges by itself: its mean misses single bright pixels and a small bias of the whole picture.
+    pub fn judges_by_flip_alone(&self) -> bool {
+        gate::flip_alone(self)
+    }
 }
 
 /// Which layers the gates look at.
@@ -68,6 +78,7 @@ pub fn compare(reference: &Image, test: &Image, settings: &Settings) -> Result<R
     gate::check_choice(&layers, settings)?;
     let mut report = report::measure(test, &layers);
     report.inputs = inputs;
+    report.picture = metric::measure_picture(reference, test, settings.flip || gate::any_flip(settings));
     report.nonfinite.allowed = settings.allow_nonfinite;
     report.gates = gate::judge(&layers, &report, settings);
     report.pass = report.gates.iter().all(|gate| gate.ok);

@@ -26,9 +26,15 @@ fn judge(arguments: &Arguments) -> Result<u8, Failure> {
         arguments.common.warn("REFERENCE and TEST are one file: nothing is tested");
     }
     let settings = arguments.settings()?;
+    if settings.judges_by_flip_alone() {
+        return Err(Failure::usage(
+            "--max-flip: a mean of what is seen misses single bright pixels and a small bias of the whole picture; give \
+             another limit beside it, such as --max-bias or --max-outliers",
+        ));
+    }
     let read = |path| Image::read_with(path, arguments.threads());
     let (reference, test) = (read(&arguments.reference)?, read(&arguments.test)?);
-    let report = compare(&reference, &test, &settings).map_err(|mismatch| {
+    let report = arguments.common.in_pool(|| compare(&reference, &test, &settings))?.map_err(|mismatch| {
         let (test, reference) = (arguments.test.display(), arguments.reference.display());
         Failure::usage(format!("{test}: {mismatch} (the reference is {reference})"))
     })?;

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::gate::Judgement;
 use crate::layer::Layer;
-use crate::metric::{EPSILON, Metrics, measure as metrics};
+use crate::metric::{EPSILON, Metrics, PictureMetrics, measure_each};
 use crate::structure::Input;
 
 /// Changes only when a key of the JSON report changes its meaning or goes.
@@ -30,6 +30,8 @@ pub struct Report {
     pub nonfinite: NonFinite,
     /// The beauty layer first, then by name.
     pub layers: Vec<LayerReport>,
+    /// The beauty layer as it is seen.
+    pub picture: PictureMetrics,
     /// Every gate, in the order of the options, on every layer that it looks at.
     pub gates: Vec<Judgement>,
     /// Layers that the verdict speaks of.
@@ -73,19 +75,13 @@ pub struct ChannelReport {
 
 /// All metrics; nothing judged yet.
 pub(crate) fn measure(image: &Image, layers: &[Layer<'_>]) -> Report {
-    let measure = |samples: &_| metrics(samples, image.width, image.window);
-    let layers: Vec<LayerReport> = layers
-        .iter()
-        .map(|layer| LayerReport {
-            name: layer.name.clone(),
-            metrics: measure(&layer.samples()),
-            channels: layer
-                .channels
-                .iter()
-                .map(|(name, samples)| ChannelReport { name: name.clone(), metrics: measure(samples) })
-                .collect(),
-        })
-        .collect();
+    let measure = |layer: &Layer<'_>| {
+        let (metrics, each) = measure_each(&layer.samples(), image.width, image.window);
+        let channels = layer.channels.iter().zip(each);
+        let channels = channels.map(|((name, _), metrics)| ChannelReport { name: name.clone(), metrics }).collect();
+        LayerReport { name: layer.name.clone(), metrics, channels }
+    };
+    let layers: Vec<LayerReport> = layers.iter().map(measure).collect();
     let count = |of: fn(&Metrics) -> u64| layers.iter().map(|layer| of(&layer.metrics)).sum();
     Report {
         schema: SCHEMA,
@@ -99,6 +95,7 @@ pub(crate) fn measure(image: &Image, layers: &[Layer<'_>]) -> Report {
             test: count(|metrics| metrics.nonfinite_test),
         },
         layers,
+        picture: PictureMetrics::default(),
         gates: Vec::new(),
         judged: Vec::new(),
         pass: false,
@@ -133,6 +130,7 @@ impl Report {
         // Writing to a string cannot fail, here and below.
         let _ = writeln!(table, "not finite: {reference} samples of the reference, {test} of the test image");
         let _ = writeln!(table, "relMSE = mean of (test - reference)^2 / (reference^2 + {EPSILON})");
+        table.push_str(&self.picture.lines());
         for note in self.inputs.iter().filter_map(Input::note) {
             let _ = writeln!(table, "{note}");
         }

@@ -1,12 +1,5 @@
 //! Energy: is the test image brighter or darker on the whole? Noise cancels here, faults do not.
 
-use super::Samples;
-
-/// Of reference and test.
-pub(super) fn means(samples: &Samples<'_>) -> [f64; 2] {
-    [samples.mean(|reference, _| reference), samples.mean(|_, test| test)]
-}
-
 /// Positive where the test image is brighter. Against a black reference any light is infinitely more.
 pub(super) fn relative_difference(reference: f64, test: f64) -> f64 {
     let difference = test - reference;
@@ -17,12 +10,14 @@ pub(super) fn relative_difference(reference: f64, test: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::metric::{Samples, measure};
 
     #[test]
     fn known_means() {
         let samples = Samples { planes: vec![(&[1.0, 2.0], &[2.0, 2.5]), (&[3.0, 6.0], &[3.0, 0.0])] };
-        assert_eq!(means(&samples), [3.0, 1.875]);
-        assert_eq!(relative_difference(3.0, 1.875), -0.375);
+        let metrics = measure(&samples, 2, [0, 0]);
+        assert_eq!([metrics.mean_reference, metrics.mean_test], [3.0, 1.875]);
+        assert_eq!(metrics.bias, -0.375);
     }
 
     #[test]

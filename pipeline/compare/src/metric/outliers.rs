@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use super::Samples;
+use super::{Samples, select};
+use rayon::prelude::*;
 
 /// The sample with the largest absolute error: the first of equals; one that is no number beats all.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -17,29 +18,58 @@ pub struct Worst {
     pub test: f64,
 }
 
-pub(super) fn worst(samples: &Samples<'_>, width: usize, window: [i32; 2]) -> Worst {
-    let pixels = samples.planes.first().map_or(1, |(reference, _)| reference.len()).max(1);
-    let mut worst = Worst { error: 0.0, pixel: window.map(i64::from), reference: 0.0, test: 0.0 };
-    for (number, (reference, test)) in samples.pairs().enumerate() {
-        let error = (test - reference).abs();
-        let first = number == 0;
-        if first || (!worst.error.is_nan() && (error.is_nan() || error > worst.error)) {
-            let (x, y) = (number % pixels % width.max(1), number % pixels / width.max(1));
-            let pixel = [i64::from(window[0]) + x as i64, i64::from(window[1]) + y as i64];
-            worst = Worst { error, pixel, reference, test };
+/// A sample and its error.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found {
+    pub error: f64,
+    /// Its place in the plane.
+    pub sample: usize,
+    pub reference: f64,
+    pub test: f64,
+}
+
+impl Found {
+    /// The worse of two, the first of equals.
+    #[inline(always)]
+    pub fn worse(first: Option<Found>, second: Option<Found>) -> Option<Found> {
+        match (first, second) {
+            (Some(a), Some(b)) if a.error.is_nan() || !(b.error.is_nan() || b.error > a.error) => Some(a),
+            (first, None) => first,
+            (_, second) => second,
         }
     }
-    worst
+
+    /// With its place in the picture; all zeroes if there was no sample.
+    pub fn place(found: Option<Found>, width: usize, window: [i32; 2]) -> Worst {
+        let window = window.map(i64::from);
+        let Some(Found { error, sample, reference, test }) = found else {
+            return Worst { error: 0.0, pixel: window, reference: 0.0, test: 0.0 };
+        };
+        let (x, y) = (sample % width.max(1), sample / width.max(1));
+        Worst { error, pixel: [window[0] + x as i64, window[1] + y as i64], reference, test }
+    }
+}
+
+/// Absolute error, rounded to float32. No finite error becomes infinite.
+#[inline(always)]
+fn error(reference: &[f32], test: &[f32], i: usize) -> f32 {
+    let error = (f64::from(test[i]) - f64::from(reference[i])).abs();
+    if error.is_finite() { error.min(f64::from(f32::MAX)) as f32 } else { error as f32 }
+}
+
+/// Errors of each channel, counted by the upper half of their bits.
+pub(super) fn histogram((reference, test): (&[f32], &[f32])) -> select::Histogram {
+    select::upper(reference.len(), |i| error(reference, test, i))
 }
 
 /// Nearest rank: the smallest error that at least 99 % of the samples do not exceed. No number counts as largest.
-pub(super) fn percentile_99(samples: &Samples<'_>) -> f64 {
-    let mut errors: Vec<f64> = samples.pairs().map(|(reference, test)| (test - reference).abs()).collect();
-    let rank = (errors.len() * 99).div_ceil(100);
-    match rank.checked_sub(1) {
-        Some(index) => *errors.select_nth_unstable_by(index, f64::total_cmp).1,
-        None => 0.0,
-    }
+pub(super) fn percentile_99(samples: &Samples<'_>, upper: &select::Histogram) -> f64 {
+    let Some(rank) = (upper.iter().sum::<u64>() * 99).div_ceil(100).checked_sub(1) else { return 0.0 };
+    let (bin, rank) = select::locate(upper, rank);
+    let planes = samples.planes.iter();
+    let lower = planes.map(|(reference, test)| select::lower(reference.len(), |i| error(reference, test, i), bin));
+    let lower = lower.reduce(|counts, others| select::and(counts, &others)).unwrap_or_default();
+    f64::from(select::value(bin, select::locate(&lower, rank).0))
 }
 
 /// Pixels of which any channel differs by more than the threshold, or by no number.
@@ -51,19 +81,28 @@ pub(crate) fn pixels_beyond(samples: &Samples<'_>, threshold: f64) -> u64 {
             .iter()
             .all(|(reference, test)| (f64::from(test[pixel]) - f64::from(reference[pixel])).abs() <= threshold)
     };
-    (0..pixels).filter(|pixel| !within(*pixel)).count() as u64
+    (0..pixels).into_par_iter().filter(|pixel| !within(*pixel)).count() as u64
 }
 
 /// Samples whose bits differ: the two zeroes do, equal NaNs do not.
 pub(crate) fn bitwise_differences(samples: &Samples<'_>) -> u64 {
-    let planes = samples.planes.iter();
-    let pairs = planes.flat_map(|(reference, test)| reference.iter().zip(*test));
+    let planes = samples.planes.par_iter();
+    let pairs = planes.flat_map(|(reference, test)| reference.par_iter().zip(*test));
     pairs.filter(|(reference, test)| reference.to_bits() != test.to_bits()).count() as u64
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::metric::measure;
+
+    fn worst(samples: &Samples<'_>, width: usize, window: [i32; 2]) -> Worst {
+        measure(samples, width, window).max
+    }
+
+    fn p99(planes: Vec<(&[f32], &[f32])>) -> f64 {
+        measure(&Samples { planes }, 1, [0, 0]).p99
+    }
 
     #[test]
     fn worst_pixel_is_found_in_its_row_and_channel() {
@@ -88,10 +127,14 @@ mod tests {
         let numbers = |count: u16| (1..=count).map(f32::from).collect::<Vec<f32>>();
         for (count, expected) in [(1, 1.0), (99, 99.0), (100, 99.0), (101, 100.0), (200, 198.0)] {
             let (zeroes, errors) = (vec![0.0; usize::from(count)], numbers(count));
-            assert_eq!(percentile_99(&Samples { planes: vec![(&zeroes, &errors)] }), expected);
+            assert_eq!(p99(vec![(&zeroes, &errors)]), expected);
         }
-        let planes = vec![([0.0, 0.0].as_slice(), [-f32::NAN, 1.0].as_slice())];
-        assert!(percentile_99(&Samples { planes }).is_nan());
+        // Of 3 * 50 errors of 1 to 150, 149 do not exceed the 149th.
+        let (zeroes, errors) = (vec![0.0; 50], numbers(150));
+        let thirds = errors.chunks(50).map(|errors| (zeroes.as_slice(), errors)).collect();
+        assert_eq!(p99(thirds), 149.0);
+        assert!(p99(vec![(&[0.0, 0.0], &[-f32::NAN, 1.0])]).is_nan());
+        assert_eq!(p99(vec![(&[-f32::MAX], &[f32::MAX])]), f64::from(f32::MAX));
     }
 
     #[test]

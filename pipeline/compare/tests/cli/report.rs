@@ -73,7 +73,7 @@ fn the_documented_report_has_the_keys_of_a_real_one() {
     let limits = bench.path("limits.json");
     std::fs::write(&limits, documented("## Limits file").to_string().replace("subsurface", "Z")).unwrap();
     let json = bench.path("report.json");
-    let options = ["--limits", limits.to_str().unwrap(), "--json", json.to_str().unwrap()];
+    let options = ["--limits", limits.to_str().unwrap(), "--flip", "--json", json.to_str().unwrap()];
     bench.compare(|image| scale(image, 1.01), &options).fails("max-bias");
     assert_eq!(key_paths(&documented("<!-- report -->")), key_paths(&read_json(&json)));
 }

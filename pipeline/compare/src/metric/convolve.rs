@@ -1,0 +1,149 @@
+//! Filters of one dimension over a tile, along its rows or its columns. Two after each other make one of two dimensions.
+
+use std::ops::Range;
+
+use super::tile::{HALO, LANES, MARGIN, PITCH, Plane, ROWS, SIDE, lanes};
+
+/// Along which samples a filter runs.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Along {
+    /// From left to right; of the rows that a filter of this radius along columns will want.
+    Rows(usize),
+    /// From top to bottom.
+    Columns,
+}
+
+/// What the weights on both sides of the middle are to each other.
+pub(super) trait Symmetry {
+    /// The weight of the middle, out of the taps'.
+    fn middle(tap: f32) -> f32;
+    /// What the weight of a distance multiplies.
+    fn pair(before: f32, middle: f32, after: f32) -> f32;
+}
+
+/// The same on both sides.
+pub(super) struct Even;
+
+/// The same with opposite signs, and zero in the middle.
+pub(super) struct Odd;
+
+/// The same on both sides, with a sum of zero: the middle's is what is missing. Exactly zero where nothing varies.
+pub(super) struct EvenOfSumZero;
+
+impl Symmetry for Even {
+    #[inline(always)]
+    fn middle(tap: f32) -> f32 {
+        tap
+    }
+    #[inline(always)]
+    fn pair(before: f32, _: f32, after: f32) -> f32 {
+        before + after
+    }
+}
+
+impl Symmetry for Odd {
+    #[inline(always)]
+    fn middle(_: f32) -> f32 {
+        0.0
+    }
+    #[inline(always)]
+    fn pair(before: f32, _: f32, after: f32) -> f32 {
+        after - before
+    }
+}
+
+impl Symmetry for EvenOfSumZero {
+    #[inline(always)]
+    fn middle(_: f32) -> f32 {
+        0.0
+    }
+    #[inline(always)]
+    fn pair(before: f32, middle: f32, after: f32) -> f32 {
+        (before - middle) + (after - middle)
+    }
+}
+
+/// Rows of a tile without its margin.
+pub(super) const INNER: Range<usize> = HALO..ROWS - HALO;
+
+/// Filters the columns without margin. Taps: the weight at distance 0, 1, 2, up to [`HALO`] samples.
+#[inline(always)]
+pub(super) fn convolve<S: Symmetry>(along: Along, taps: &[f32], from: &Plane, to: &mut Plane) {
+    let (rows, spacing) = match along {
+        Along::Rows(radius) => (INNER.start - radius..INNER.end + radius, 1),
+        Along::Columns => (INNER, PITCH),
+    };
+    for row in rows {
+        for block in 0..SIDE / LANES {
+            let at = row * PITCH + MARGIN + block * LANES;
+            let middle = lanes(from, at);
+            let mut sum = [0.0; LANES];
+            for i in 0..LANES {
+                sum[i] = S::middle(taps[0]) * middle[i];
+            }
+            for distance in 1..taps.len() {
+                let before = lanes(from, at - distance * spacing);
+                let after = lanes(from, at + distance * spacing);
+                for i in 0..LANES {
+                    sum[i] += taps[distance] * S::pair(before[i], middle[i], after[i]);
+                }
+            }
+            to[at..at + LANES].copy_from_slice(&sum);
+        }
+    }
+}
+
+/// Weights of a Gaussian, of standard deviation `sigma` pixels, from the middle to `radius`; both sides sum to 1.
+pub(super) fn gaussian(sigma: f64, radius: usize) -> Vec<f64> {
+    let weight = |distance: usize| (-0.5 * (distance as f64 / sigma).powi(2)).exp();
+    let weights: Vec<f64> = (0..=radius).map(weight).collect();
+    let sum = 2.0 * weights.iter().sum::<f64>() - weights[0];
+    weights.iter().map(|weight| weight / sum).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tile::plane;
+    use super::*;
+
+    /// A plane whose sample at column x and row y, counted without the margin, is a polynomial.
+    fn polynomial(of: impl Fn(f32, f32) -> f32) -> Box<Plane> {
+        let mut plane = plane();
+        for (i, sample) in plane.iter_mut().enumerate() {
+            *sample = of((i % PITCH) as f32 - MARGIN as f32, (i / PITCH) as f32 - HALO as f32);
+        }
+        plane
+    }
+
+    fn check<S: Symmetry>(
+        along: Along,
+        taps: &[f32],
+        of: impl Fn(f32, f32) -> f32,
+        expected: impl Fn(f32, f32) -> f32,
+    ) {
+        let mut to = plane();
+        convolve::<S>(along, taps, &polynomial(of), &mut to);
+        for (x, y) in [(0, 0), (SIDE - 1, 5), (70, SIDE - 1)] {
+            let found = to[(y + HALO) * PITCH + MARGIN + x];
+            assert_eq!(found, expected(x as f32, y as f32), "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn polynomials_on_paper() {
+        // f(x-1) + 2 f(x) + f(x+1) of x^2 + y: 4 x^2 + 2 + 4 y.
+        check::<Even>(Along::Rows(0), &[2.0, 1.0], |x, y| x * x + y, |x, y| 4.0 * x * x + 2.0 + 4.0 * y);
+        check::<Even>(Along::Columns, &[0.0, 0.0, 1.0], |x, y| x + y * y, |x, y| 2.0 * x + 2.0 * y * y + 8.0);
+        // f(y+3) - f(y-3) of y^2: 12 y.
+        check::<Odd>(Along::Columns, &[7.0, 0.0, 0.0, 1.0], |_, y| y * y, |_, y| 12.0 * y);
+        // f(x-2) - 2 f(x) + f(x+2) of x^2: 8.
+        check::<EvenOfSumZero>(Along::Rows(0), &[9.0, 0.0, 1.0], |x, _| x * x, |_, _| 8.0);
+    }
+
+    #[test]
+    fn gaussian_weights_sum_to_one() {
+        let weights = gaussian(1.5, 5);
+        assert!((weights[0] + 2.0 * weights[1..].iter().sum::<f64>() - 1.0).abs() < 1e-15);
+        assert!((weights[3] / weights[0] - (-2.0f64).exp()).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,22 @@
+//! What a screen shows of a linear value: exposure 0, clamped to 0..1, the curve of sRGB (IEC 61966-2-1).
+
+use super::elementary::power;
+
+/// The display value of a finite linear value.
+#[inline(always)]
+pub(super) fn display(linear: f32) -> f32 {
+    let x = linear.clamp(0.0, 1.0);
+    if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * power(x, 1.0 / 2.4) - 0.055 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::display;
+
+    #[test]
+    fn known_values() {
+        for (linear, shown) in [(-1.0, 0.0), (0.0, 0.0), (0.001, 0.012_92), (0.5, 0.735_357), (1.0, 1.0), (9.0, 1.0)] {
+            assert!((display(linear) - shown).abs() < 3e-7, "{linear}");
+        }
+    }
+}

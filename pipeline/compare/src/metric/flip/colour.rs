@@ -1,0 +1,169 @@
+//! Colours: linear sRGB, the opponents that contrast is filtered in, and the space that differences are measured in.
+
+use crate::metric::elementary::power;
+
+/// CIE x and y of the primaries of sRGB, and of its white, D65.
+const PRIMARIES: [[f64; 2]; 3] = [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06]];
+const WHITE: [f64; 2] = [0.312_71, 0.329_02];
+
+/// From linear R, G, B to X, Y, Z over those of white, and back.
+const TO_XYZ: [[f64; 3]; 3] = to_xyz();
+const TO_RGB: [[f64; 3]; 3] = inverse(TO_XYZ);
+
+/// X, Y, Z of a chromaticity with Y = 1.
+const fn xyz([x, y]: [f64; 2]) -> [f64; 3] {
+    [x / y, 1.0, (1.0 - x - y) / y]
+}
+
+/// The brightness of each primary is such that together they make white.
+const fn to_xyz() -> [[f64; 3]; 3] {
+    let (columns, white) = ([xyz(PRIMARIES[0]), xyz(PRIMARIES[1]), xyz(PRIMARIES[2])], xyz(WHITE));
+    let mut matrix = [[0.0; 3]; 3];
+    let mut i = 0;
+    while i < 9 {
+        matrix[i / 3][i % 3] = columns[i % 3][i / 3];
+        i += 1;
+    }
+    let brightness = multiply(inverse(matrix), white);
+    i = 0;
+    while i < 9 {
+        matrix[i / 3][i % 3] *= brightness[i % 3] / white[i / 3];
+        i += 1;
+    }
+    matrix
+}
+
+const fn multiply(matrix: [[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
+    let [a, b, c] = matrix;
+    [
+        a[0] * v[0] + a[1] * v[1] + a[2] * v[2],
+        b[0] * v[0] + b[1] * v[1] + b[2] * v[2],
+        c[0] * v[0] + c[1] * v[1] + c[2] * v[2],
+    ]
+}
+
+/// By cofactors.
+const fn inverse(m: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    let mut inverse = [[0.0; 3]; 3];
+    let mut i = 0;
+    while i < 9 {
+        let ([a, b], [c, d]) = ([(i / 3 + 1) % 3, (i / 3 + 2) % 3], [(i % 3 + 1) % 3, (i % 3 + 2) % 3]);
+        inverse[i % 3][i / 3] = m[a][c] * m[b][d] - m[a][d] * m[b][c];
+        i += 1;
+    }
+    let determinant = m[0][0] * inverse[0][0] + m[0][1] * inverse[1][0] + m[0][2] * inverse[2][0];
+    i = 0;
+    while i < 9 {
+        inverse[i / 3][i % 3] /= determinant;
+        i += 1;
+    }
+    inverse
+}
+
+#[inline(always)]
+fn transform(matrix: &[[f64; 3]; 3], [a, b, c]: [f32; 3]) -> [f32; 3] {
+    let row = |row: [f64; 3]| row[0] as f32 * a + row[1] as f32 * b + row[2] as f32 * c;
+    [row(matrix[0]), row(matrix[1]), row(matrix[2])]
+}
+
+/// Of linear R, G, B in 0..1: Y, X - Y and Y - Z, all over white's. The paper's YCxCz is 116 Y - 16, 500 (X - Y) and
+/// 200 (Y - Z); filters whose weights sum to 1 do the same to both.
+#[inline(always)]
+pub(super) fn opponents(rgb: [f32; 3]) -> [f32; 3] {
+    let [x, y, z] = transform(&TO_XYZ, rgb);
+    [y, x - y, y - z]
+}
+
+/// Of opponents: R, G, B clamped to what a screen shows, in L*a*b* with Hunt's adjustment, by which colours fade where it
+/// is dark.
+#[inline(always)]
+pub(super) fn hunt_lab([y, xy, yz]: [f32; 3]) -> [f32; 3] {
+    let [r, g, b] = transform(&TO_RGB, [y + xy, y, y - yz]);
+    let xyz = transform(&TO_XYZ, [r.clamp(0.0, 1.0), g.clamp(0.0, 1.0), b.clamp(0.0, 1.0)]);
+    let [x, y, z] = [compress(xyz[0]), compress(xyz[1]), compress(xyz[2])];
+    let lightness = 116.0 * y - 16.0;
+    let hunt = 0.01 * lightness;
+    [lightness, hunt * 500.0 * (x - y), hunt * 200.0 * (y - z)]
+}
+
+/// CIE 15: the cube root, and a straight line near black.
+#[inline(always)]
+fn compress(t: f32) -> f32 {
+    const JOINT: f32 = 6.0 / 29.0;
+    let line = t / (3.0 * JOINT * JOINT) + 4.0 / 29.0;
+    let root = power(t, 1.0 / 3.0);
+    if t > JOINT * JOINT * JOINT { root } else { line }
+}
+
+/// HyAB: lightness by itself, the other two together.
+#[inline(always)]
+fn distance(a: [f32; 3], b: [f32; 3]) -> f32 {
+    let [l, a, b] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    l.abs() + (a * a + b * b).sqrt()
+}
+
+/// Large differences count less: the exponent is the paper's q_c. Exactly zero for equal colours.
+#[inline(always)]
+fn compressed_distance(a: [f32; 3], b: [f32; 3]) -> f32 {
+    let distance = distance(a, b);
+    distance * power(distance, 0.7 - 1.0)
+}
+
+/// The paper's c_max: between pure green and pure blue.
+pub(super) fn largest_difference() -> f32 {
+    let [green, blue] = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|rgb| hunt_lab(opponents(rgb)));
+    compressed_distance(green, blue)
+}
+
+/// Of two adjusted colours: 0 to 1. Differences up to 0.4 of the largest, the paper's p_c, take 0.95 of the range, p_t.
+#[inline(always)]
+pub(super) fn difference(a: [f32; 3], b: [f32; 3], largest: f32) -> f32 {
+    let (joint, distance) = (0.4 * largest, compressed_distance(a, b));
+    let small = distance * (0.95 / joint);
+    let large = 0.95 + (distance - joint) * (0.05 / (largest - joint));
+    if distance < joint { small } else { large }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lab(rgb: [f32; 3]) -> [f32; 3] {
+        hunt_lab(opponents(rgb))
+    }
+
+    #[test]
+    fn luminance_of_the_primaries() {
+        // IEC 61966-2-1 says 0.2126, 0.7152, 0.0722.
+        for (found, expected) in TO_XYZ[1].iter().zip([0.2126, 0.7152, 0.0722]) {
+            assert!((found - expected).abs() < 5e-5);
+        }
+    }
+
+    #[test]
+    fn white_grey_and_black_have_no_colour() {
+        for (grey, lightness) in [(0.0, 0.0), (0.001, 0.903_3), (0.184_187, 50.0), (1.0, 100.0)] {
+            let [l, a, b] = lab([grey; 3]);
+            // Of 100, in float32.
+            assert!((l - lightness).abs() < 1e-4 && a.abs() < 1e-4 && b.abs() < 1e-4, "{grey}: {l} {a} {b}");
+        }
+    }
+
+    #[test]
+    fn red_is_where_tables_have_it() {
+        // Red of sRGB under D65: L* 53.24, a* 80.09, b* 67.20; adjusted by 0.5324.
+        let [l, a, b] = lab([1.0, 0.0, 0.0]);
+        assert!((l - 53.24).abs() < 0.01 && (a - 42.64).abs() < 0.02 && (b - 35.78).abs() < 0.02, "{l} {a} {b}");
+    }
+
+    #[test]
+    fn differences_of_lightness_alone() {
+        // 10 of lightness: 10^0.7 = 5.0119, of 0.4 * 41.27 for 0.95.
+        let largest = largest_difference();
+        let found = difference([40.0, 0.0, 0.0], [50.0, 0.0, 0.0], largest);
+        assert!((found - 0.95 * 5.011_872 / (0.4 * largest)).abs() < 1e-6);
+        assert!((largest - 41.27).abs() < 0.01, "{largest}");
+        assert_eq!(difference([40.0, 3.0, 2.0], [40.0, 3.0, 2.0], largest), 0.0);
+        assert!((difference(lab([0.0, 1.0, 0.0]), lab([0.0, 0.0, 1.0]), largest) - 1.0).abs() < 1e-6);
+    }
+}
