@@ -1,6 +1,7 @@
 //! Does a sampler follow its density? Pearson's chi-square test.
 
 use crate::significance;
+use compare::distribution::ln_gamma;
 
 /// Cells that expect fewer are pooled: below it the statistic does not follow the chi-square distribution.
 const MIN_EXPECTED: f64 = 8.0;
@@ -77,17 +78,6 @@ pub fn upper_gamma(a: f64, x: f64) -> f64 {
     factor * fraction
 }
 
-/// `ln Γ(x)` for `x > 0`: Stirling's series after moving to `x ≥ 10`.
-pub fn ln_gamma(x: f64) -> f64 {
-    let (mut x, mut shift) = (x, 0.0);
-    while x < 10.0 {
-        shift += x.ln();
-        x += 1.0;
-    }
-    let series = 1.0 / (12.0 * x) - 1.0 / (360.0 * x.powi(3)) + 1.0 / (1260.0 * x.powi(5));
-    (x - 0.5) * x.ln() - x + 0.5 * std::f64::consts::TAU.ln() + series - shift
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -98,7 +88,6 @@ mod tests {
         for (freedom, at, p) in [(1.0, 3.841_459, 0.05), (10.0, 18.307_04, 0.05), (100.0, 149.449_25, 0.001)] {
             assert!((upper_gamma(0.5 * freedom, 0.5 * at) / p - 1.0).abs() < 1e-5, "{freedom}");
         }
-        assert!((ln_gamma(5.0) - 24f64.ln()).abs() < 1e-9);
     }
 
     #[test]

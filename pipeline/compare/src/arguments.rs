@@ -8,6 +8,8 @@ use clap::builder::{PathBufValueParser, TypedValueParser};
 use compare::heatmap::DEFAULT_MAX;
 use compare::{Choice, Gate, LimitsError, Settings, read_limits};
 
+use crate::noise_mode::NoiseArguments;
+
 /// Compare two OpenEXR images.
 ///
 /// Prints metrics per layer, then one line with the verdict. Exit code: 0 passed, 1 the images differ beyond a
@@ -15,10 +17,10 @@ use compare::{Choice, Gate, LimitsError, Settings, read_limits};
 #[derive(Debug, Parser)]
 #[command(version)]
 pub(crate) struct Arguments {
-    /// Image that is right
+    /// Image that is right, or a folder of them (--replicates)
     #[arg(value_parser = file())]
     pub(crate) reference: PathBuf,
-    /// Image to judge
+    /// Image to judge, or a folder of them
     #[arg(value_parser = file())]
     pub(crate) test: PathBuf,
     /// Largest relative difference of the means, of every channel (0.01 is one per cent)
@@ -79,6 +81,8 @@ pub(crate) struct Arguments {
     /// Why the test image is accepted
     #[arg(long, value_name = "TEXT", requires = "accept", value_parser = reason)]
     pub(crate) reason: Option<String>,
+    #[command(flatten)]
+    pub(crate) noise: NoiseArguments,
     #[command(flatten)]
     pub(crate) common: cli::Common,
 }

@@ -8,12 +8,14 @@
 use formats::image::Image;
 
 mod difference;
+pub mod distribution;
 mod gate;
 pub mod heatmap;
 pub mod html;
 mod layer;
 mod limits;
 pub mod metric;
+pub mod replicates;
 mod report;
 mod structure;
 

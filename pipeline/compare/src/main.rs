@@ -10,12 +10,16 @@ use index_command::IndexArguments;
 mod accept;
 mod arguments;
 mod index_command;
+mod noise_mode;
 mod outputs;
 
 fn main() {
     cli::run("compare", || match IndexArguments::asked_for() {
         Some(arguments) => arguments.run(),
-        None => judge(&Arguments::parse()),
+        None => {
+            let arguments = Arguments::parse();
+            noise_mode::asked_for(&arguments).unwrap_or_else(|| judge(&arguments))
+        }
     })
 }
 

@@ -1,0 +1,204 @@
+//! `compare --replicates` and `--summarise` as scripts see them.
+//!
+//! Planted errors that these tests caught: the tail of t on one side only, a gate written as `!(p < level)`, samples that
+//! are not finite passing where no statistic holds them, a layer that is no longer black passing, a cloud twice, a cloud of
+//! the reference, too few replicates, another scene, a reference that is not finite, logarithms of one side only.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use formats::image::{Attribute, Image};
+
+mod synthetic;
+use synthetic::{Fault, SOUND, replicate};
+
+/// Folders `reference` (twelve replicates) and `test` (eight).
+struct Bench {
+    folder: tempfile::TempDir,
+}
+
+/// Exit code, standard output, standard error.
+struct Run(Option<i32>, String, String);
+
+impl Bench {
+    fn new(fault: Fault) -> Bench {
+        let bench = Bench { folder: tempfile::tempdir().unwrap() };
+        (0..12).for_each(|seed| bench.write("reference", seed, &replicate(seed + 1, SOUND)));
+        (0..8).for_each(|seed| bench.write("test", seed, &replicate(seed + 101, fault)));
+        bench
+    }
+
+    /// The same with one of the test images changed.
+    fn with(change: impl FnOnce(&mut Image)) -> Bench {
+        let bench = Bench::new(SOUND);
+        let mut image = replicate(101, SOUND);
+        change(&mut image);
+        bench.write("test", 0, &image);
+        bench
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn write(&self, folder: &str, number: u64, image: &Image) {
+        std::fs::create_dir_all(self.path(folder)).unwrap();
+        std::fs::write(self.path(folder).join(format!("{number}.exr")), image.encode().unwrap()).unwrap();
+    }
+
+    fn run(&self, mode: &str, folders: [&str; 2], options: &[&str]) -> Run {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_compare"));
+        let output = command.arg(mode).args(folders.map(|f| self.path(f))).args(options).output().unwrap();
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        Run(output.status.code(), text(output.stdout), text(output.stderr))
+    }
+
+    fn judge(&self, options: &[&str]) -> Run {
+        self.run("--replicates", ["reference", "test"], options)
+    }
+}
+
+fn channel<'a>(image: &'a mut Image, name: &str) -> &'a mut [f32] {
+    &mut image.channels.iter_mut().find(|channel| channel.name == name).unwrap().samples
+}
+
+impl Run {
+    #[track_caller]
+    fn passes(&self) {
+        assert_eq!((self.0, self.2.as_str()), (Some(0), ""), "{}", self.1);
+        assert!(self.1.lines().last().unwrap().starts_with("PASS test p="), "{}", self.1);
+    }
+
+    #[track_caller]
+    fn fails(&self, words: &str) {
+        assert_eq!((self.0, self.2.as_str()), (Some(1), ""), "{}", self.1);
+        let verdict = self.1.lines().last().unwrap();
+        assert!(verdict.starts_with("FAIL test ") && verdict.contains(words), "{verdict}");
+    }
+
+    #[track_caller]
+    fn cannot_judge(&self, words: &[&str]) {
+        assert_eq!((self.0, self.1.as_str(), self.2.lines().count()), (Some(2), "", 1), "{}", self.2);
+        for word in words {
+            assert!(self.2.contains(word), "`{word}` is not in: {}", self.2);
+        }
+    }
+}
+
+#[test]
+fn sound_images_pass_and_brighter_or_darker_ones_fail() {
+    let run = Bench::new(SOUND).judge(&[]);
+    run.passes();
+    for word in ["difference", "level", "df", "visible", "subsurface tile 1,1 B/G", "not tested: nearly all background"]
+    {
+        assert!(run.1.contains(word), "`{word}` is not in: {}", run.1);
+    }
+    assert_eq!(Bench::new(SOUND).judge(&["--quiet", "--family", "5"]).1.lines().count(), 1);
+    Bench::new(Fault { red: 1.1, ..SOUND }).judge(&[]).fails(" R/G +");
+    Bench::new(Fault { red: 0.9, ..SOUND }).judge(&[]).fails(" R/G -");
+}
+
+#[test]
+fn values_that_are_no_numbers_fail() {
+    Bench::with(|image| image.channels[3].samples[40] = f32::NAN).judge(&[]).fails("1 samples are not finite");
+    Bench::with(|image| image.channels[2].samples[0] = f32::INFINITY).judge(&[]).fails("not finite");
+    // Depth is no colour, and of no statistic.
+    Bench::with(|image| channel(image, "Z").fill(f32::NAN)).judge(&[]).fails("81 samples are not finite");
+    let bench = Bench::new(SOUND);
+    let mut image = replicate(1, SOUND);
+    image.channels[0].samples[0] = f32::NAN;
+    bench.write("reference", 0, &image);
+    bench.judge(&[]).cannot_judge(&["0.exr", "not finite"]);
+}
+
+/// The logarithm of nothing is no number either.
+#[test]
+fn a_channel_that_went_black_fails() {
+    let bench = Bench::new(SOUND);
+    for seed in 0..8 {
+        let mut image = replicate(seed + 101, SOUND);
+        channel(&mut image, "G").fill(0.0);
+        bench.write("test", seed, &image);
+    }
+    bench.judge(&[]).fails(" G ");
+}
+
+/// The layer without light has no variance either: it must stay black.
+#[test]
+fn a_black_layer_must_stay_black() {
+    let bench = Bench::new(SOUND);
+    for seed in 0..8 {
+        let mut image = replicate(seed + 101, SOUND);
+        channel(&mut image, "transmission.G")[7] = 1e-3;
+        bench.write("test", seed, &image);
+    }
+    bench.judge(&[]).fails("transmission G");
+}
+
+#[test]
+fn replicates_that_are_none_are_refused() {
+    let set = |name: &'static str, value: &'static str| {
+        move |image: &mut Image| {
+            image.attributes.insert(name.to_owned(), Attribute::Text(value.to_owned()));
+        }
+    };
+    Bench::with(set("pcsss/cloud", "0000000000000066")).judge(&[]).cannot_judge(&["same cloud", "1.exr", "--seed"]);
+    Bench::with(set("pcsss/cloud", "0000000000000005")).judge(&[]).cannot_judge(&["same cloud", "reference"]);
+    Bench::with(set("pcsss/scene", "07435")).judge(&[]).cannot_judge(&["scene", "07435", "5ce4e"]);
+    Bench::with(|image| image.attributes.clear()).judge(&[]).cannot_judge(&["0.exr", "pcsss/scene"]);
+    Bench::with(|image| image.window = [1, 0]).judge(&[]).cannot_judge(&["[1, 0]", "one size"]);
+    Bench::with(|image| drop(image.channels.pop())).judge(&[]).cannot_judge(&["0.exr", "channels"]);
+    let bench = Bench::new(SOUND);
+    bench.write("test", 5, &Image { window: [0, 2], ..replicate(106, SOUND) });
+    bench.judge(&[]).cannot_judge(&["5.exr", "[0, 2]", "0.exr"]);
+    bench.write("test", 5, &replicate(106, SOUND));
+    std::fs::remove_file(bench.path("test/3.exr")).unwrap();
+    bench.judge(&[]).cannot_judge(&["test", "7 replicates", "8 are the fewest"]);
+    bench.run("--replicates", ["missing", "test"], &[]).cannot_judge(&["missing"]);
+    std::fs::write(bench.path("test/3.exr"), "garbage").unwrap();
+    bench.judge(&[]).cannot_judge(&["3.exr", "not an OpenEXR file"]);
+}
+
+#[test]
+fn a_summary_judges_like_the_images_it_was_made_of() {
+    let bench = Bench::new(Fault { red: 1.02, ..SOUND });
+    assert_eq!(bench.run("--summarise", ["reference", "golden"], &[]).0, Some(0));
+    let judge = |reference: &str| {
+        let json = bench.path("report.json");
+        let run = bench.run("--replicates", [reference, "test"], &["--json", json.to_str().unwrap()]);
+        let report: serde_json::Value = serde_json::from_slice(&std::fs::read(json).unwrap()).unwrap();
+        assert_eq!((&report["schema"], report["pass"].as_bool()), (&1.into(), Some(run.0 == Some(0))));
+        run.1
+    };
+    assert_eq!(judge("reference"), judge("golden"));
+    let mean = Image::read(&bench.path("golden/mean.exr")).unwrap();
+    assert_eq!((mean.width, mean.channels.len()), (synthetic::SIZE, 3));
+    bench.run("--summarise", ["test", "golden"], &[]);
+    bench.run("--replicates", ["golden", "test"], &[]).cannot_judge(&["same cloud", "golden"]);
+}
+
+#[test]
+fn a_damaged_summary_is_refused() {
+    let bench = Bench::new(SOUND);
+    bench.run("--summarise", ["reference", "golden"], &[]);
+    let path = bench.path("golden/statistics.json");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let damage = |path: &Path, from: &str, to: &str| {
+        assert!(text.contains(from));
+        std::fs::write(path, text.replacen(from, to, 1)).unwrap();
+        bench.run("--replicates", ["golden", "test"], &[]).cannot_judge(&["statistics.json", "--summarise"]);
+    };
+    damage(&path, "\"schema\": 1", "\"schema\": 2");
+    damage(&path, "\"variance\": ", "\"variance\": -");
+    damage(&path, "\"mean\"", "\"median\"");
+    damage(&path, "beauty R", "beauty X");
+    damage(&path, "{", "");
+}
+
+#[test]
+fn options_for_two_images_are_refused() {
+    let bench = Bench::new(SOUND);
+    for options in [["--max-bias", "1"], ["--layer", "all"], ["--family", "0"]] {
+        assert_eq!(bench.judge(&options).0, Some(2), "{options:?}");
+    }
+}

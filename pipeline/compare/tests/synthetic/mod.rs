@@ -1,0 +1,68 @@
+//! Images as a renderer makes them: all pixels share the error of their cloud, and each has one of its own.
+
+use formats::image::{Attribute, Channel, Image};
+
+/// Pixels along each side.
+pub const SIZE: usize = 9;
+/// Relative scatter of the cloud's error, which all pixels of a replicate share.
+pub const SHARED: f64 = 0.01;
+/// Relative scatter of a pixel's own error.
+pub const OWN: f64 = 0.02;
+/// The hash of the scene.
+const SCENE: &str = "5ce4e";
+
+/// What is wrong with the test images.
+#[derive(Clone, Copy, Debug)]
+pub struct Fault {
+    /// Factor on the light of the subsurface layer's red.
+    pub red: f64,
+    /// Factor on the scatter between replicates.
+    pub scatter: f64,
+    /// Factor on the variance that images claim.
+    pub claimed: f64,
+}
+
+/// Nothing is.
+pub const SOUND: Fault = Fault { red: 1.0, scatter: 1.0, claimed: 1.0 };
+
+/// Normally distributed numbers: splitmix64, then Box and Muller.
+struct Normal(u64);
+
+impl Normal {
+    fn uniform(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn next(&mut self) -> f64 {
+        (-2.0 * (1.0 - self.uniform()).ln()).sqrt() * (std::f64::consts::TAU * self.uniform()).cos()
+    }
+}
+
+/// A replicate from the cloud of this seed: a lit object in front of black, and a layer that is black everywhere.
+pub fn replicate(seed: u64, fault: Fault) -> Image {
+    let mut normal = Normal(seed.wrapping_mul(0xd134_2543_de82_ef95));
+    let shared = 1.0 + fault.scatter * SHARED * normal.next();
+    let mut channels = Vec::new();
+    for (name, light) in [("R", 0.5), ("G", 0.4), ("B", 0.2)] {
+        let light = if name == "R" { light * fault.red } else { light };
+        let mut plane = vec![0.0f32; SIZE * SIZE];
+        for y in 2..SIZE {
+            for x in 0..SIZE - 2 {
+                plane[y * SIZE + x] = (light * (shared + fault.scatter * OWN * normal.next())) as f32;
+            }
+        }
+        let variance = 1e-4 * fault.claimed * (1.0 + 0.1 * normal.next());
+        channels.push(Channel { name: format!("variance.{name}"), samples: vec![variance as f32; SIZE * SIZE] });
+        channels.push(Channel { name: format!("transmission.{name}"), samples: vec![0.0; SIZE * SIZE] });
+        channels.push(Channel { name: name.to_owned(), samples: plane.clone() });
+        channels.push(Channel { name: format!("subsurface.{name}"), samples: plane });
+    }
+    channels.push(Channel { name: "Z".to_owned(), samples: vec![1.0; SIZE * SIZE] });
+    let text = |name: &str, value: String| (format!("pcsss/{name}"), Attribute::Text(value));
+    let attributes = [text("cloud", format!("{seed:016x}")), text("scene", SCENE.to_owned())].into();
+    Image { width: SIZE, height: SIZE, channels, attributes, window: [0, 0] }
+}
