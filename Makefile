@@ -20,6 +20,7 @@ BIN := target/release
 SAMPLE := $(BIN)/sample-surface
 GATHER := $(BIN)/gather
 MAKE_SCENES := $(BIN)/make-scenes
+COMPARE := $(BIN)/compare
 CONTACT_SHEET := $(BIN)/contact-sheet
 RUN_NAME := k$(SAMPLES)-s$(SEED)
 
@@ -60,7 +61,7 @@ endif
 # Title=picture, for the contact sheet.
 titled = $(foreach p,$(call pictures_of,$(1),$(2)),"$(1) $(basename $(notdir $(p)))/$(subst $(space),$(comma)$(space),$(call names_of,$(2)))=$(basename $(p)).png")
 
-.PHONY: .FORCE gallery own contact-sheet build test browser-test slow peers accuracy curve curve-full bench lint scenes clouds images help clean clean-images
+.PHONY: .FORCE gallery own contact-sheet build test check check-images check-alarms check-power golden references browser-test slow peers accuracy curve curve-full bench lint scenes clouds images help clean clean-images
 
 ## gallery: build, and render every scene, medium and view of the gallery (what `make` does)
 gallery: contact-sheet
@@ -159,7 +160,7 @@ $(foreach c,$(CAMERAS),$(eval $(call own_picture,$(OWN_IMAGES)/camera$(c).exr,,-
 $(foreach v,$(wildcard $(VIEWS)),$(eval $(call own_picture,$(OWN_IMAGES)/$(notdir $(basename $(v))).exr,$(v),--view $(v))))
 endif
 
-$(SAMPLE) $(GATHER) $(MAKE_SCENES) $(CONTACT_SHEET): | build ;
+$(SAMPLE) $(GATHER) $(COMPARE) $(MAKE_SCENES) $(CONTACT_SHEET): | build ;
 
 ## scenes: write data/scenes, data/views and data/environments again
 scenes: build
@@ -174,6 +175,81 @@ browser-test:
 	@command -v python3 >/dev/null || { echo "browser-test: no python3 found; install it (Debian: apt install python3)" >&2; exit 1; }
 	$(CARGO) build --release --package compare --quiet
 	python3 -B tests/browser/run.py $(BIN)/compare
+
+# The noise test (docs/check.md): small images of each scene of the gallery, each from a cloud with a seed of its own.
+# Settings and seeds are part of the folder's name. CHECK_SEED is the first of CHECK_COUNT seeds.
+CHECK_SEED  ?= 1000
+CHECK_COUNT ?= 8
+CHECK_SAMPLES := 100k
+CHECK_SPP     := 12
+CHECK_SIZE    := 48
+# The one medium that absorbs in all colours, and thus tells most about coefficients, is worth more.
+CHECK_SAMPLES_piglet := 200k
+CHECK_SPP_piglet     := 24
+REFERENCE_SEED  := 1
+REFERENCE_COUNT := 64
+GOLDEN := tests/golden
+
+CHECK_SEEDS  := $(shell seq $(CHECK_SEED) $$(($(CHECK_SEED) + $(CHECK_COUNT) - 1)))
+CHECK_SCENES := $(foreach g,$(GALLERY),$(firstword $(subst :, ,$(g))))
+# $(1) scene
+check_setting = $(or $(CHECK_$(2)_$(1)),$(CHECK_$(2)))
+check_view    = $(firstword $(sort $(wildcard data/views/$(1)/*.json)))
+check_folder  = $(OUT)/check/s$(CHECK_SEED)-n$(CHECK_COUNT)/$(1)-k$(call check_setting,$(1),SAMPLES)-p$(call check_setting,$(1),SPP)-w$(CHECK_SIZE)
+# What is stored with the golden figures: $(1) scene, $(2) medium.
+check_sample  = --samples $(call check_setting,$(1),SAMPLES) $(call environment_of,$(1))
+check_gather  = --spp $(call check_setting,$(1),SPP) --width $(CHECK_SIZE) --height $(CHECK_SIZE) --bssrdf directional-dipole \
+  $(call medium_options,$(2)) $(call environment_of,$(1)) --view $(call check_view,$(1))
+
+# Here the programs are what is tested, so all is made again when they change; sample-surface would keep a cloud that is
+# there.
+define check_rules
+$(call check_folder,$(1))/%.cloud: data/scenes/$(1).glb $(wildcard $(ENVIRONMENT_$(1))) crates/formats/cloud-version $(SAMPLE)
+	@mkdir -p $$(@D) && rm -f $$@
+	$$(SUBMIT) $$(SAMPLE) --threads $$(THREADS) --seed $$* $(call check_sample,$(1)) --quiet $$< -o $$@
+$(call check_folder,$(1))/%.exr: $(call check_folder,$(1))/%.cloud $(call files_of,$(2)) $(call check_view,$(1)) $(GATHER)
+	@mkdir -p $$(@D)
+	$$(SUBMIT) $$(GATHER) --threads $$(THREADS) --seed $$* $(call check_gather,$(1),$(2)) --quiet $$< data/scenes/$(1).glb -o $$@
+CHECK_IMAGES += $(foreach s,$(CHECK_SEEDS),$(call check_folder,$(1))/$(s).exr)
+endef
+$(foreach g,$(GALLERY),$(eval $(call check_rules,$(word 1,$(subst :, ,$(g))),$(word 2,$(subst :, ,$(g))))))
+
+## check: small images with new clouds against tests/golden, by statistics (docs/check.md; CHECK_SEED=N for other seeds)
+check: build
+	@$(MAKE) --no-print-directory --silent check-images
+	@code=0; for scene in $(foreach s,$(CHECK_SCENES),$(s)=$(call check_folder,$(s))); do \
+	  $(COMPARE) --replicates --family $(words $(CHECK_SCENES)) --quiet --json "$${scene#*=}.json" $(GOLDEN)/"$${scene%%=*}" "$${scene#*=}" || code=1; \
+	done; exit $$code
+
+## check-images: the images that `make check` judges
+check-images: $(CHECK_IMAGES)
+
+## references: tests/golden again, from other seeds than those of `make check`; see docs/check.md for when
+references: build
+	@$(MAKE) --no-print-directory --silent check-images CHECK_SEED=$(REFERENCE_SEED) CHECK_COUNT=$(REFERENCE_COUNT)
+	@$(MAKE) --no-print-directory golden CHECK_SEED=$(REFERENCE_SEED) CHECK_COUNT=$(REFERENCE_COUNT)
+
+golden: $(foreach s,$(CHECK_SCENES),golden-$(s))
+
+# The figures, the mean image, and the commands that made them.
+define golden
+golden-$(1):
+	$(COMPARE) --summarise $(call check_folder,$(1)) $(GOLDEN)/$(1)
+	@printf '%s\n' 'for s in $$$$(seq $(firstword $(CHECK_SEEDS)) $(lastword $(CHECK_SEEDS))); do' \
+	  '  sample-surface --seed $$$$s $(call check_sample,$(1)) data/scenes/$(1).glb -o $$$$s.cloud' \
+	  '  gather --seed $$$$s $(strip $(call check_gather,$(1),$(2))) $$$$s.cloud data/scenes/$(1).glb -o $(1)/$$$$s.exr' \
+	  'done' 'compare --summarise $(1) $(GOLDEN)/$(1)' > $(GOLDEN)/$(1)/command.sh
+endef
+$(foreach g,$(GALLERY),$(eval $(call golden,$(word 1,$(subst :, ,$(g))),$(word 2,$(subst :, ,$(g))))))
+
+## check-alarms: `make check` under RUNS=200 new seeds, none of which may fail (an hour)
+RUNS ?= 200
+check-alarms: build
+	tests/check/alarms.sh $(RUNS)
+
+## check-power: errors planted one by one into a copy of the tree, each of which `make check` must find (many minutes)
+check-power:
+	tests/check/planted.sh
 
 ## slow: statistical and stability tests at full sample counts
 slow: build

@@ -1,0 +1,93 @@
+#!/usr/bin/env bash
+# Plants one error after the other into a copy of the tree, and asks `make check` for each: it must fail.
+#
+#     tests/check/planted.sh [NAME...]      all, or those named; the table goes to standard output
+#
+# WORK is where the copy lies, CARGO_TARGET_DIR where it is built: both are kept for the next run.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+work=${WORK:-out/planted}
+export CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/$work/target}
+mkdir -p "$work"
+work=$(cd "$work" && pwd)
+
+# Errors of the sizes that docs/check.md says are seen.
+# name | file | extended regular expression | what takes its place
+planted=(
+  'nothing|README.md|^# |# '
+  'skin2-sigma_a-green-1-percent|data/media/skin2.json|\[0.013, 0.07, 0.145\]|[0.013, 0.0707, 0.145]'
+  'skin2-sigma_a-blue-1-percent|data/media/skin2.json|\[0.013, 0.07, 0.145\]|[0.013, 0.07, 0.14645]'
+  'skin2-sigma_s-blue-2-percent|data/media/skin2.json|\[1.09, 1.59, 1.79\]|[1.09, 1.59, 1.8258]'
+  'skin2-eta-1-percent|data/media/skin2.json|"eta": 1.3|"eta": 1.313'
+  '1-over-K-1-percent|pipeline/gather/src/gathering.rs|sum.radiance / drawn\[half\]|sum.radiance * 1.01 / drawn[half]'
+  'triangle-pdf-2-percent|pipeline/sample-surface/src/choice.rs|pdf_area \* self.factor\(place\)|pdf_area * self.factor(place) * 1.02'
+  'lost-fresnel-entry|crates/bssrdf/src/lanes/entry.rs|if m > 0.0 \{ value \} else|if m > 0.0 \&\& value > 0.0 { 1.0 } else'
+  'lost-cosine|crates/scene/src/light/area.rs|let factor = at.normal.dot\(direction\) \* |let factor = '
+  'lost-fresnel-mirror|pipeline/gather/src/path.rs|branch.throughput \*= 1.0 - transmittance;|branch.throughput *= 1.0;'
+  'lost-fresnel-exit|pipeline/gather/src/path.rs|walker.throughput \*= transmittance;|walker.throughput *= 1.0;'
+  'triangle-pdf-2-percent-of-half|pipeline/sample-surface/src/choice.rs|pdf_area \* self.factor\(place\)|pdf_area * self.factor(place) * if 2 * place < self.links.len() { 1.02 } else { 1.0 }'
+  'wholemilk-eta-2-percent|data/media/wholemilk.json|"eta": 1.3|"eta": 1.326'
+  'candle_wax-eta-5-percent|data/media/candle_wax.json|"eta": 1.43|"eta": 1.5015'
+  'marble-eta-3-percent|data/media/marble.json|"eta": 1.5|"eta": 1.545'
+  'jade-eta-1-percent|data/media/jade.json|"eta": 1.6|"eta": 1.616'
+  'cherry-eta-2-percent|data/media/cherry.json|"eta": 1.4|"eta": 1.428'
+  'orange-eta-1-percent|data/media/orange.json|"eta": 1.4|"eta": 1.414'
+  'lime-eta-1-percent|data/media/lime.json|"eta": 1.4|"eta": 1.414'
+  'C_E-1-percent|crates/bssrdf/src/medium.rs|, fresnel::c_e\(eta\)\)|, 1.01 * fresnel::c_e(eta))'
+  'C_phi-1-percent|crates/bssrdf/src/medium.rs|\(fresnel::c_phi\(eta\),|(1.01 * fresnel::c_phi(eta),'
+  'diffusion-coefficient-1-percent|crates/bssrdf/src/medium.rs|1.0 / \(3.0 \* self.reduced_extinction|1.01 / (3.0 * self.reduced_extinction'
+)
+
+# The tree as it is, not as it was committed last. All files are new: cargo goes by their times.
+rm -rf "$work/tree" && mkdir "$work/tree"
+git ls-files -z --cached --others --exclude-standard | tar -c --null -T - | tar -x -m -C "$work/tree"
+ln -s "$CARGO_TARGET_DIR" "$work/tree/target"
+
+build() {
+    (cd "$work/tree" && cargo build --release --quiet -p sample-surface -p gather -p compare)
+}
+
+# `true` for cargo: a full build would also make what the check has no use for. What make finds unchanged it keeps.
+check() {
+    mkdir -p "$work/out"
+    if [ -d "$work/out/nothing" ] && [ "$1" != nothing ]; then cp -al "$work/out/nothing" "$work/out/$1"; fi
+    set -- CARGO=true OUT="$work/out/$1"
+    make -C "$work/tree" --silent -j"$(nproc)" check-images THREADS=1 "$@" && make -C "$work/tree" check "$@"
+}
+
+# The copy with one error, built and checked; says what the check said.
+plant() {
+    IFS='|' read -r name file pattern replacement <<<"$1"
+    # Media are read when the programs run: these are built without the error, and need not be built again.
+    if [[ $file == data/* ]]; then build; fi
+    sed -E -i "s|$pattern|$replacement|" "$work/tree/$file"
+    if [ "$name" != nothing ] && cmp -s "$file" "$work/tree/$file"; then
+        echo "$name: the pattern is not in $file any more" >&2
+        return 2
+    fi
+    if [[ $file != data/* ]]; then build; fi
+    code=0
+    check "$name" >"$work/$name.log" 2>"$work/$name.err" || code=$?
+    if [ "$name" != nothing ]; then rm -rf "$work/out/$name"; fi
+    # An old time for a medium, so that nothing is built for it; a new one for code, so that it is.
+    if [[ $file == data/* ]]; then cp -p "$file" "$work/tree/$file"; else cp "$file" "$work/tree/$file"; fi
+    echo "| $name | $([ $code = 0 ] && echo passed || echo failed) | $(verdicts "$work/$name.log") |"
+    if [ "$name" = nothing ]; then [ $code = 0 ]; else [ $code != 0 ] && grep -q '^FAIL' "$work/$name.log"; fi
+}
+
+# The first failure of each scene, shortened.
+verdicts() {
+    sed -nE 's/^FAIL ([a-z]+)[^ ]* ([^;]*).*/\1: \2/p' "$1" | paste -sd ';' | sed 's/;/; /g'
+}
+
+missed=()
+for entry in "${planted[@]}"; do
+    name=${entry%%|*}
+    if [ $# -gt 0 ] && ! printf '%s\n' "$@" | grep -qx -- "$name"; then continue; fi
+    plant "$entry" || missed+=("$name")
+done
+if [ ${#missed[@]} -gt 0 ]; then
+    echo "not as they should be: ${missed[*]}" >&2
+    exit 1
+fi
