@@ -61,7 +61,7 @@ endif
 # Title=picture, for the contact sheet.
 titled = $(foreach p,$(call pictures_of,$(1),$(2)),"$(1) $(basename $(notdir $(p)))/$(subst $(space),$(comma)$(space),$(call names_of,$(2)))=$(basename $(p)).png")
 
-.PHONY: .FORCE gallery own contact-sheet build test check check-images check-alarms check-power golden references browser-test slow peers accuracy curve curve-full bench lint scenes clouds images help clean clean-images
+.PHONY: .FORCE gallery own contact-sheet build test check check-images check-alarms check-power golden references browser-test slow farm-test peers accuracy curve curve-full bench lint scenes clouds images help clean clean-images
 
 ## gallery: build, and render every scene, medium and view of the gallery (what `make` does)
 gallery: contact-sheet
@@ -255,11 +255,15 @@ check-power:
 slow: build
 	$(CARGO) test --release --package bssrdf --test lanes -- --nocapture
 	$(CARGO) test --release --package pipeline-tests --features slow
-	$(CARGO) test --release --package gather --features slow --test programs mutations
+	$(CARGO) test --release --package gather --features slow --test programs -- --nocapture mutations faults
 
 ## peers: the metrics of `compare` against scikit-image and flip-evaluator (Python 3.11 or later, and a network once)
 peers: build
 	python3 tests/peers/metrics.py --compare $(BIN)/compare --environment target/peers-venv
+
+## farm-test: twelve views through a Slurm farm of two nodes on this machine (root; a minute)
+farm-test:
+	tests/farm/run
 
 ## accuracy: what the models are worth, against random walks: docs/accuracy.md and its pictures (minutes)
 accuracy:

@@ -39,6 +39,7 @@ fn one_line(error: impl Display) -> String {
 /// Runs a program and ends the process with its exit code. SIGINT and SIGTERM remove the temporary files and end it
 /// with 128 + the signal's number.
 pub fn run(name: &str, program: impl FnOnce() -> Result<u8, Failure>) -> ! {
+    crate::truncated::end_with_a_message();
     if let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) {
         std::thread::spawn(move || {
             if let Some(signal) = signals.forever().next() {

@@ -4,15 +4,18 @@ mod count;
 mod environment;
 mod failure;
 mod medium;
+mod memory;
 mod progress;
 mod rgb;
 mod scene_args;
 mod tables;
+mod truncated;
 
 pub use count::parse_count;
 pub use environment::EnvironmentSource;
 pub use failure::{Failure, run};
 pub use medium::{ReadMediumError, read_medium, scene_medium};
+pub use memory::{Need, available_memory_bytes, peak_memory_bytes, require_memory};
 pub use progress::Progress;
 pub use rgb::parse_rgb;
 pub use scene_args::{LightUnit, Normals, SceneArgs};
@@ -85,19 +88,4 @@ pub fn print(text: &str) -> Result<(), Failure> {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(Failure::usage(format!("stdout: cannot write: {e}"))),
         _ => Ok(()),
     }
-}
-
-/// The most memory this process had, in bytes, where the system tells.
-pub fn peak_memory_bytes() -> u64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"));
-    let kibibytes = line.and_then(|l| l.split_whitespace().next()?.parse::<u64>().ok());
-    kibibytes.unwrap_or(0) * 1024
-}
-
-/// Memory that can still be had, in bytes, where the system tells.
-pub fn available_memory_bytes() -> Option<u64> {
-    let info = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = info.lines().find_map(|l| l.strip_prefix("MemAvailable:"))?;
-    Some(line.split_whitespace().next()?.parse::<u64>().ok()? * 1024)
 }

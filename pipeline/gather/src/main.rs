@@ -10,7 +10,7 @@ use arguments::Arguments;
 use bssrdf::{Medium, built_in, built_in_names};
 use choices::{camera, estimator, settings};
 use clap::Parser;
-use cli::{Failure, camera_table, material_table};
+use cli::{Failure, Need, camera_table, material_table};
 use formats::{
     atomic::{self, Output},
     cloud::Cloud,
@@ -75,6 +75,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         let input = Input { scene: &scene, rays: &rays, cloud: &cloud, media: &media, camera: &camera };
         let render = Instant::now();
         let rendered = rendered(arguments, &input, &settings, unverified.then_some(cloud_path))?;
+        cloud.check_unchanged(cloud_path)?;
         seconds.0.push(("render", render.elapsed().as_secs_f64()));
         let facts = Facts {
             settings: &Settings { paths_per_pixel: rendered.paths_per_pixel, ..settings.clone() },
@@ -174,15 +175,8 @@ fn check_fit(
 fn check_memory(settings: &Settings) -> Result<(), Failure> {
     let pixels = settings.width as u64 * settings.height as u64;
     // Sums, their copies while a pass is joined, the pixels and the channels, if all pixels are edges.
-    let needed = pixels * 1280;
-    match cli::available_memory_bytes() {
-        Some(available) if needed > available => Err(Failure::usage(format!(
-            "this image needs {:.1} GiB of memory, {:.1} GiB are free; make it smaller",
-            needed as f64 / 2f64.powi(30),
-            available as f64 / 2f64.powi(30)
-        ))),
-        _ => Ok(()),
-    }
+    let need = Need { held: pixels.saturating_mul(1280), mapped: 0 };
+    cli::require_memory("this image", need, "make it smaller")
 }
 
 /// Prints each medium's lengths beside its object's.

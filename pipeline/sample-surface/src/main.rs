@@ -1,7 +1,7 @@
 //! `sample-surface SCENE -o CLOUD`: arguments and files; the phase itself is the library.
 
 use clap::Parser;
-use cli::{Common, Failure, Progress, SceneArgs, material_table, parse_count, read_medium};
+use cli::{Common, Failure, Need, Progress, SceneArgs, material_table, parse_count, read_medium};
 use formats::{
     atomic::{self, Output},
     cloud::{self, Cloud, Options},
@@ -67,6 +67,12 @@ struct Arguments {
 /// Bytes a sample takes while it is sampled, ordered and written: record, entry, tile, nodes and their moments.
 const BYTES_PER_SAMPLE: u64 = 112;
 
+/// Bytes of a sample in the file, with its part of the tree.
+const BYTES_PER_STORED_SAMPLE: u64 = 40;
+
+/// Bytes that a byte of a scene's file becomes, with the tree of its triangles. 36 bytes a triangle are 500 in memory.
+const BYTES_PER_FILE_BYTE: u64 = 16;
+
 /// Most samples: two halves of as many as a sequence has.
 const MAX_SAMPLES: u64 = 2 * scene::sequence::LENGTH;
 
@@ -102,7 +108,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         return cli::print(&material_table(&scene)?);
     }
     let output_path = arguments.output.as_deref().ok_or_else(|| Failure::usage("--output: give CLOUD"))?;
-    check_memory(arguments.samples)?;
+    check_memory(arguments)?;
     let medium = arguments.for_medium.as_deref().map(read_medium).transpose()?;
     let room = cli::available_memory_bytes().map_or(MAX_SAMPLES - 1, |bytes| bytes / BYTES_PER_SAMPLE);
     let goal = medium.as_ref().zip(arguments.target_error);
@@ -144,17 +150,16 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Refuses what cannot fit before any work is done.
-fn check_memory(samples: u64) -> Result<(), Failure> {
-    let needed = samples.saturating_mul(BYTES_PER_SAMPLE);
-    match cli::available_memory_bytes() {
-        Some(available) if needed > available => Err(Failure::usage(format!(
-            "--samples: {samples} samples need {:.1} GiB of memory, {:.1} GiB are free; draw fewer",
-            needed as f64 / 2f64.powi(30),
-            available as f64 / 2f64.powi(30)
-        ))),
-        _ => Ok(()),
-    }
+/// Refuses what cannot fit before any work is done: the samples, and the scene's file once it is unpacked.
+fn check_memory(arguments: &Arguments) -> Result<(), Failure> {
+    let samples = arguments.samples;
+    let file = std::fs::metadata(&arguments.scene).map_or(0, |meta| meta.len());
+    let scene = file.saturating_mul(BYTES_PER_FILE_BYTE);
+    let need = Need {
+        held: samples.saturating_mul(BYTES_PER_SAMPLE).saturating_add(scene),
+        mapped: samples.saturating_mul(BYTES_PER_STORED_SAMPLE),
+    };
+    cli::require_memory(&format!("--samples: a cloud of {samples} samples"), need, "draw fewer")
 }
 
 fn settings(arguments: &Arguments, environment: &Environment) -> Settings {

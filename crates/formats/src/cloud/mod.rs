@@ -17,7 +17,7 @@ use glam::{DVec3, Vec3};
 use layout::{HEADER, Header, Kind, Section};
 use memmap2::Mmap;
 use meta::Versioned;
-use std::{fs::File, io::Write, path::Path};
+use std::{fs::File, io::Write, path::Path, time::SystemTime};
 use xxhash_rust::xxh3::xxh3_64;
 
 /// The sections this version knows: name, element type, components.
@@ -110,6 +110,9 @@ fn provenance(meta: &Meta) -> serde_json::Value {
 
 /// An open cloud, mapped into memory.
 pub struct Cloud {
+    file: File,
+    /// When the file was last written before it was mapped.
+    modified: Option<SystemTime>,
     map: Mmap,
     header: Header,
     meta: Meta,
@@ -127,7 +130,26 @@ impl Cloud {
         let invalid = |what| Error::invalid(path, what);
         let header = layout::decode(&map, &SECTIONS).map_err(invalid)?;
         let meta = read_meta(&map, &header).map_err(invalid)?;
-        Ok(Cloud { map, header, meta })
+        Ok(Cloud { modified: kind.modified().ok(), file, map, header, meta })
+    }
+
+    /// Refuses a file that was written to since it was opened. One that was replaced keeps its content here, and a new
+    /// time stamp alone is no harm.
+    pub fn check_unchanged(&self, path: &Path) -> Result<(), Error> {
+        let now = self.file.metadata().map_err(|source| Error::read(path, source))?;
+        if now.len() == self.bytes() && now.modified().ok() == self.modified {
+            return Ok(());
+        }
+        let written = |_| Error::invalid(path, "written to while it was read; rename a new cloud over it instead");
+        if now.len() != self.bytes() {
+            return Err(written(String::new()));
+        }
+        let content = layout::decode(&self.map, &SECTIONS).and_then(|header| read_meta(&self.map, &header));
+        match content {
+            Ok(meta) if meta.content == self.meta.content => self.verify(path),
+            Ok(_) => Err(written(String::new())),
+            Err(what) => Err(written(what)),
+        }
     }
 
     pub fn meta(&self) -> &Meta {

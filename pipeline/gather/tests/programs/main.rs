@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod environment;
+mod faults;
 mod hostile;
 mod mutations;
 mod opaque;

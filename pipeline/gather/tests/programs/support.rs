@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::{
     fs,
     path::{Path, PathBuf},
-    process::{Command, Output},
+    process::{Child, Command, Output, Stdio},
 };
 
 /// A temporary folder and the programs.
@@ -34,7 +34,7 @@ pub fn split_glb(bytes: &[u8]) -> (Value, &[u8]) {
 }
 
 /// A program of the workspace. Cargo names only this package's to a test; the others lie beside it.
-fn program(name: &str) -> PathBuf {
+pub fn program(name: &str) -> PathBuf {
     let path = Path::new(env!("CARGO_BIN_EXE_gather")).with_file_name(name);
     assert!(path.exists(), "{name} is not built: run `cargo test --workspace`");
     path
@@ -53,6 +53,17 @@ impl Bench {
     pub fn run(&self, name: &str, arguments: &[&str]) -> Output {
         let mut command = Command::new(program(name));
         command.current_dir(self.folder.path()).args(arguments).output().expect("the program starts")
+    }
+
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Starts a program in the folder.
+    pub fn start(&self, name: &str, arguments: &[&str]) -> Child {
+        let mut command = Command::new(program(name));
+        command.current_dir(self.folder.path()).args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command.spawn().expect("the program starts")
     }
 
     /// Runs a program within limits, where there is a shell to ask for them.
@@ -123,7 +134,7 @@ impl Bench {
         fs::write(self.path(name), content).expect("writes");
     }
 
-    fn files(&self) -> Vec<PathBuf> {
+    pub fn files(&self) -> Vec<PathBuf> {
         let entries = fs::read_dir(self.folder.path()).expect("lists");
         let mut files: Vec<PathBuf> = entries.map(|e| e.expect("an entry").path()).collect();
         files.sort();
