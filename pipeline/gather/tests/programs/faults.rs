@@ -71,6 +71,11 @@ impl<'a> Victim<'a> {
     fn signalled(&self, signal: &str, delay: Duration) -> ExitStatus {
         fs::write(self.bench.path(self.target), &self.old).expect("writes");
         let mut child = self.start();
+        if signal != "-KILL" {
+            while !catches_signals(&child) {
+                sleep(Duration::from_millis(1));
+            }
+        }
         sleep(delay);
         send(signal, &child);
         child.wait().expect("ends")
@@ -89,6 +94,14 @@ impl<'a> Victim<'a> {
         let share = (f64::from(k) * 0.618_033_988_75 + 0.5 / f64::from(count)).fract();
         self.duration.mul_f64(1.1 * share)
     }
+}
+
+/// Whether a process has its handlers of SIGINT and SIGTERM, or is no more.
+fn catches_signals(child: &Child) -> bool {
+    let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
+    let caught = status.lines().find_map(|line| u64::from_str_radix(line.strip_prefix("SigCgt:")?.trim(), 16).ok());
+    let over = status.contains("State:\tZ");
+    over || caught.is_none_or(|signals| signals & (1 << (2 - 1)) != 0 && signals & (1 << (15 - 1)) != 0)
 }
 
 fn send(signal: &str, child: &Child) {
@@ -139,7 +152,7 @@ fn signals_to_end_leave_no_temporary_file() {
         for (signal, code) in [("-INT", 130), ("-TERM", 143)] {
             let mut stopped = 0;
             for k in 0..6 {
-                let status = victim.signalled(signal, victim.delay(k, 6).max(victim.duration / 5));
+                let status = victim.signalled(signal, victim.delay(k, 6));
                 assert!([Some(0), Some(code)].contains(&status.code()), "{signal}: {status}");
                 assert!(victim.is_new() || !status.success());
                 assert_eq!(temporaries(&bench), BTreeSet::new(), "{signal}");
@@ -244,7 +257,12 @@ fn a_full_disk_leaves_the_old_file() {
     }
 }
 
-/// A gather that takes a while, with something done to its cloud after a tenth of that.
+/// Whether a process has mapped a file, or is no more.
+fn maps(child: &Child, file: &str) -> bool {
+    fs::read_to_string(format!("/proc/{}/maps", child.id())).map_or(true, |maps| maps.is_empty() || maps.contains(file))
+}
+
+/// A gather that takes a while, with something done to its cloud in the middle of that.
 fn gather_disturbed(bench: &Bench, disturb: impl FnOnce(&Path)) -> (Output, Vec<u8>) {
     let (scene, view) = (data("scenes/sphere.glb"), data("views/sphere/front.json"));
     bench.succeed("sample-surface", &["-n", "200k", "-o", "mine.cloud", &scene]);
@@ -253,7 +271,11 @@ fn gather_disturbed(bench: &Bench, disturb: impl FnOnce(&Path)) -> (Output, Vec<
     bench.succeed("gather", &[&arguments[..], &["alone.exr"]].concat());
     let whole = start.elapsed();
     let child = bench.start("gather", &[&arguments[..], &["mine.exr"]].concat());
-    sleep(whole.mul_f64(0.3));
+    while !maps(&child, "mine.cloud") {
+        sleep(Duration::from_millis(1));
+    }
+    // The cloud is checked in milliseconds; then the picture is made of it.
+    sleep(whole.mul_f64(0.2));
     disturb(&bench.path("mine.cloud"));
     (child.wait_with_output().expect("ends"), fs::read(bench.path("alone.exr")).expect("reads"))
 }
