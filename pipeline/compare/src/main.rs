@@ -6,6 +6,7 @@ use cli::Failure;
 use compare::compare;
 use formats::image::Image;
 use index_command::IndexArguments;
+use std::num::NonZeroUsize;
 
 mod accept;
 mod arguments;
@@ -36,8 +37,7 @@ fn judge(arguments: &Arguments) -> Result<u8, Failure> {
              another limit beside it, such as --max-bias or --max-outliers",
         ));
     }
-    let read = |path| Image::read_with(path, arguments.threads());
-    let (reference, test) = (read(&arguments.reference)?, read(&arguments.test)?);
+    let (reference, test) = read_both(arguments)?;
     let report = arguments.common.in_pool(|| compare(&reference, &test, &settings))?.map_err(|mismatch| {
         let (test, reference) = (arguments.test.display(), arguments.reference.display());
         Failure::usage(format!("{test}: {mismatch} (the reference is {reference})"))
@@ -54,4 +54,19 @@ fn judge(arguments: &Arguments) -> Result<u8, Failure> {
         cli::print(done)?;
     }
     Ok(if report.pass || accepted.is_some() { 0 } else { 1 })
+}
+
+/// Both images at once, each by half of the threads: much of reading a file is not shared among threads.
+fn read_both(arguments: &Arguments) -> Result<(Image, Image), Failure> {
+    let threads = arguments.threads();
+    let read = |path, threads| Image::read_with(path, threads);
+    let Some(half) = NonZeroUsize::new(threads.get() / 2) else {
+        return Ok((read(&arguments.reference, threads)?, read(&arguments.test, threads)?));
+    };
+    std::thread::scope(|scope| {
+        let reference = scope.spawn(|| read(&arguments.reference, half));
+        let test = read(&arguments.test, half);
+        let reference = reference.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        Ok((reference?, test?))
+    })
 }
