@@ -33,6 +33,8 @@ mod reflectance;
 mod roulette;
 #[path = "statistics/sampling.rs"]
 mod sampling;
+#[path = "statistics/shards.rs"]
+mod shards;
 #[path = "statistics/slab.rs"]
 mod slab;
 #[path = "statistics/spread.rs"]

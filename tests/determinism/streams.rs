@@ -2,7 +2,7 @@
 
 use gather::estimator::random_bits;
 use scene::{
-    random::{Purpose, Stream},
+    random::{Purpose, Stream, shard_seed},
     sequence::Sequence,
 };
 
@@ -28,6 +28,14 @@ fn first_random_numbers_are_pinned() {
         [0x35a5_92f9_18c4_fefe, 0xa1ea_2792_e273_8ac8, 0x29e4_02d1_c0ea_0e74, 0x05e6_d95d_aae0_6379]
     );
     assert_eq!(surface.item(0).uniform(0), 0.338_052_454_195_505_45);
+}
+
+/// A shard's seed is the seed itself if it is the only one.
+#[test]
+fn seeds_of_shards_are_pinned() {
+    assert_eq!(shard_seed(7, 0, 1), 7);
+    let seeds = [(0, 0, 4), (0, 3, 4), (0, 3, 5), (1, 3, 4)].map(|(seed, k, n)| shard_seed(seed, k, n));
+    assert_eq!(seeds, [0xc8ff_7482_f64a_b898, 0xffa3_aca3_3bcd_be3c, 0xec43_d485_926f_625a, 0x2685_e3c5_3263_b668]);
 }
 
 /// The roulette's own bits: changing these changes images, not clouds.

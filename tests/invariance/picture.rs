@@ -81,7 +81,8 @@ impl Shot {
     pub fn of_cloud(&self, world: &World, cloud: &Cloud) -> Image {
         let media = std::slice::from_ref(&self.medium);
         let camera = &world.scene.cameras[0];
-        let input = Input { scene: &world.scene, rays: &world.rays, cloud, media, camera };
+        let input =
+            Input { scene: &world.scene, rays: &world.rays, clouds: std::slice::from_ref(cloud), media, camera };
         let settings = Settings {
             estimator: self.estimator,
             normals: self.normals,

@@ -17,8 +17,13 @@ const IMAGES: u64 = 4000 * EFFORT;
 fn brightness(scene: &Scene, paths_per_pixel: u32) -> Estimate {
     let cloud = cloud(&scene.world, &(scene.sampling)(20, 1));
     let (media, camera) = ([scene.medium.clone()], orthographic(DVec3::new(1.0, 1.2, 1.5), scene.half_height));
-    let input =
-        Input { scene: &scene.world.scene, rays: &scene.world.rays, cloud: &cloud, media: &media, camera: &camera };
+    let input = Input {
+        scene: &scene.world.scene,
+        rays: &scene.world.rays,
+        clouds: std::slice::from_ref(&cloud),
+        media: &media,
+        camera: &camera,
+    };
     let settings = of_paths(Estimator::Exhaustive, paths_per_pixel);
     let image = |seed: u64| {
         let rendered = gather::render(&input, &Settings { seed, ..settings.clone() }, |_| ());

@@ -2,6 +2,7 @@
 
 use crate::means::{jelly, lamp, sun};
 use bssrdf::{Medium, Model, built_in};
+use formats::cloud::{Cloud, Shard};
 use gather::{Filter, Input, Settings, estimator::Estimator, film::Pixel};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -26,6 +27,8 @@ pub struct Scene {
     /// Half of what the image shows, m.
     pub half_height: f64,
     pub sampling: fn(u64, u64) -> Sampling,
+    /// Clouds that are gathered together.
+    shards: u32,
 }
 
 /// A body that fills a part of the image, before a sky that its edge pixels and its inside show.
@@ -33,14 +36,16 @@ pub fn edge(medium: Medium) -> Scene {
     let body = Part::translucent(slab(DVec3::new(3e-3, 2e-3, 1e-3), 4));
     let environment = DVec3::splat(0.02);
     let world = world(&[body], &[sun(DVec3::ONE), lamp()], environment);
-    Scene { world, medium, environment, half_height: 3.5e-3, sampling: stratified }
+    Scene { world, medium, environment, half_height: 3.5e-3, sampling: stratified, shards: 1 }
 }
 
 fn image(scene: &Scene, settings: &Settings, seed: u64) -> Vec<Pixel> {
-    let cloud = cloud(&scene.world, &(scene.sampling)(SAMPLES, seed));
+    let count = scene.shards;
+    let shard = |index| Sampling { shard: Shard { index, count }, ..(scene.sampling)(SAMPLES, seed) };
+    let clouds: Vec<Cloud> = (0..count).map(|index| cloud(&scene.world, &shard(index))).collect();
     let (media, camera) = ([scene.medium.clone()], orthographic(DVec3::new(1.0, 1.2, 1.5), scene.half_height));
     let (scene_of, rays) = (&scene.world.scene, &scene.world.rays);
-    let input = Input { scene: scene_of, rays, cloud: &cloud, media: &media, camera: &camera };
+    let input = Input { scene: scene_of, rays, clouds: &clouds, media: &media, camera: &camera };
     gather::render(&input, &Settings { seed, ..settings.clone() }, |_| ()).pixels
 }
 
@@ -77,6 +82,18 @@ fn of_the_cut() {
     for (k, paths) in [2, 4, 5].into_iter().enumerate() {
         let settings = Settings { environment: scene.environment.into(), ..of_paths(CUT, paths) };
         assert_error_bars(&format!("cut, {paths} paths"), &scene, &settings, 50_000 + 1000 * k as u64);
+    }
+}
+
+/// Of three clouds, and fewer paths or as many for each half: which clouds a pixel saw is a part of its error.
+///
+/// Seen to catch: the same cloud for the paths of all pixels.
+#[test]
+fn of_shards() {
+    let scene = Scene { shards: 3, ..edge(built_in("marble").expect("a built-in medium")) };
+    for (k, paths) in [2, 6].into_iter().enumerate() {
+        let settings = Settings { environment: scene.environment.into(), ..of_paths(CUT, paths) };
+        assert_error_bars(&format!("shards, {paths} paths"), &scene, &settings, 90_000 + 1000 * k as u64);
     }
 }
 

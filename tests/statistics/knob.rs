@@ -47,7 +47,13 @@ impl View {
 
     fn image(&self, medium: &Medium, estimator: Estimator) -> Vec<Pixel> {
         let (media, camera) = (std::slice::from_ref(medium), &self.camera);
-        let input = Input { scene: &self.world.scene, rays: &self.world.rays, cloud: &self.cloud, media, camera };
+        let input = Input {
+            scene: &self.world.scene,
+            rays: &self.world.rays,
+            clouds: std::slice::from_ref(&self.cloud),
+            media,
+            camera,
+        };
         let settings = Settings { estimator, ..settings(Model::DirectionalDipole, SIZE, SIZE) };
         gather::render(&input, &settings, |_| ()).pixels
     }

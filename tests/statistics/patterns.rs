@@ -71,7 +71,13 @@ fn few_samples_have_the_mean_of_many() {
     let mean = |samples: u64, seeds: std::ops::Range<u64>, estimator: Estimator| {
         over_seeds(seeds, |seed| {
             let cloud = cloud(&world, &stratified(samples, seed));
-            let input = Input { scene: &world.scene, rays: &world.rays, cloud: &cloud, media: &media, camera: &camera };
+            let input = Input {
+                scene: &world.scene,
+                rays: &world.rays,
+                clouds: std::slice::from_ref(&cloud),
+                media: &media,
+                camera: &camera,
+            };
             let settings = Settings { paths_per_pixel: 2, estimator, seed, ..settings(Model::BetterDipole, 4, 3) };
             gather::render(&input, &settings, |_| ()).pixels.iter().map(|p| p.beauty()).sum()
         })

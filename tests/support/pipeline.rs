@@ -4,7 +4,7 @@ use crate::meshes::World;
 use bssrdf::{Medium, Model};
 use formats::{
     atomic::Output,
-    cloud::{self, Cloud, Options},
+    cloud::{self, Cloud, Options, Shard},
 };
 use gather::{
     Filter,
@@ -26,11 +26,12 @@ pub struct Sampling {
     /// Of the samples, on the first material.
     pub share: Option<f64>,
     pub seed: u64,
+    pub shard: Shard,
 }
 
 /// Independent samples by area.
 pub fn by_area(samples: u64, seed: u64) -> Sampling {
-    Sampling { samples, choice: Choice::Area, pattern: Pattern::Independent, share: None, seed }
+    Sampling { samples, choice: Choice::Area, pattern: Pattern::Independent, share: None, seed, shard: Shard::ALONE }
 }
 
 /// Well-spread samples by area: what the programs draw by default.
@@ -56,6 +57,7 @@ pub fn sampled_with(world: &World, sampling: &Sampling, normals: NormalKind) -> 
         shares: shares.clone(),
         options: Options {
             seed: sampling.seed,
+            shard: sampling.shard,
             choice: sampling.choice.name().into(),
             pattern: sampling.pattern.name().into(),
             shares,

@@ -1,7 +1,7 @@
 //! Clouds of samples that a test chooses, ordered and filed as phase one does with its own.
 
 use crate::pipeline::filed;
-use formats::cloud::{Cloud, Content, Group, Meta, Options, Record, Sample, SampledMaterial};
+use formats::cloud::{Cloud, Content, Group, Meta, Options, Record, Sample, SampledMaterial, Shard};
 use sample_surface::{Sampled, hierarchy};
 use std::collections::BTreeMap;
 
@@ -56,6 +56,7 @@ pub fn cloud_of(halves: &Halves) -> Cloud {
 fn facts() -> Meta {
     let options = Options {
         seed: 0,
+        shard: Shard::ALONE,
         choice: "area".into(),
         pattern: "independent".into(),
         shares: Vec::new(),

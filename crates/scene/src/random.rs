@@ -22,6 +22,8 @@ pub enum Purpose {
     Scramble,
     /// Light of surfaces that light the samples of phase one.
     Bounce,
+    /// Which of several clouds the paths of a pixel gather from.
+    Turn,
     /// What one of those sequences leaves open.
     Remainder(u64),
 }
@@ -37,9 +39,16 @@ impl Purpose {
             Purpose::Pixel => 5,
             Purpose::Calibration => 6,
             Purpose::Bounce => u64::MAX,
+            Purpose::Turn => u64::MAX - 1,
             Purpose::Remainder(k) => 7 + k,
         }
     }
+}
+
+/// The seed of shard `index` of `count` under a seed: that seed itself if there is one shard, else one of its own for each
+/// index and count.
+pub fn shard_seed(seed: u64, index: u32, count: u32) -> u64 {
+    if count == 1 { seed } else { mix(mix(!seed) ^ (u64::from(index) << 32 | u64::from(count))) }
 }
 
 /// All numbers of one purpose under one seed.

@@ -38,6 +38,11 @@ impl Exit {
         Exit { high: high.to_array(), low: low.to_array(), normal: normal.as_vec3().to_array(), key }
     }
 
+    /// The same with random numbers for one of several parts of the samples; the first has those of this gather.
+    pub fn of_part(&self, part: usize) -> Exit {
+        Exit { key: self.key.wrapping_add((part as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15)), ..*self }
+    }
+
     /// `x_o − x_i`, m.
     #[inline(always)]
     pub fn offset(&self, position: [f32; 3]) -> [f32; 3] {

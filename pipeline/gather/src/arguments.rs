@@ -14,6 +14,9 @@ pub struct Arguments {
     pub cloud: Option<PathBuf>,
     /// The scene that the cloud was sampled from
     pub scene: Option<PathBuf>,
+    /// More clouds of the scene, to be gathered together with CLOUD in any order: other shards or seeds
+    #[arg(long, value_name = "CLOUD", num_args = 1..)]
+    pub with: Vec<PathBuf>,
     /// OpenEXR image to write
     #[arg(short, long, value_name = "IMAGE.exr", required_unless_present_any = ["list_cameras", "list_materials", "list_media"])]
     pub output: Option<PathBuf>,

@@ -112,7 +112,7 @@ fn measure<M: LaneModel>(
         let item = stream.item(1 + (material * POINTS + index) as u64);
         let sum = |replicate: u64| {
             let exit = Exit::new(*position, *normal, item.bits(round * REPLICATES + replicate));
-            renderer.sum(body, index % 2, &exit, 1.0, worker.scratch(material))
+            renderer.sum(body, index % 2, index / 2 % body.parts.len(), &exit, 1.0, worker.scratch(material))
         };
         let sums: Vec<Sum> = (0..REPLICATES).map(sum).collect();
         let (mean, variance) = moments(&sums);

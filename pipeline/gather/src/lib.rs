@@ -4,6 +4,7 @@
 //! sum, so the image is the same for any number of threads.
 
 mod calibration;
+pub mod clouds;
 pub mod counts;
 mod edge;
 pub mod film;
@@ -55,8 +56,9 @@ pub struct Settings {
 pub struct Input<'a> {
     pub scene: &'a Scene,
     pub rays: &'a Rays<'a>,
-    pub cloud: &'a Cloud,
-    /// The medium of each material that the cloud sampled, in the cloud's order.
+    /// One or more of this scene, see [`clouds::join`].
+    pub clouds: &'a [Cloud],
+    /// The medium of each material that the clouds sampled, in their order.
     pub media: &'a [Medium],
     pub camera: &'a Camera,
 }

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod choices;
+mod inputs;
 mod orbit;
 mod report;
 mod rounds;
@@ -15,11 +16,12 @@ use formats::{
     atomic::{self, Output},
     cloud::Cloud,
 };
-use gather::{Input, Rendered, Settings, film, media, preview};
+use gather::{Input, Rendered, Settings, clouds, film, media, preview};
+use inputs::CloudFiles;
 use orbit::Step;
 use report::{Facts, Seconds};
 use rounds::{render_all, render_to};
-use scene::{DVec3, Rays, Scene, light::Environment};
+use scene::{DVec3, Rays, Scene};
 use std::{
     fmt::Write as _,
     io::Write as _,
@@ -42,24 +44,25 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let start = Instant::now();
     let common = &arguments.common;
-    let (cloud_path, scene_path) = paths(arguments)?;
+    let (cloud_path, scene_path) = inputs::paths(arguments)?;
     let estimator = estimator(arguments)?;
-    let cloud = Cloud::open(cloud_path)?;
+    let files = CloudFiles::open(cloud_path, &arguments.with)?;
+    let clouds = files.clouds();
     let (mut scene, environment) = arguments.scene_args.import(scene_path, common)?;
-    check_fit(&cloud, cloud_path, (&scene, &environment), scene_path, arguments)?;
-    let sampled = |material| cloud.meta().materials.iter().any(|m| m.index == material);
+    files.check_fit((&scene, &environment), scene_path, arguments)?;
+    let sampled = |material| clouds::materials(clouds).iter().any(|m| m.index == material);
     let chosen = camera(arguments, &scene, scene_path, || scene.origin + middle(bounds(&scene, sampled)))?;
     let settings = settings(arguments, &chosen, estimator, environment)?;
     check_memory(&settings)?;
     let health = arguments.scene_args.check_mesh(&mut scene, sampled, scene_path, common)?;
-    let media = media::assign(&arguments.medium, cloud.meta(), &scene.materials)?;
-    show_scale(arguments, &scene, &cloud, &media, &settings);
+    let media = media::assign(&arguments.medium, clouds::materials(clouds), &scene.materials)?;
+    show_scale(arguments, &scene, clouds, &media, &settings);
     let output_path = arguments.output.as_deref().ok_or_else(|| Failure::usage("--output: give IMAGE.exr"))?;
     let mut steps = orbit::steps(arguments).peekable();
     let mut first = steps.peek().map(|step| Output::create(&step.file(output_path))).transpose()?;
-    let at_once = cloud.bytes() < VERIFIED_FIRST;
+    let at_once = files.are_small();
     if at_once {
-        cloud.verify(cloud_path)?;
+        files.verify()?;
     }
     let mut seconds = Seconds(vec![("open", start.elapsed().as_secs_f64())]);
     let ray_tree = Instant::now();
@@ -72,14 +75,14 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         let path = step.file(output_path);
         let output = first.take().map_or_else(|| Output::create(&path), Ok)?;
         let camera = step.turned(&chosen.camera, chosen.target);
-        let input = Input { scene: &scene, rays: &rays, cloud: &cloud, media: &media, camera: &camera };
+        let input = Input { scene: &scene, rays: &rays, clouds, media: &media, camera: &camera };
         let render = Instant::now();
-        let rendered = rendered(arguments, &input, &settings, unverified.then_some(cloud_path))?;
-        cloud.check_unchanged(cloud_path)?;
+        let rendered = rendered(arguments, &input, &settings, unverified.then_some(&files))?;
+        files.check_unchanged()?;
         seconds.0.push(("render", render.elapsed().as_secs_f64()));
         let facts = Facts {
             settings: &Settings { paths_per_pixel: rendered.paths_per_pixel, ..settings.clone() },
-            cloud: cloud.meta(),
+            clouds,
             media: &media,
             camera: &camera,
             turned_degrees: step.degrees(),
@@ -102,73 +105,25 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The image; a cloud of which the path is given is checked beside the work.
+/// The image; clouds that are not verified are checked beside the work.
 fn rendered(
     arguments: &Arguments,
     input: &Input,
     settings: &Settings,
-    unverified: Option<&Path>,
+    unverified: Option<&CloudFiles>,
 ) -> Result<Rendered, Failure> {
     let common = &arguments.common;
     std::thread::scope(|scope| {
-        let verified = unverified.map(|path| (path, scope.spawn(|| input.cloud.verify(path))));
+        let verified = unverified.map(|files| scope.spawn(|| files.verify()));
         let rendered = common.in_pool(|| match arguments.target_error {
             None => render_all(input, settings, common),
             Some(target) => render_to(target, input, settings, common),
         })?;
-        if let Some((path, check)) = verified {
-            check.join().unwrap_or_else(|_| Err(formats::Error::invalid(path, "its check came to no end")))?;
+        if let Some(check) = verified {
+            check.join().map_err(|_| Failure::usage("CLOUD: its check came to no end"))??;
         }
         Ok(rendered)
     })
-}
-
-/// Clouds of fewer bytes are checked before the work, in milliseconds; larger ones beside it, before anything is written.
-const VERIFIED_FIRST: u64 = 1 << 26;
-
-fn paths(arguments: &Arguments) -> Result<(&Path, &Path), Failure> {
-    match (&arguments.cloud, &arguments.scene) {
-        (Some(cloud), Some(scene)) => Ok((cloud, scene)),
-        _ => Err(Failure::usage("give CLOUD and SCENE; see --help")),
-    }
-}
-
-/// Refuses a cloud that was sampled from something else, and says what differs.
-fn check_fit(
-    cloud: &Cloud,
-    cloud_path: &Path,
-    (scene, environment): (&Scene, &Environment),
-    scene_path: &Path,
-    arguments: &Arguments,
-) -> Result<(), Failure> {
-    let meta = cloud.meta();
-    let (here, there) = (arguments.scene_args.metres_per_unit, meta.options.metres_per_unit);
-    let unit = arguments.scene_args.light_unit.name();
-    let differs = if here != there {
-        format!("--metres-per-unit is {here}, the cloud's {there}")
-    } else if unit != meta.options.light_unit {
-        format!("--light-unit is {unit}, the cloud's {}", meta.options.light_unit)
-    } else if scene.geometry_digest() != meta.geometry {
-        "its mesh or materials differ".into()
-    } else if meta.materials.iter().any(|m| scene.materials.get(m.index as usize).is_none_or(|own| own.name != m.name))
-    {
-        "its materials differ".into()
-    } else if scene.light_digest != meta.lights {
-        "its lights differ".into()
-    } else if environment.identity() != meta.options.environment {
-        format!("--environment is {}, the cloud's {}", environment.identity(), meta.options.environment)
-    } else {
-        let normals = arguments.scene_args.normals.name();
-        if normals != meta.options.normals {
-            arguments.common.warn(format_args!("--normals is {normals}, the cloud's {}", meta.options.normals));
-        }
-        return Ok(());
-    };
-    Err(Failure::usage(format!(
-        "{}: this cloud is not of {}: {differs}; sample the scene again",
-        cloud_path.display(),
-        scene_path.display()
-    )))
 }
 
 /// Refuses what cannot fit before any work is done: the image thrice. The cloud is mapped.
@@ -180,14 +135,14 @@ fn check_memory(settings: &Settings) -> Result<(), Failure> {
 }
 
 /// Prints each medium's lengths beside its object's.
-fn show_scale(arguments: &Arguments, scene: &Scene, cloud: &Cloud, media: &[Medium], settings: &Settings) {
-    for (material, medium) in cloud.meta().materials.iter().zip(media) {
+fn show_scale(arguments: &Arguments, scene: &Scene, clouds: &[Cloud], media: &[Medium], settings: &Settings) {
+    for (slot, (material, medium)) in clouds::materials(clouds).iter().zip(media).enumerate() {
         let (low, high) = bounds(scene, |m| m == material.index);
         let extent = low.abs().max(high.abs()).max_element();
         let object = media::Object {
             material: &material.name,
             diagonal: (high - low).length(),
-            spacing: (material.area_m2 / material.count().max(1) as f64).sqrt(),
+            spacing: (material.area_m2 / clouds::count(clouds, slot).max(1) as f64).sqrt(),
             rounding: 0.5 * f64::from(f32::EPSILON) * extent,
         };
         let scale = media::scale(&object, medium, settings.model.of(medium).transport());

@@ -2,7 +2,7 @@
 
 use bssrdf::Medium;
 use cli::{ReadMediumError, read_medium, scene_medium};
-use formats::cloud::Meta;
+use formats::cloud::SampledMaterial;
 use scene::Material;
 
 /// Why media cannot be assigned.
@@ -24,20 +24,24 @@ pub enum AssignError {
 
 /// The medium of each sampled material: from arguments `[MATERIAL=]NAME|FILE.json`, or else from the scene's
 /// `materials`.
-pub fn assign(arguments: &[String], cloud: &Meta, materials: &[Material]) -> Result<Vec<Medium>, AssignError> {
+pub fn assign(
+    arguments: &[String],
+    sampled: &[SampledMaterial],
+    materials: &[Material],
+) -> Result<Vec<Medium>, AssignError> {
     let mut for_all: Option<&str> = None;
-    let mut for_one: Vec<Option<&str>> = vec![None; cloud.materials.len()];
+    let mut for_one: Vec<Option<&str>> = vec![None; sampled.len()];
     for argument in arguments {
-        let (slots, medium): (Vec<&mut Option<&str>>, &str) = match split(argument, cloud) {
+        let (slots, medium): (Vec<&mut Option<&str>>, &str) = match split(argument, sampled) {
             Some((name, medium)) => {
-                let named = cloud.materials.iter().zip(&mut for_one).filter(|(m, _)| m.name == name);
+                let named = sampled.iter().zip(&mut for_one).filter(|(m, _)| m.name == name);
                 (named.map(|(_, slot)| slot).collect(), medium)
             }
             None => (vec![&mut for_all], argument),
         };
         if slots.is_empty() {
             let name = argument.split('=').next().unwrap_or_default().to_owned();
-            let known = cloud.materials.iter().map(|m| format!("`{}`", m.name)).collect::<Vec<_>>().join(", ");
+            let known = sampled.iter().map(|m| format!("`{}`", m.name)).collect::<Vec<_>>().join(", ");
             return Err(AssignError::UnknownMaterial { name, known });
         }
         for slot in slots {
@@ -47,10 +51,10 @@ pub fn assign(arguments: &[String], cloud: &Meta, materials: &[Material]) -> Res
         }
     }
     let missing = |name: &str| match arguments {
-        [] if cloud.materials.len() == 1 => AssignError::Missing,
+        [] if sampled.len() == 1 => AssignError::Missing,
         _ => AssignError::MissingFor(name.to_owned()),
     };
-    let chosen = for_one.iter().zip(&cloud.materials).map(|(one, m)| {
+    let chosen = for_one.iter().zip(sampled).map(|(one, m)| {
         if let Some(name) = one.or(for_all) {
             return Ok(read_medium(name)?);
         }
@@ -61,9 +65,9 @@ pub fn assign(arguments: &[String], cloud: &Meta, materials: &[Material]) -> Res
 }
 
 /// Splits `MATERIAL=MEDIUM`; the name of a material may hold an equals sign, and the longest that fits is meant.
-fn split<'a>(argument: &'a str, cloud: &Meta) -> Option<(&'a str, &'a str)> {
+fn split<'a>(argument: &'a str, sampled: &[SampledMaterial]) -> Option<(&'a str, &'a str)> {
     let at = |(k, _): (usize, &str)| Some((argument.get(..k)?, argument.get(k + 1..)?));
-    let known = |name: &str| cloud.materials.iter().any(|m| m.name == name);
+    let known = |name: &str| sampled.iter().any(|m| m.name == name);
     let splits: Vec<_> = argument.match_indices('=').filter_map(at).collect();
     splits.iter().rev().find(|(name, _)| known(name)).or(splits.first()).copied()
 }

@@ -2,6 +2,7 @@
 
 use crate::{
     Filter, Input, Rendered, Session, Settings, calibration,
+    clouds::{self, Drawn},
     counts::Counts,
     edge::{self, Edge},
     estimator::{Calibration, Estimator, Radial},
@@ -10,7 +11,8 @@ use crate::{
     path::{PathIndex, Renderer, Worker},
     samples::LitSamples,
 };
-use bssrdf::lanes::LaneModel;
+use bssrdf::{Medium, lanes::LaneModel};
+use formats::cloud::Cloud;
 use glam::DVec2;
 use rayon::prelude::*;
 use scene::{
@@ -55,12 +57,13 @@ impl<'a, M: LaneModel> Passes<'a, M> {
             environment: settings.environment.clone(),
             normals: settings.normals,
             estimator: settings.estimator,
-            samples_drawn: input.cloud.meta().drawn_by_half(),
+            drawn: Drawn::of(input.clouds),
             paths_per_pixel: settings.paths_per_pixel,
             max_depth: settings.max_depth,
             clearance: CLEARANCE * input.scene.mesh.diagonal(),
             paths: Stream::new(settings.seed, Purpose::CameraPath),
             gathers: Stream::new(settings.seed, Purpose::Gather),
+            turns: Stream::new(settings.seed, Purpose::Turn),
         };
         calibration::calibrate(&mut renderer, size(settings), settings.seed);
         let mut passes = Passes {
@@ -200,9 +203,14 @@ fn size(settings: &Settings) -> DVec2 {
     DVec2::new(settings.width as f64, settings.height as f64)
 }
 
+/// The samples of one sampled material in one cloud: its halves.
+fn part<'a>(cloud: &'a Cloud, slot: usize, medium: &Medium) -> [LitSamples<'a>; 2] {
+    cloud.meta().materials[slot].halves.map(|half| LitSamples::new(cloud, &half, medium.eta))
+}
+
 fn bodies<'a, M: LaneModel>(input: &Input<'a>, settings: &Settings) -> Vec<Option<Body<'a, M>>> {
     let mut bodies: Vec<Option<Body<M>>> = input.scene.materials.iter().map(|_| None).collect();
-    for (sampled, medium) in input.cloud.meta().materials.iter().zip(input.media) {
+    for (slot, (sampled, medium)) in clouds::materials(input.clouds).iter().zip(input.media).enumerate() {
         let model = settings.model.of(medium);
         let method = match settings.estimator {
             Estimator::Exhaustive => Method::Exhaustive,
@@ -214,7 +222,7 @@ fn bodies<'a, M: LaneModel>(input: &Input<'a>, settings: &Settings) -> Vec<Optio
             unscattered: settings.model.unscattered_extinction(medium),
             method,
             calibration: Calibration::default(),
-            halves: sampled.halves.map(|half| LitSamples::new(input.cloud, &half, medium.eta)),
+            parts: input.clouds.iter().map(|cloud| part(cloud, slot, medium)).collect(),
             medium: medium.clone(),
         });
     }

@@ -1,6 +1,7 @@
 //! note: [split] One camera path: Fresnel roulette at the interfaces, and `L_o = L_e + L_t + L_r` where light leaves.
 
 use crate::{
+    clouds::Drawn,
     counts::Counts,
     estimator::{Estimator, Scratch},
     film::{Guide, Layer, Layers},
@@ -26,14 +27,15 @@ pub struct Renderer<'a, M> {
     pub environment: Environment,
     pub normals: NormalKind,
     pub estimator: Estimator,
-    /// `K`, the unlit samples included, of each half of the cloud.
-    pub samples_drawn: [u64; 2],
+    /// Samples of each cloud, the unlit ones included.
+    pub drawn: Drawn,
     pub paths_per_pixel: u32,
     pub max_depth: u32,
     /// How far beyond a surface a ray goes on that passes it straight, m.
     pub clearance: f64,
     pub paths: Stream,
     pub gathers: Stream,
+    pub turns: Stream,
 }
 
 /// Which path.
@@ -88,6 +90,8 @@ pub(crate) struct Walker {
     events: u32,
     /// Which half of the cloud it gathers from, if it is one.
     pub half: usize,
+    /// Which of several clouds, if it is one.
+    pub part: usize,
     random: Item,
     pub dimension: u64,
     pub key: Item,
@@ -126,6 +130,7 @@ impl<M: LaneModel> Renderer<'_, M> {
     /// Light that arrives at the camera along one path. At its first interface the path splits in two.
     pub fn trace(&self, index: PathIndex, origin: DVec3, direction: DVec3, worker: &mut Worker) -> PathLight {
         let item = index.pixel << 32 | u64::from(index.path);
+        let half = index.path as usize % 2;
         let mut walker = Walker {
             origin,
             direction,
@@ -134,7 +139,8 @@ impl<M: LaneModel> Renderer<'_, M> {
             throughput: DVec3::ONE,
             layer: None,
             events: 0,
-            half: index.path as usize % 2,
+            half,
+            part: self.drawn.turn(half, index.path / 2, || self.turns.item(index.pixel).uniform(half as u64)),
             random: self.paths.item(item),
             dimension: 0,
             key: self.gathers.item(item),

@@ -4,16 +4,16 @@ use crate::arguments::Arguments;
 use bssrdf::Medium;
 use formats::{
     Attribute,
-    cloud::{Meta, hex},
+    cloud::{Cloud, hex},
 };
-use gather::{Rendered, Settings, estimator::Estimator, film};
+use gather::{Rendered, Settings, clouds, estimator::Estimator, film};
 use scene::{Camera, Health};
 use std::collections::BTreeMap;
 
 /// Facts about one image.
 pub struct Facts<'a> {
     pub settings: &'a Settings,
-    pub cloud: &'a Meta,
+    pub clouds: &'a [Cloud],
     pub media: &'a [Medium],
     pub camera: &'a Camera,
     /// How far an orbit has turned it.
@@ -58,19 +58,23 @@ impl Facts<'_> {
             put("capDate", Attribute::Text(date));
             put("utcOffset", Attribute::Float(0.0));
         }
-        put("pcsss/cloud", Attribute::Text(hex(&self.cloud.content)));
-        put("pcsss/scene", Attribute::Text(hex(&self.cloud.geometry)));
-        put("pcsss/samplesDrawn", Attribute::Double(self.cloud.samples_drawn as f64));
-        put("pcsss/cloudSeed", Attribute::Text(self.cloud.options.seed.to_string()));
-        put("pcsss/metresPerUnit", Attribute::Double(self.cloud.options.metres_per_unit));
-        put("pcsss/lightUnit", Attribute::Text(self.cloud.options.light_unit.clone()));
+        let first = self.clouds[0].meta();
+        put("pcsss/cloud", Attribute::Text(hex(&clouds::identity(self.clouds))));
+        put("pcsss/scene", Attribute::Text(hex(&first.geometry)));
+        put("pcsss/samplesDrawn", Attribute::Double(clouds::drawn(self.clouds) as f64));
+        match self.clouds {
+            [_] => put("pcsss/cloudSeed", Attribute::Text(first.options.seed.to_string())),
+            _ => put("pcsss/clouds", Attribute::Texts(clouds::describe(self.clouds))),
+        }
+        put("pcsss/metresPerUnit", Attribute::Double(first.options.metres_per_unit));
+        put("pcsss/lightUnit", Attribute::Text(first.options.light_unit.clone()));
         put("pcsss/seed", Attribute::Text(self.settings.seed.to_string()));
         put("pcsss/bssrdf", text(self.settings.model.name()));
         put("pcsss/estimator", Attribute::Text(estimator_name(self.settings.estimator)));
         put("pcsss/version", text(version));
         put("pcsss/arguments", Attribute::Text(self.arguments(arguments)));
         put("pcsss/varianceCovers", text(self.covers()));
-        let media = self.cloud.materials.iter().zip(self.media);
+        let media = clouds::materials(self.clouds).iter().zip(self.media);
         put("pcsss/media", Attribute::Texts(media.map(|(m, medium)| describe(&m.name, medium)).collect()));
         if !self.warnings.is_empty() {
             put("pcsss/warnings", Attribute::Texts(self.warnings.to_vec()));
@@ -129,8 +133,9 @@ impl Facts<'_> {
             "mesh": self.health.counts().into_iter().collect::<BTreeMap<_, _>>(),
             "non_finite": rendered.non_finite_count,
             "non_finite_pixels": rendered.non_finite.iter().map(|p| self.pixel(*p)).collect::<Vec<_>>(),
-            "cloud": hex(&self.cloud.content),
-            "samples_drawn": self.cloud.samples_drawn,
+            "cloud": hex(&clouds::identity(self.clouds)),
+            "clouds": self.clouds.len(),
+            "samples_drawn": clouds::drawn(self.clouds),
             "estimator": estimator_name(self.settings.estimator),
             "bssrdf": self.settings.model.name(),
         });
@@ -145,7 +150,7 @@ impl Facts<'_> {
 
     /// What variance and estimated error cover.
     pub fn covers(&self) -> &'static str {
-        film::covers(self.settings.paths_per_pixel, self.cloud.samples_drawn)
+        film::covers(self.settings.paths_per_pixel, clouds::drawn(self.clouds))
     }
 
     /// Column and row of a pixel.

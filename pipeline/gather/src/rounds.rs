@@ -1,7 +1,7 @@
 //! How many paths: as many as asked for, or as an error takes.
 
 use cli::{Common, Progress};
-use gather::{Input, Rendered, Settings, estimator::Estimator, render, start};
+use gather::{Input, Rendered, Settings, clouds, estimator::Estimator, render, start};
 
 pub fn render_all(input: &Input, settings: &Settings, common: &Common) -> Rendered {
     let progress = Progress::start(common, "gathering", (settings.width * settings.height) as u64, "pixels");
@@ -29,12 +29,15 @@ pub fn render_to(target: f64, input: &Input, settings: &Settings, common: &Commo
         before = errors.total;
         if cloud_error > CLOUD_LIMITS * target {
             // The error of well-spread samples falls at least as their number to the power 3/4.
-            let drawn = input.cloud.meta().samples_drawn as f64;
+            let drawn = clouds::drawn(input.clouds) as f64;
             let needed = drawn * (cloud_error / (CLOUD_LIMITS * target)).powf(4.0 / 3.0);
             let percent = 100.0 * cloud_error;
-            common.warn(format_args!(
-                "the cloud alone has an error of {percent:.2} %: sample it again with --samples {needed:.1e}"
-            ));
+            let way_out = if input.clouds.len() == 1 {
+                format!("sample it again with --samples {needed:.1e}")
+            } else {
+                format!("about {needed:.1e} samples in all would do; add shards --with")
+            };
+            common.warn(format_args!("the cloud alone has an error of {percent:.2} %: {way_out}"));
             break;
         }
         if paths >= most {

@@ -66,7 +66,7 @@ pub fn relative_error(scene: &Scene, sampled: &Sampled, settings: &Settings, pla
     let radial = Radial::new(goal.medium, &*Model::DirectionalDipole.of(goal.medium), f64::INFINITY);
     let choice = plan.choice(scene, settings);
     // The points have nothing to do with the samples: another seed.
-    let numbers = Numbers::new(Pattern::Stratified, !settings.options.seed, POINTS);
+    let numbers = Numbers::new(Pattern::Stratified, !settings.seed(), POINTS);
     let places: Vec<Place> = numbers.places(&choice, 0..POINTS).map(|(_, place)| place).collect();
     let measure = |(index, place): (usize, &Place)| {
         let point = scene.mesh.point(place.triangle, place.weights, settings.normals);

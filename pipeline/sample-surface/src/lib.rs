@@ -19,7 +19,7 @@ pub use sample::{Drawn, LitSurface, draw};
 
 use formats::cloud::{Content, Group, Meta, Options, Record, SampledMaterial, version};
 use rayon::prelude::*;
-use scene::{NormalKind, Rays, Scene, light::LightTree};
+use scene::{NormalKind, Rays, Scene, light::LightTree, random};
 use std::collections::BTreeMap;
 
 /// Samples that one task draws.
@@ -40,8 +40,16 @@ pub struct Settings {
     pub translucent: Vec<String>,
     /// Materials with the share of the samples that is drawn on their surfaces; the others share the rest by `choice`.
     pub shares: Vec<(String, f64)>,
-    /// As it is written into the cloud; the seed is used here.
+    /// As it is written into the cloud; seed and shard are used here.
     pub options: Options,
+}
+
+impl Settings {
+    /// Of the random numbers: that of the shard.
+    pub fn seed(&self) -> u64 {
+        let Options { seed, shard, .. } = &self.options;
+        random::shard_seed(*seed, shard.index, shard.count)
+    }
 }
 
 /// Why a scene cannot be sampled.
@@ -192,7 +200,7 @@ pub fn sample(
     progress: impl Fn(u64) + Sync,
 ) -> Result<Sampled, SampleError> {
     let choice = plan.choice(scene, settings);
-    let numbers = Numbers::new(settings.pattern, settings.options.seed, settings.samples);
+    let numbers = Numbers::new(settings.pattern, settings.seed(), settings.samples);
     let lights = LightTree::new(&scene.lights);
     // Independent samples that follow each other lie anywhere.
     let together = if settings.pattern == Pattern::Stratified || lights.is_flat() { TOGETHER } else { 1 };

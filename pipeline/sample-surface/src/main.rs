@@ -4,7 +4,7 @@ use clap::Parser;
 use cli::{Common, Failure, Need, Progress, SceneArgs, material_table, parse_count, read_medium};
 use formats::{
     atomic::{self, Output},
-    cloud::{self, Cloud, Options},
+    cloud::{self, Cloud, Options, Shard},
     write_ply,
 };
 use sample_surface::{Choice, Goal, Pattern, Plan, SampleError, Sampled, Settings, sample, sample_enough};
@@ -29,6 +29,10 @@ struct Arguments {
     /// Samples drawn over all translucent surfaces: 250k, 1M, 1e6
     #[arg(short = 'n', long, value_name = "K", default_value = "1M", value_parser = parse_samples)]
     samples: u64,
+    /// Draw a part of a cloud, with random numbers of its own: part I of N, from 0. `gather --with` takes all parts
+    /// together; --samples is this part's number, and need not be that of the others
+    #[arg(long, value_name = "I/N", default_value = "0/1", value_parser = parse_shard)]
+    shard: Shard,
     /// Draw as many samples as this medium needs for --target-error, by the directional dipole
     #[arg(long, value_name = "NAME|FILE.json", requires = "target_error", conflicts_with = "samples")]
     for_medium: Option<String>,
@@ -85,6 +89,19 @@ fn parse_share(text: &str) -> Result<(String, f64), String> {
     let (name, share) = text.rsplit_once('=').ok_or("expected MATERIAL=F")?;
     let share = share.parse().ok().filter(|f: &f64| *f > 0.0 && *f < 1.0);
     Ok((name.to_owned(), share.ok_or("expected a share between 0 and 1")?))
+}
+
+/// Most parts of a cloud.
+const MAX_SHARDS: u32 = 65536;
+
+fn parse_shard(text: &str) -> Result<Shard, String> {
+    let (index, count) = text.split_once('/').ok_or("expected I/N, as 0/4")?;
+    let number = |text: &str| text.parse::<u32>().map_err(|_| "expected I/N, two whole numbers");
+    let shard = Shard { index: number(index)?, count: number(count)? };
+    if shard.index < shard.count && shard.count <= MAX_SHARDS {
+        return Ok(shard);
+    }
+    Err(format!("of N parts the first is 0 and the last N-1; N is 1 to {MAX_SHARDS}"))
 }
 
 fn parse_samples(text: &str) -> Result<u64, String> {
@@ -173,6 +190,7 @@ fn settings(arguments: &Arguments, environment: &Environment) -> Settings {
         shares: arguments.share.clone(),
         options: Options {
             seed: arguments.common.seed,
+            shard: arguments.shard,
             choice: arguments.choice.name().into(),
             pattern: arguments.pattern.name().into(),
             shares: arguments.share.clone(),
@@ -273,6 +291,7 @@ fn statistics(cloud: &Cloud, health: &Health, seconds: &Seconds, common: &Common
         "peak_memory_bytes": cli::peak_memory_bytes(),
         "threads": common.thread_count(),
         "kept": kept,
+        "shard": meta.options.shard.to_string(),
         "samples_drawn": meta.samples_drawn,
         "samples_stored": cloud.len(),
         "samples_dropped": meta.samples_dropped,

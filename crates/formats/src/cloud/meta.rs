@@ -1,12 +1,12 @@
 //! What a cloud says of itself.
 
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, fmt};
 
 /// The struct of this version; the number is checked before this is read.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Versioned {
-    V4(Meta),
+    V5(Meta),
 }
 
 /// Facts of a cloud. Holds no time, host or path: the same inputs give the same bytes.
@@ -57,6 +57,7 @@ impl Meta {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Options {
     pub seed: u64,
+    pub shard: Shard,
     /// `area` or `uniform`.
     pub choice: String,
     /// `stratified` or `independent`.
@@ -70,6 +71,25 @@ pub struct Options {
     pub light_unit: String,
     /// Light from all around: its radiance, or the identity of a map.
     pub environment: String,
+}
+
+/// Which of several clouds that are drawn apart, to be gathered together: `index` of `count`, from 0. Each is a cloud of
+/// its own random numbers and of any number of samples; 0 of 1 is the only one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Shard {
+    pub index: u32,
+    pub count: u32,
+}
+
+impl Shard {
+    /// A cloud that is meant to be alone.
+    pub const ALONE: Shard = Shard { index: 0, count: 1 };
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{}/{}", self.index, self.count)
+    }
 }
 
 /// A translucent material and its samples.

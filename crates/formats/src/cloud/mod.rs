@@ -8,7 +8,7 @@ mod meta;
 mod record;
 
 pub use layout::version;
-pub use meta::{Group, Meta, Options, SampledMaterial, hex};
+pub use meta::{Group, Meta, Options, SampledMaterial, Shard, hex};
 pub use record::{Node, Record, TILE, Tile, first_leaf, node_count, tile};
 
 use crate::{Error, atomic::Output};
@@ -71,7 +71,7 @@ fn part<'a>(tiles: &'a [Tile], nodes: &'a [Node], group: &Group) -> (&'a [Tile],
 
 /// Writes a cloud; the same content and facts give the same bytes.
 pub fn write(output: &mut Output, path: &Path, content: &Content, meta: &Meta) -> Result<(), Error> {
-    let facts = bincode::serde::encode_to_vec(Versioned::V4(meta.clone()), meta_config())
+    let facts = bincode::serde::encode_to_vec(Versioned::V5(meta.clone()), meta_config())
         .map_err(|e| Error::invalid(path, format!("the cloud's facts do not fit the file: {e}")))?;
     let provenance = serde_json::to_vec_pretty(&provenance(meta))
         .map_err(|e| Error::invalid(path, format!("the cloud's facts do not fit the file: {e}")))?;
@@ -237,7 +237,7 @@ fn read_meta(file: &[u8], header: &Header) -> Result<Meta, String> {
     layout::verify(file, section)?;
     let bytes = &file[section.offset as usize..section.end() as usize];
     let damaged = "the cloud's facts are damaged; sample again";
-    let (Versioned::V4(meta), used) =
+    let (Versioned::V5(meta), used) =
         bincode::serde::decode_from_slice(bytes, meta_config()).map_err(|_| damaged.to_owned())?;
     let fits = used == bytes.len() && groups_fit(&meta, header).is_some() && meta.is_finite();
     if fits { Ok(meta) } else { Err(damaged.into()) }
@@ -266,6 +266,7 @@ mod tests {
     fn meta(count: u64) -> Meta {
         let options = Options {
             seed: 3,
+            shard: Shard::ALONE,
             choice: "area".into(),
             pattern: "independent".into(),
             shares: Vec::new(),

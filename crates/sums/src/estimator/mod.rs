@@ -45,6 +45,18 @@ pub struct Sum {
     pub predicted: f32,
 }
 
+impl Sum {
+    /// Both sums together.
+    pub fn plus(self, other: Sum) -> Sum {
+        Sum {
+            radiance: self.radiance + other.radiance,
+            evaluations: self.evaluations + other.evaluations,
+            nodes: self.nodes + other.nodes,
+            predicted: self.predicted + other.predicted,
+        }
+    }
+}
+
 /// Running sums of sixteen lanes, in float64 and in a fixed order.
 struct Accumulator([[f64; LANES]; 3]);
 

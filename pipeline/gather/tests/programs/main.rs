@@ -8,6 +8,7 @@ mod mutations;
 mod opaque;
 mod orbit;
 mod pipeline;
+mod shards;
 mod support;
 mod targets;
 mod user_files;

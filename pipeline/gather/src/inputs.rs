@@ -1,0 +1,97 @@
+//! The files that an image is made from: clouds and their scene, and whether they belong together.
+
+use crate::arguments::Arguments;
+use cli::Failure;
+use formats::cloud::Cloud;
+use gather::clouds::{self, JoinError};
+use scene::{Scene, light::Environment};
+use std::path::{Path, PathBuf};
+
+/// CLOUD and SCENE.
+pub fn paths(arguments: &Arguments) -> Result<(&Path, &Path), Failure> {
+    match (&arguments.cloud, &arguments.scene) {
+        (Some(cloud), Some(scene)) => Ok((cloud, scene)),
+        _ => Err(Failure::usage("give CLOUD and SCENE; see --help")),
+    }
+}
+
+/// Clouds of fewer bytes are checked before the work, in milliseconds; larger ones beside it, before anything is written.
+const VERIFIED_FIRST: u64 = 1 << 26;
+
+/// One cloud or more, open, and their files.
+pub struct CloudFiles {
+    paths: Vec<PathBuf>,
+    clouds: Vec<Cloud>,
+}
+
+impl CloudFiles {
+    /// Opens a cloud and those to gather with it.
+    pub fn open(first: &Path, others: &[PathBuf]) -> Result<CloudFiles, Failure> {
+        let open = |path: &Path| Ok((path.to_owned(), Cloud::open(path)?));
+        let paths = std::iter::once(first).chain(others.iter().map(PathBuf::as_path));
+        let files: Vec<(PathBuf, Cloud)> = paths.map(open).collect::<Result<_, formats::Error>>()?;
+        let (paths, clouds) = clouds::join(files).map_err(|e: JoinError| Failure::usage(e.to_string()))?;
+        Ok(CloudFiles { paths, clouds })
+    }
+
+    /// In an order of their own.
+    pub fn clouds(&self) -> &[Cloud] {
+        &self.clouds
+    }
+
+    /// So small that they are checked before the work.
+    pub fn are_small(&self) -> bool {
+        self.clouds.iter().map(Cloud::bytes).sum::<u64>() < VERIFIED_FIRST
+    }
+
+    /// Checks all of each file.
+    pub fn verify(&self) -> Result<(), formats::Error> {
+        self.clouds.iter().zip(&self.paths).try_for_each(|(cloud, path)| cloud.verify(path))
+    }
+
+    /// Refuses files that were written to since they were opened.
+    pub fn check_unchanged(&self) -> Result<(), formats::Error> {
+        self.clouds.iter().zip(&self.paths).try_for_each(|(cloud, path)| cloud.check_unchanged(path))
+    }
+
+    /// Refuses clouds that were sampled from something else, and says what differs.
+    pub fn check_fit(
+        &self,
+        (scene, environment): (&Scene, &Environment),
+        scene_path: &Path,
+        arguments: &Arguments,
+    ) -> Result<(), Failure> {
+        // The others are as the first.
+        let (meta, cloud_path) = (self.clouds[0].meta(), &self.paths[0]);
+        let (here, there) = (arguments.scene_args.metres_per_unit, meta.options.metres_per_unit);
+        let unit = arguments.scene_args.light_unit.name();
+        let differs = if here != there {
+            format!("--metres-per-unit is {here}, the cloud's {there}")
+        } else if unit != meta.options.light_unit {
+            format!("--light-unit is {unit}, the cloud's {}", meta.options.light_unit)
+        } else if scene.geometry_digest() != meta.geometry {
+            "its mesh or materials differ".into()
+        } else if meta
+            .materials
+            .iter()
+            .any(|m| scene.materials.get(m.index as usize).is_none_or(|own| own.name != m.name))
+        {
+            "its materials differ".into()
+        } else if scene.light_digest != meta.lights {
+            "its lights differ".into()
+        } else if environment.identity() != meta.options.environment {
+            format!("--environment is {}, the cloud's {}", environment.identity(), meta.options.environment)
+        } else {
+            let normals = arguments.scene_args.normals.name();
+            if normals != meta.options.normals {
+                arguments.common.warn(format_args!("--normals is {normals}, the cloud's {}", meta.options.normals));
+            }
+            return Ok(());
+        };
+        Err(Failure::usage(format!(
+            "{}: this cloud is not of {}: {differs}; sample the scene again",
+            cloud_path.display(),
+            scene_path.display()
+        )))
+    }
+}

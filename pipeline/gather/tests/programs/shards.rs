@@ -1,0 +1,125 @@
+//! Clouds of several files. Planted errors seen: clouds in the order of the command line; a shard that does not change the
+//! random numbers; the same without a check of seed and shard; files compared with the first one alone by their names.
+
+use crate::support::{Bench, data};
+use formats::Attribute;
+use std::fs;
+
+const SIZE: [&str; 7] = ["--width", "32", "--height", "32", "--no-timings", "--quiet", "--seed"];
+
+fn sample(bench: &Bench, scene: &str, output: &str, more: &[&str]) {
+    bench.succeed("sample-surface", &[&[scene, "-o", output, "--quiet"], more].concat());
+}
+
+/// The same bytes for any order of the files; one hash for all of them, and not that of a part.
+#[test]
+fn the_order_of_files_does_not_matter() {
+    let bench = Bench::new();
+    let (scene, view) = (data("scenes/sphere.glb"), data("views/sphere/front.json"));
+    for (name, samples, shard, seed) in
+        [("a", "3k", "0/3", "0"), ("b", "10k", "1/3", "0"), ("c", "1k", "2/3", "0"), ("d", "2k", "0/1", "5")]
+    {
+        let output = format!("{name}.cloud");
+        sample(&bench, &scene, &output, &["-n", samples, "--shard", shard, "--seed", seed]);
+    }
+    for estimator in ["cut", "roulette", "exhaustive"] {
+        let image = |first: &str, others: &[&str]| {
+            let output = format!("{first}.exr");
+            let own = [first, &scene, "--view", &view, "--medium", "skin1", "--estimator", estimator, "--with"];
+            bench.succeed("gather", &[&own, others, &["-o", &output, "--stats", "s.json"], &SIZE, &["3"]].concat());
+            (fs::read(bench.path(&output)).expect("reads"), bench.json("s.json"))
+        };
+        let one = image("a.cloud", &["b.cloud", "c.cloud", "d.cloud"]);
+        assert!(one == image("c.cloud", &["d.cloud", "a.cloud", "b.cloud"]), "{estimator}");
+        assert!(one == image("d.cloud", &["c.cloud", "--with", "b.cloud", "a.cloud"]), "{estimator}");
+        assert_eq!((&one.1["samples_drawn"], &one.1["clouds"]), (&16_000.into(), &4.into()));
+        let attributes = bench.image("a.cloud.exr").attributes;
+        let Some(Attribute::Texts(lines)) = attributes.get("pcsss/clouds") else { panic!("{attributes:?}") };
+        assert_eq!(lines.len(), 4);
+        assert!(lines.iter().any(|line| line.ends_with("shard 1/3 seed 0 samples 10000")), "{lines:?}");
+        let all = one.1["cloud"].as_str().expect("a hash");
+        assert!(lines.iter().all(|line| !line.starts_with(all)));
+        assert_eq!(attributes.get("pcsss/cloud"), Some(&Attribute::Text(all.into())));
+    }
+}
+
+#[test]
+fn clouds_that_do_not_belong_together_are_refused() {
+    let bench = Bench::new();
+    let (sphere, view) = (data("scenes/sphere.glb"), data("views/sphere/front.json"));
+    let few = ["-n", "1k", "--shard"];
+    sample(&bench, &sphere, "a.cloud", &[&few[..], &["0/2"]].concat());
+    sample(&bench, &sphere, "same.cloud", &["-n", "2k", "--shard", "0/2"]);
+    sample(&bench, &sphere, "sky.cloud", &[&few[..], &["1/2", "--environment", "1,1,1"]].concat());
+    sample(&bench, &sphere, "flat.cloud", &[&few[..], &["1/2", "--normals", "geometric"]].concat());
+    sample(&bench, &sphere, "large.cloud", &[&few[..], &["1/2", "--metres-per-unit", "2"]].concat());
+    sample(&bench, &data("scenes/slab.glb"), "slab.cloud", &[&few[..], &["1/2"]].concat());
+    let refused = |other: &str, words: &[&str]| {
+        let arguments = ["a.cloud", &sphere, "--with", other, "--medium", "skin1", "--view", &view, "-o", "x.exr"];
+        bench.refuses(&arguments, &[&["a.cloud", other], words].concat());
+    };
+    refused("a.cloud", &["shard 0/2 of seed 0", "leave one out"]);
+    refused("same.cloud", &["shard 0/2 of seed 0"]);
+    refused("sky.cloud", &["--environment"]);
+    refused("flat.cloud", &["--normals"]);
+    refused("large.cloud", &["--metres-per-unit"]);
+    refused("slab.cloud", &["meshes"]);
+    let nothing = ["a.cloud", &sphere, "--with", "none.cloud", "--medium", "skin1", "--view", &view, "-o", "x.exr"];
+    bench.refuses(&nothing, &["none.cloud"]);
+    for shard in ["2/2", "0/0", "1", "a/b", "-1/2", "0/65537"] {
+        let arguments = [sphere.as_str(), "-n", "1k", "-o", "x.cloud", "--shard", shard];
+        bench.program_refuses("sample-surface", &arguments, &["--shard"]);
+    }
+}
+
+/// What is there is kept if it is that shard, and no other.
+#[test]
+fn a_shard_is_kept_and_another_is_not() {
+    let bench = Bench::new();
+    let sphere = data("scenes/sphere.glb");
+    let kept = |shard: &[&str]| {
+        let own = [sphere.as_str(), "-n", "1k", "-o", "a.cloud", "--stats", "s.json", "--quiet"];
+        bench.succeed("sample-surface", &[&own, shard].concat());
+        (bench.json("s.json")["kept"].as_bool().expect("a flag"), bench.json("s.json")["mean_flux_w"].clone())
+    };
+    let alone = kept(&[]);
+    assert!(kept(&["--shard", "0/1"]).0, "0/1 is no shard");
+    let first = kept(&["--shard", "0/2"]);
+    let second = kept(&["--shard", "1/2"]);
+    assert!(!first.0 && !second.0 && kept(&["--shard", "1/2"]).0);
+    assert!(first.1 != second.1 && first.1 != alone.1 && kept(&["--shard", "0/3"]).1 != first.1);
+}
+
+/// Four shards of 250k and a cloud of 1M show one scene, within what they say of their errors: the squares of the
+/// differences have the sum of the variances as their mean. The variances are estimates of one degree of freedom each over
+/// thousands of pixels that share clouds; a factor of 1.5 either way is beyond their scatter, and what is wrong by 3 % shows.
+#[test]
+fn four_shards_agree_with_one_cloud_within_their_error() {
+    let bench = Bench::new();
+    let (scene, view) = (data("scenes/figure.glb"), data("views/figure/front.json"));
+    sample(&bench, &scene, "one.cloud", &["-n", "1M", "--seed", "7"]);
+    for k in 0..4 {
+        sample(&bench, &scene, &format!("{k}.cloud"), &["-n", "250k", "--shard", &format!("{k}/4")]);
+    }
+    let gather = |cloud: &str, output: &str, more: &[&str]| {
+        let own = [cloud, &scene, "--view", &view, "--medium", "skin1", "-o", output, "--spp", "8"];
+        bench.succeed("gather", &[&own, &SIZE[..], &[output.split('.').next().expect("a digit")], more].concat());
+    };
+    gather("one.cloud", "1.exr", &[]);
+    gather("0.cloud", "2.exr", &["--with", "1.cloud", "2.cloud", "3.cloud"]);
+    let images = ["1.exr", "2.exr"].map(|name| bench.image(name));
+    let (mut squares, mut variances, mut sums) = (0.0, 0.0, [0.0; 2]);
+    for c in ["R", "G", "B"] {
+        let plane = |k: usize, name: &str| images[k].channel(name).expect("a channel").to_vec();
+        let [a, b] = [0, 1].map(|k| plane(k, c));
+        let [va, vb] = [0, 1].map(|k| plane(k, &format!("variance.{c}")));
+        for k in 0..a.len() {
+            squares += f64::from(a[k] - b[k]).powi(2);
+            variances += f64::from(va[k] + vb[k]);
+            (sums[0], sums[1]) = (sums[0] + f64::from(a[k]), sums[1] + f64::from(b[k]));
+        }
+    }
+    let (worse, ratio) = (squares / variances, sums[1] / sums[0]);
+    println!("squares of differences over variances {worse:.3}, brightness {ratio:.4}");
+    assert!((1.0 / 1.5..1.5).contains(&worse) && (ratio - 1.0).abs() < 0.01, "{worse} {ratio}");
+}

@@ -1,0 +1,58 @@
+//! Several clouds gathered as one have the mean of a cloud, whatever their sizes.
+
+use crate::error_bars::{Scene, edge, of_paths};
+use bssrdf::built_in;
+use formats::cloud::{Cloud, Shard};
+use gather::{
+    Input, Settings,
+    estimator::{Estimator, Rule},
+};
+use glam::DVec3;
+use rayon::prelude::*;
+use support::{
+    EFFORT,
+    pipeline::{Sampling, cloud, orthographic},
+    z_test::{Estimate, assert_equal},
+};
+
+/// Of uneven sizes, one of them with an empty half.
+const SIZES: [u64; 4] = [60, 240, 1, 11];
+/// Images, each with clouds of their own.
+const RUNS: u64 = 128 * EFFORT;
+
+/// Mean of an image, all channels.
+fn brightness(scene: &Scene, clouds: &[Cloud], settings: &Settings) -> f64 {
+    let (media, camera) = ([scene.medium.clone()], orthographic(DVec3::new(1.0, 1.2, 1.5), scene.half_height));
+    let input = Input { scene: &scene.world.scene, rays: &scene.world.rays, clouds, media: &media, camera: &camera };
+    let pixels = gather::render(&input, settings, |_| ()).pixels;
+    pixels.iter().map(|p| p.beauty().element_sum()).sum::<f64>() / pixels.len() as f64
+}
+
+/// Seen to catch: sums over the samples of one cloud divided by those of all; clouds taken in turn divided by those of the
+/// first; the whole sum divided by the samples of the first.
+#[test]
+fn the_mean_of_uneven_shards_is_that_of_one_cloud() {
+    let scene = Scene { half_height: 1e-3, ..edge(built_in("marble").expect("a built-in medium")) };
+    let kinds = [
+        (Estimator::Cut { accuracy: 0.1 }, 4),
+        (Estimator::Cut { accuracy: 0.1 }, 1),
+        (Estimator::Exhaustive, 2),
+        (Estimator::Roulette(Rule::Mixture), 2),
+    ];
+    for (k, (estimator, paths)) in kinds.into_iter().enumerate() {
+        let settings = |seed| Settings { seed, ..of_paths(estimator, paths) };
+        let shard = |seed, index: usize| Sampling {
+            shard: Shard { index: index as u32, count: SIZES.len() as u32 },
+            ..(scene.sampling)(SIZES[index], seed)
+        };
+        let means = |seeds: u64, clouds: &(dyn Fn(u64) -> Vec<Cloud> + Sync)| {
+            let run = |seed: u64| brightness(&scene, &clouds(seed), &settings(seed));
+            Estimate::of(&(seeds..seeds + RUNS).into_par_iter().map(run).collect::<Vec<_>>())
+        };
+        let first = 200_000 + 10_000 * k as u64;
+        let apart = means(first, &|seed| (0..SIZES.len()).map(|i| cloud(&scene.world, &shard(seed, i))).collect());
+        let one = means(first + 5000, &|seed| vec![cloud(&scene.world, &(scene.sampling)(SIZES.iter().sum(), seed))]);
+        assert_equal(&format!("shards, {estimator:?}, {paths} paths"), apart, one);
+        assert!(apart.relative_error() < 0.03, "{apart:?} is too rough to tell");
+    }
+}
