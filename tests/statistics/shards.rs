@@ -32,7 +32,7 @@ fn brightness(scene: &Scene, clouds: &[Cloud], settings: &Settings) -> f64 {
 /// first; the whole sum divided by the samples of the first.
 #[test]
 fn the_mean_of_uneven_shards_is_that_of_one_cloud() {
-    let scene = Scene { half_height: 1e-3, ..edge(built_in("marble").expect("a built-in medium")) };
+    let scene = edge(built_in("marble").expect("a built-in medium"));
     let kinds = [
         (Estimator::Cut { accuracy: 0.1 }, 4),
         (Estimator::Cut { accuracy: 0.1 }, 1),

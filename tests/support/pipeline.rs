@@ -112,6 +112,7 @@ pub fn settings(model: Model, width: usize, height: usize) -> gather::Settings {
     gather::Settings {
         width,
         height,
+        crop: None,
         paths_per_pixel: 1,
         filter: Filter::Point,
         estimator: Estimator::Exhaustive,

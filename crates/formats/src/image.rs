@@ -59,6 +59,17 @@ pub struct Image {
     pub attributes: BTreeMap<String, Attribute>,
     /// Column and row of the top left pixel in the data window.
     pub window: [i32; 2],
+    /// The display window, if it is another than the data window: a crop knows of what it is a part.
+    pub display: Option<Window>,
+}
+
+/// A rectangle of pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window {
+    /// Column and row of its top left pixel.
+    pub position: [i32; 2],
+    /// Columns and rows.
+    pub size: [usize; 2],
 }
 
 /// Why an image could not be read or written.

@@ -14,6 +14,6 @@ mod panorama;
 mod ply;
 
 pub use error::Error;
-pub use image::{Attribute, Channel, Image, ImageError};
+pub use image::{Attribute, Channel, Image, ImageError, Window};
 pub use panorama::Panorama;
 pub use ply::write_ply;

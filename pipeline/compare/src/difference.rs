@@ -17,5 +17,6 @@ pub fn difference(reference: &Image, test: &Image) -> Image {
         channels: reference.channels.iter().map(subtract).collect(),
         attributes: [("comments".to_owned(), Attribute::Text("test - reference, signed".to_owned()))].into(),
         window: reference.window,
+        display: reference.display,
     }
 }

@@ -2,6 +2,7 @@
 
 use clap::{Parser, ValueEnum};
 use cli::{Common, SceneArgs};
+use gather::Crop;
 use std::path::PathBuf;
 
 /// Renders a scene's translucent surfaces from a point cloud.
@@ -36,6 +37,10 @@ pub struct Arguments {
     /// Height, pixels [default: by the camera's aspect]
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub height: Option<u32>,
+    /// Render this part of the image alone: X columns from the left, Y rows from the top, W columns and H rows. Its values
+    /// are those of the whole image
+    #[arg(long, value_name = "X,Y,W,H", value_parser = parse_crop, conflicts_with = "target_error")]
+    pub crop: Option<Crop>,
     /// Medium, by built-in name or from a file; of one material, or of all (repeatable) [default: what SCENE's
     /// materials say]
     #[arg(long, value_name = "[MATERIAL=]NAME|FILE.json")]
@@ -89,6 +94,18 @@ pub struct Arguments {
     pub list_media: bool,
     #[command(flatten)]
     pub common: Common,
+}
+
+fn parse_crop(text: &str) -> Result<Crop, String> {
+    let expected = "expected X,Y,W,H: whole numbers of pixels, W and H at least 1";
+    let numbers: Vec<u32> = text.split(',').map(|n| n.parse()).collect::<Result<_, _>>().map_err(|_| expected)?;
+    match numbers[..] {
+        [x, y, width, height] if width > 0 && height > 0 => {
+            let [x, y, width, height] = [x, y, width, height].map(|n| n as usize);
+            Ok(Crop { x, y, width, height })
+        }
+        _ => Err(expected.into()),
+    }
 }
 
 fn parse_accuracy(text: &str) -> Result<f64, String> {

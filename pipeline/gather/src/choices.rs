@@ -4,7 +4,7 @@ use crate::arguments::{Arguments, EstimatorName, FilterName, ModelName, RuleName
 use bssrdf::Model;
 use cli::Failure;
 use gather::{
-    Filter, Settings,
+    Crop, Filter, Settings,
     estimator::{Estimator, Rule},
 };
 use scene::{Camera, DVec3, Scene, View, light::Environment};
@@ -106,6 +106,7 @@ pub fn settings(
     Ok(Settings {
         width,
         height,
+        crop: arguments.crop.map(|crop| inside(crop, width, height)).transpose()?,
         paths_per_pixel: arguments.spp.unwrap_or(if arguments.target_error.is_some() { MOST_PATHS } else { PATHS }),
         filter: match arguments.filter {
             FilterName::Box => Filter::Box,
@@ -118,6 +119,15 @@ pub fn settings(
         max_depth: arguments.max_depth,
         seed: arguments.common.seed,
     })
+}
+
+/// The crop, if the image has all of it.
+fn inside(crop: Crop, width: usize, height: usize) -> Result<Crop, Failure> {
+    let Crop { x, y, width: across, height: down } = crop;
+    if x + across <= width && y + down <= height {
+        return Ok(crop);
+    }
+    Err(Failure::usage(format!("--crop: {x},{y},{across},{down} is not inside the image of {width} x {height} pixels")))
 }
 
 /// Width and height: flags beat the view file, what is missing follows from the aspect.

@@ -1,7 +1,7 @@
 //! Pixels: layers, mean and variance, and the channels of the image.
 
-use crate::{edge::Edge, path::PathLight};
-use formats::{Channel, Image};
+use crate::{Crop, edge::Edge, path::PathLight};
+use formats::{Channel, Image, Window};
 use scene::DVec3;
 
 /// What a path's light is filed under: its first event.
@@ -169,6 +169,13 @@ fn channel_names() -> Vec<String> {
     }
     names.push("Z".into());
     names
+}
+
+/// The pixels of a part of an image of this size, in its place there, without attributes.
+pub fn part(pixels: &[Pixel], part: Crop, size: [usize; 2]) -> Image {
+    let whole = Window { position: [0, 0], size };
+    let display = (part.pixels() < size[0] * size[1]).then_some(whole);
+    Image { window: [part.x as i32, part.y as i32], display, ..image(pixels, part.width, part.height) }
 }
 
 /// The pixels as an image without attributes.

@@ -36,11 +36,23 @@ pub enum Filter {
     Point,
 }
 
+/// A part of an image, pixels: its left column, its upper row, columns, rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    pub x: usize,
+    pub y: usize,
+    pub width: usize,
+    pub height: usize,
+}
+
 /// How to render.
 #[derive(Clone, Debug)]
 pub struct Settings {
+    /// Of the whole image, of which a crop is a part.
     pub width: usize,
     pub height: usize,
+    /// What is rendered of it, inside it, if not all: the same to the last bit as in the whole image.
+    pub crop: Option<Crop>,
     pub paths_per_pixel: u32,
     pub filter: Filter,
     pub estimator: Estimator,
@@ -50,6 +62,24 @@ pub struct Settings {
     pub environment: Environment,
     pub max_depth: u32,
     pub seed: u64,
+}
+
+impl Settings {
+    /// What is rendered of the image.
+    pub fn part(&self) -> Crop {
+        self.crop.unwrap_or(Crop { x: 0, y: 0, width: self.width, height: self.height })
+    }
+}
+
+impl Crop {
+    pub fn pixels(&self) -> usize {
+        self.width * self.height
+    }
+
+    /// Column and row in the whole image of pixel `place` of the part, which are counted row by row.
+    pub fn pixel(&self, place: usize) -> [usize; 2] {
+        [self.x + place % self.width, self.y + place / self.width]
+    }
 }
 
 /// What to render.
@@ -65,7 +95,7 @@ pub struct Input<'a> {
 
 /// A rendered image.
 pub struct Rendered {
-    /// Rows from top to bottom.
+    /// Those of [`Settings::part`], rows from top to bottom.
     pub pixels: Vec<Pixel>,
     pub paths_per_pixel: u32,
     pub counts: Counts,

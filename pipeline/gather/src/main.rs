@@ -128,7 +128,7 @@ fn rendered(
 
 /// Refuses what cannot fit before any work is done: the image thrice. The cloud is mapped.
 fn check_memory(settings: &Settings) -> Result<(), Failure> {
-    let pixels = settings.width as u64 * settings.height as u64;
+    let pixels = settings.part().pixels() as u64;
     // Sums, their copies while a pass is joined, the pixels and the channels, if all pixels are edges.
     let need = Need { held: pixels.saturating_mul(1280), mapped: 0 };
     cli::require_memory("this image", need, "make it smaller")
@@ -179,14 +179,14 @@ fn write_image(
     mut output: Output,
     path: &Path,
 ) -> Result<(), Failure> {
-    let settings = facts.settings;
-    let mut image = film::image(&rendered.pixels, settings.width, settings.height);
+    let (settings, part) = (facts.settings, facts.settings.part());
+    let mut image = film::part(&rendered.pixels, part, [settings.width, settings.height]);
     image.attributes = facts.attributes(arguments);
     let threads = NonZeroUsize::new(arguments.common.thread_count()).unwrap_or(NonZeroUsize::MIN);
     let bytes = image.encode_with(threads)?;
     output.write_all(&bytes).map_err(|source| formats::Error::write(path, source))?;
     if let Some(preview_path) = &arguments.preview {
-        let png = preview::png(&rendered.pixels, settings.width, settings.height, arguments.exposure)?;
+        let png = preview::png(&rendered.pixels, part.width, part.height, arguments.exposure)?;
         atomic::write(&step.file(preview_path), &png)?;
     }
     output.commit()?;

@@ -1,7 +1,7 @@
 //! Pixels in parallel, paths in passes.
 
 use crate::{
-    Filter, Input, Rendered, Session, Settings, calibration,
+    Crop, Filter, Input, Rendered, Session, Settings, calibration,
     clouds::{self, Drawn},
     counts::Counts,
     edge::{self, Edge},
@@ -33,6 +33,8 @@ const CLEARANCE: f64 = 1e-9;
 pub struct Passes<'a, M> {
     renderer: Renderer<'a, M>,
     settings: Settings,
+    /// What is rendered: sums and edges are those of its pixels, by their places in it.
+    part: Crop,
     sums: Vec<PixelSum>,
     /// Of the pixels that are one.
     edges: Vec<Option<Box<Edge>>>,
@@ -69,8 +71,9 @@ impl<'a, M: LaneModel> Passes<'a, M> {
         let mut passes = Passes {
             renderer,
             settings: settings.clone(),
-            edges: vec![None; settings.width * settings.height],
-            sums: vec![PixelSum::default(); settings.width * settings.height],
+            edges: vec![None; settings.part().pixels()],
+            sums: vec![PixelSum::default(); settings.part().pixels()],
+            part: settings.part(),
             paths: 0,
             counts: Counts::default(),
             pixel_stream: Stream::new(settings.seed, Purpose::Pixel),
@@ -86,11 +89,11 @@ impl<'a, M: LaneModel> Passes<'a, M> {
         if self.settings.paths_per_pixel == 1 || self.settings.filter == Filter::Point {
             return;
         }
-        let (width, height) = (self.settings.width, self.settings.height);
+        let Crop { x: left, y: upper, width, height } = self.part;
         let row = |y: usize| {
             let mut counts = Counts::default();
             let corner = |x: usize, counts: &mut Counts| {
-                let (origin, direction) = self.ray_at(DVec2::new(x as f64, y as f64));
+                let (origin, direction) = self.ray_at(DVec2::new((left + x) as f64, (upper + y) as f64));
                 self.renderer.through(origin, direction, counts)
             };
             ((0..=width).map(|x| corner(x, &mut counts)).collect::<Vec<f64>>(), counts)
@@ -108,20 +111,21 @@ impl<'a, M: LaneModel> Passes<'a, M> {
 
     /// The pixels of a tile, row by row.
     fn places(&self, tile: usize) -> impl Iterator<Item = usize> + use<M> {
-        let (width, across) = (self.settings.width, self.settings.width.div_ceil(TILE));
+        let Crop { width, height, .. } = self.part;
+        let across = width.div_ceil(TILE);
         let (x, y) = (tile % across * TILE, tile / across * TILE);
-        let (x_end, y_end) = ((x + TILE).min(width), (y + TILE).min(self.settings.height));
+        let (x_end, y_end) = ((x + TILE).min(width), (y + TILE).min(height));
         (y..y_end).flat_map(move |y| (x..x_end).map(move |x| y * width + x))
     }
 
     fn tiles(&self) -> usize {
-        self.settings.width.div_ceil(TILE) * self.settings.height.div_ceil(TILE)
+        self.part.width.div_ceil(TILE) * self.part.height.div_ceil(TILE)
     }
 
     /// The ray through a point of a pixel, `offset` pixels from its corner.
     fn ray(&self, place: usize, offset: DVec2) -> (DVec3, DVec3) {
-        let corner = DVec2::new((place % self.settings.width) as f64, (place / self.settings.width) as f64);
-        self.ray_at(corner + offset)
+        let [x, y] = self.part.pixel(place);
+        self.ray_at(DVec2::new(x as f64, y as f64) + offset)
     }
 
     /// The ray through a point of the image, pixels.
@@ -131,8 +135,11 @@ impl<'a, M: LaneModel> Passes<'a, M> {
     }
 
     fn add_paths(&self, place: usize, paths: Range<u32>, worker: &mut Worker) -> Sums {
+        // The random numbers are those of the pixel in the whole image.
+        let [x, y] = self.part.pixel(place);
+        let pixel = (y * self.settings.width + x) as u64;
         // Even and odd paths are spread by a sequence each, so that they stay independent.
-        let spread_by = |stream: Stream| [0, 1].map(|half| Sequence::new(stream.item(2 * place as u64 + half), stream));
+        let spread_by = |stream: Stream| [0, 1].map(|half| Sequence::new(stream.item(2 * pixel + half), stream));
         let spread = spread_by(self.pixel_stream);
         let mut edge = self.edges[place].clone().map(|edge| (edge, spread_by(self.edge_stream)));
         let alone = self.settings.paths_per_pixel == 1;
@@ -146,7 +153,7 @@ impl<'a, M: LaneModel> Passes<'a, M> {
                 }
             };
             let (origin, direction) = self.ray(place, offset);
-            let light = self.renderer.trace(PathIndex { pixel: place as u64, path }, origin, direction, worker);
+            let light = self.renderer.trace(PathIndex { pixel, path }, origin, direction, worker);
             sum.add(path, alone, &light);
             if let Some((edge, spread)) = &mut edge {
                 let half = path as usize % 2;
@@ -198,7 +205,7 @@ impl<M: LaneModel> Session for Passes<'_, M> {
     }
 }
 
-/// Width and height, pixels.
+/// Width and height of the whole image, pixels.
 fn size(settings: &Settings) -> DVec2 {
     DVec2::new(settings.width as f64, settings.height as f64)
 }

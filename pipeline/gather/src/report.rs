@@ -82,7 +82,7 @@ impl Facts<'_> {
         all
     }
 
-    /// The arguments that change values, in one order; not where files lie, nor threads.
+    /// The arguments that change values, in one order; not where files lie, nor threads, nor of what part of the image.
     fn arguments(&self, arguments: &Arguments) -> String {
         let s = self.settings;
         let camera = match &arguments.view {
@@ -153,9 +153,9 @@ impl Facts<'_> {
         film::covers(self.settings.paths_per_pixel, clouds::drawn(self.clouds))
     }
 
-    /// Column and row of a pixel.
+    /// Column and row of a pixel in the whole image.
     pub fn pixel(&self, index: usize) -> [usize; 2] {
-        [index % self.settings.width, index / self.settings.width]
+        self.settings.part().pixel(index)
     }
 }
 

@@ -4,7 +4,7 @@ use cli::{Common, Progress};
 use gather::{Input, Rendered, Settings, clouds, estimator::Estimator, render, start};
 
 pub fn render_all(input: &Input, settings: &Settings, common: &Common) -> Rendered {
-    let progress = Progress::start(common, "gathering", (settings.width * settings.height) as u64, "pixels");
+    let progress = Progress::start(common, "gathering", settings.part().pixels() as u64, "pixels");
     let rendered = render(input, settings, |n| progress.add(n));
     progress.finish();
     rendered
@@ -15,7 +15,7 @@ pub fn render_to(target: f64, input: &Input, settings: &Settings, common: &Commo
     let most = settings.paths_per_pixel;
     let mut paths = FIRST_PATHS.min(most);
     let mut session = start(input, &Settings { paths_per_pixel: paths, ..settings.clone() });
-    let pixels = (settings.width * settings.height) as u64;
+    let pixels = settings.part().pixels() as u64;
     let (mut done, mut before) = (0, f64::INFINITY);
     loop {
         let progress = Progress::start(common, "gathering", pixels, &format!("pixels, paths {} to {paths}", done + 1));

@@ -14,7 +14,7 @@ use exr::meta::header::Header;
 use exr::prelude::f16;
 
 use super::parallel::parallel;
-use super::{Channel, Image, ImageError, MAX_SAMPLES, header};
+use super::{Channel, Image, ImageError, MAX_SAMPLES, Window, header};
 
 /// First bytes of every OpenEXR file.
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
@@ -72,7 +72,7 @@ fn blocks_at_a_time(headers: &[Header], threads: NonZeroUsize) -> usize {
     (BYTES_PER_THREAD / largest).clamp(1, MAX_BLOCKS_PER_THREAD).saturating_mul(threads.get())
 }
 
-/// The data window of all parts, without their channels.
+/// The windows of all parts, without their channels.
 fn empty_image(headers: &[Header]) -> Result<Image, ImageError> {
     // The others lose data, and the library's decoders of them do not survive damaged files.
     let trusted = |compression| matches!(compression, Uncompressed | RLE | ZIP1 | ZIP16 | PIZ | PXR24);
@@ -84,7 +84,11 @@ fn empty_image(headers: &[Header]) -> Result<Image, ImageError> {
         return Err(ImageError::Unsupported("its parts have different data windows".to_owned()));
     }
     let (Vec2(width, height), Vec2(x, y)) = (first.layer_size, first.own_attributes.layer_position);
-    Ok(Image { width, height, window: [x, y], ..Image::default() })
+    let shown = first.shared_attributes.display_window;
+    let display = Window { position: [shown.position.0, shown.position.1], size: [shown.size.0, shown.size.1] };
+    let data = Window { position: [x, y], size: [width, height] };
+    let display = (display != data).then_some(display);
+    Ok(Image { width, height, window: data.position, display, ..Image::default() })
 }
 
 /// Refuses sizes that would take much more memory than the file, before any of it is taken.

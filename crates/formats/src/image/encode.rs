@@ -16,7 +16,7 @@ use exr::meta::header::{Header, LayerAttributes};
 use exr::prelude::SmallVec;
 
 use super::parallel::parallel;
-use super::{Attribute, Channel, Image, ImageError, MAX_SAMPLES, header};
+use super::{Attribute, Channel, Image, ImageError, MAX_SAMPLES, Window, header};
 
 /// Blocks of 16 rows that a thread compresses at a time: enough to outweigh its start, few enough for memory.
 const BLOCKS_PER_THREAD: usize = 4;
@@ -73,6 +73,10 @@ fn describe(image: &Image, channels: &[&Channel]) -> Header {
     });
     let position = Vec2(image.window[0], image.window[1]);
     let size = Vec2(image.width, image.height);
+    let display =
+        image.display.map_or(IntegerBounds::new(position, size), |Window { position: [x, y], size: [w, h] }| {
+            IntegerBounds::new(Vec2(x, y), Vec2(w, h))
+        });
     let attributes = LayerAttributes {
         layer_position: position,
         other: image.attributes.iter().map(|(name, value)| (text(name), attribute(value))).collect::<HashMap<_, _>>(),
@@ -80,7 +84,7 @@ fn describe(image: &Image, channels: &[&Channel]) -> Header {
     };
     Header::new(text(""), size, list.collect())
         .with_encoding(Compression::ZIP16, BlockDescription::ScanLines, LineOrder::Increasing)
-        .with_display_window(IntegerBounds::new(position, size))
+        .with_display_window(display)
         .with_attributes(attributes)
 }
 
@@ -122,14 +126,20 @@ fn check(image: &Image) -> Result<(), ImageError> {
             image.channels.len()
         ));
     }
-    for (origin, length) in image.window.into_iter().zip([image.width, image.height]) {
-        let origin = i64::from(origin);
-        if origin <= -MAX_COORDINATE || origin + length as i64 >= MAX_COORDINATE {
-            return unwritable(format!("data window {origin} + {length} lies beyond {MAX_COORDINATE}"));
-        }
-    }
+    check_window("data", Window { position: image.window, size: [image.width, image.height] })?;
+    image.display.map_or(Ok(()), |display| check_window("display", display))?;
     check_channels(image)?;
     image.attributes.iter().try_for_each(|(name, value)| check_attribute(name, value))
+}
+
+fn check_window(which: &str, window: Window) -> Result<(), ImageError> {
+    for (origin, length) in window.position.into_iter().zip(window.size) {
+        let end = i64::try_from(length).ok().and_then(|length| length.checked_add(i64::from(origin)));
+        if length == 0 || i64::from(origin) <= -MAX_COORDINATE || end.is_none_or(|end| end >= MAX_COORDINATE) {
+            return unwritable(format!("{which} window {origin} + {length} lies beyond {MAX_COORDINATE}"));
+        }
+    }
+    Ok(())
 }
 
 fn check_channels(image: &Image) -> Result<(), ImageError> {

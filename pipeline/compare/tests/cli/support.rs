@@ -32,6 +32,7 @@ pub fn picture() -> Image {
         channels: channels.collect(),
         attributes: [("pcsss/scene".to_owned(), Attribute::Text("5ce4e".to_owned()))].into(),
         window: [0, 0],
+        display: None,
     }
 }
 

@@ -64,5 +64,5 @@ pub fn replicate(seed: u64, fault: Fault) -> Image {
     channels.push(Channel { name: "Z".to_owned(), samples: vec![1.0; SIZE * SIZE] });
     let text = |name: &str, value: String| (format!("pcsss/{name}"), Attribute::Text(value));
     let attributes = [text("cloud", format!("{seed:016x}")), text("scene", SCENE.to_owned())].into();
-    Image { width: SIZE, height: SIZE, channels, attributes, window: [0, 0] }
+    Image { width: SIZE, height: SIZE, channels, attributes, ..Image::default() }
 }

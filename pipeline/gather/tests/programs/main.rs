@@ -1,6 +1,7 @@
 //! The programs as users start them.
 
 mod bad_input;
+mod crops;
 mod environment;
 mod faults;
 mod hostile;

@@ -67,7 +67,8 @@ fn clouds_that_do_not_belong_together_are_refused() {
     let nothing = ["a.cloud", &sphere, "--with", "none.cloud", "--medium", "skin1", "--view", &view, "-o", "x.exr"];
     bench.refuses(&nothing, &["none.cloud"]);
     for shard in ["2/2", "0/0", "1", "a/b", "-1/2", "0/65537"] {
-        let arguments = [sphere.as_str(), "-n", "1k", "-o", "x.cloud", "--shard", shard];
+        let shard = format!("--shard={shard}");
+        let arguments = [sphere.as_str(), "-n", "1k", "-o", "x.cloud", &shard];
         bench.program_refuses("sample-surface", &arguments, &["--shard"]);
     }
 }
