@@ -87,7 +87,7 @@ fn of_the_cut() {
 
 /// Of three clouds, and fewer paths or as many for each half: which clouds a pixel saw is a part of its error.
 ///
-/// Seen to catch: the same cloud for the paths of all pixels.
+/// Seen to catch: all paths gathering from the first halves.
 #[test]
 fn of_shards() {
     let scene = Scene { shards: 3, ..edge(built_in("marble").expect("a built-in medium")) };

@@ -1,7 +1,7 @@
 //! `--crop`: a part of the whole image, to the last bit, and parts joined to the whole.
 //!
 //! Planted errors seen: random numbers by the place in the crop; corners of edge pixels counted from the crop's own corner;
-//! points of calibration from the crop; display window that of the data; rows and columns exchanged in the header.
+//! points of calibration from a picture of the crop's size; display window that of the data; row and column exchanged.
 
 use crate::support::{Bench, data};
 use formats::{Image, Window};

@@ -1,5 +1,5 @@
 //! Clouds of several files. Planted errors seen: clouds in the order of the command line; a shard that does not change the
-//! random numbers; the same without a check of seed and shard; files compared with the first one alone by their names.
+//! random numbers; no check of seed and shard.
 
 use crate::support::{Bench, data};
 use formats::Attribute;
