@@ -9,7 +9,7 @@ use formats::{
     cloud::{Cloud, Meta, Sample},
 };
 use glam::{DVec3, Vec3};
-use scene::{Scene, View};
+use scene::{Scene, View, ViewFile};
 use serde_json::{Value, json};
 use std::path::Path;
 use support::{
@@ -110,7 +110,10 @@ fn view() {
     let view = json!({ "eye": [0, 0, 3], "target": [0, 0, 0], "up": [0, 1, 0], "yfov": 30, "width": 4, "height": 3 });
     let read = |text: &str| {
         folder.put("view.json", text.as_bytes());
-        View::read(&folder.path("view.json")).map(|(_, camera)| camera)
+        View::read(&folder.path("view.json")).map(|file| match file {
+            ViewFile::One(one) => one.1,
+            ViewFile::List(views) => panic!("a list of {}", views.len()),
+        })
     };
     read(&view.to_string()).expect("the view is valid");
     let mut paths = Vec::new();

@@ -74,6 +74,7 @@ fn facts() -> Meta {
         samples_drawn: 1,
         samples_dropped: BTreeMap::new(),
         shadow_rays: 0,
+        mesh_faults: BTreeMap::new(),
         surface_area_m2: 1.0,
         mean_flux_w: [0.0; 3],
         diagonal_m: 1.0,

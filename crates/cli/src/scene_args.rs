@@ -64,26 +64,26 @@ impl SceneArgs {
         Ok((scene, environment))
     }
 
-    /// Examines the surfaces of the translucent materials; warns of what is not used on them, and of faults, or refuses
-    /// those if `--strict`.
+    /// Warns of what is not used on the surfaces of the translucent materials, and of their faults, or refuses those if
+    /// `--strict`.
     pub fn check_mesh(
         &self,
         scene: &mut Scene,
         translucent: impl Fn(u16) -> bool,
+        health: Health,
         path: &Path,
         common: &Common,
-    ) -> Result<Health, Failure> {
+    ) -> Result<(), Failure> {
         let known = scene.warnings.len();
         scene.warn_of_colors(&translucent);
         scene.warnings[known..].iter().for_each(|w| common.warn(format_args!("{}: {w}", path.display())));
-        let health = scene.health(translucent);
         let line = format!("{}: the translucent surfaces have {health}", path.display());
         match (health.is_good(), self.strict) {
             (true, _) => {}
             (false, true) => return Err(Failure::usage(format!("{line}; repair the mesh, or leave out --strict"))),
             (false, false) => common.warn(format_args!("{line}; a medium wants a closed surface wound outwards")),
         }
-        Ok(health)
+        Ok(())
     }
 
     pub fn normal_kind(&self) -> NormalKind {

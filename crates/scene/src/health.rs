@@ -24,6 +24,13 @@ impl Health {
         *self == Health::default()
     }
 
+    /// From counts by name as [`Health::counts`] has them; what is not named is 0.
+    pub fn from_counts(count: impl Fn(&str) -> Option<u64>) -> Health {
+        let [open_edges, flipped_edges, inward_parts, duplicate_triangles, degenerate_triangles] =
+            Health::default().counts().map(|(name, _)| count(name).unwrap_or(0));
+        Health { open_edges, flipped_edges, inward_parts, duplicate_triangles, degenerate_triangles }
+    }
+
     /// Names as statistics have them, in order.
     pub fn counts(&self) -> [(&'static str, u64); 5] {
         [

@@ -25,7 +25,7 @@ pub use import::{ImportOptions, LightUnit};
 pub use material::Material;
 pub use mesh::{Mesh, NormalKind, SurfacePoint, Triangle};
 pub use rays::{Hit, Rays};
-pub use view::{Camera, Projection, View};
+pub use view::{Camera, Projection, View, ViewFile};
 pub use volume::{Draft, Scatter, Volume};
 
 use std::collections::BTreeMap;

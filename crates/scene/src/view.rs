@@ -3,7 +3,8 @@
 use crate::{SceneError, import::files};
 use glam::{DMat4, DVec2, DVec3};
 use serde::Deserialize;
-use std::path::Path;
+use serde_json::Value;
+use std::{collections::HashSet, path::Path};
 
 /// How rays leave the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,6 +98,8 @@ impl Camera {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct View {
+    /// In a list: what its image is called.
+    pub name: Option<String>,
     pub eye: [f64; 3],
     pub target: [f64; 3],
     #[serde(default = "default_up")]
@@ -112,16 +115,16 @@ fn default_up() -> [f64; 3] {
 }
 
 impl View {
-    /// Reads and checks a view file.
-    pub fn read(path: &Path) -> Result<(View, Camera), SceneError> {
+    /// Reads and checks a view file: one view, or a list of them, as it is or as `{"views": [...]}`.
+    pub fn read(path: &Path) -> Result<ViewFile, SceneError> {
         let text = files::read(path).map_err(|source| SceneError::Read { path: path.to_owned(), source })?;
-        let invalid = |what: String| SceneError::Invalid { path: path.to_owned(), what };
-        let expected =
-            "expected {\"eye\": [x,y,z], \"target\": [x,y,z], \"up\", \"yfov\" (degrees), \"width\", \"height\"}";
-        let view: View = serde_json::from_slice(&text).map_err(|e| invalid(format!("not a view: {e}; {expected}")))?;
-        let name = path.file_stem().map_or("view".into(), |s| s.to_string_lossy().into_owned());
-        let camera = view.camera(name).map_err(invalid)?;
-        Ok((view, camera))
+        let stem = path.file_stem().map_or("view".into(), |s| s.to_string_lossy().into_owned());
+        ViewFile::parse(&text, &stem).map_err(|what| SceneError::Invalid { path: path.to_owned(), what })
+    }
+
+    fn with_camera(self, name: &str) -> Result<(View, Camera), String> {
+        let camera = self.camera(self.name.as_deref().unwrap_or(name).to_owned())?;
+        Ok((self, camera))
     }
 
     fn camera(&self, name: String) -> Result<Camera, String> {
@@ -153,9 +156,100 @@ impl View {
     }
 }
 
+/// The views of a file.
+#[derive(Clone, Debug)]
+pub enum ViewFile {
+    One(Box<(View, Camera)>),
+    /// At least one. Names are there once, and can be parts of file names.
+    List(Vec<(View, Camera)>),
+}
+
+/// Most views of a list.
+const MOST_VIEWS: usize = 10_000;
+
+/// Longest name of a view, bytes.
+const LONGEST_NAME: usize = 100;
+
+const EXPECTED: &str = "expected {\"eye\": [x,y,z], \"target\": [x,y,z], \"up\", \"yfov\" (degrees), \"width\", \"height\"}, or a list of them";
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Views {
+    views: Vec<Value>,
+}
+
+impl ViewFile {
+    fn parse(text: &[u8], stem: &str) -> Result<ViewFile, String> {
+        let fault = |e: serde_json::Error| format!("not a view: {e}; {EXPECTED}");
+        let list = match serde_json::from_slice(text).map_err(fault)? {
+            Value::Array(list) => list,
+            Value::Object(fields) if fields.contains_key("views") => {
+                serde_json::from_slice::<Views>(text).map_err(fault)?.views
+            }
+            _ => {
+                let view: View = serde_json::from_slice(text).map_err(fault)?;
+                return view.with_camera(stem).map(|one| ViewFile::One(one.into()));
+            }
+        };
+        if !(1..=MOST_VIEWS).contains(&list.len()) {
+            return Err(format!("not a view: a list of {} views; there may be 1 to {MOST_VIEWS}", list.len()));
+        }
+        let mut names = HashSet::new();
+        let mut read = |index: usize, value: Value| {
+            let view: View = serde_json::from_value(value).map_err(|e| format!("{e}; {EXPECTED}"))?;
+            if let Some(name) = &view.name {
+                check_name(name)?;
+                if !names.insert(name.clone()) {
+                    return Err(format!("field `name`: there are two `{name}`"));
+                }
+            }
+            view.with_camera(&format!("{stem} {index}"))
+        };
+        let views = list.into_iter().enumerate().map(|(k, v)| read(k, v).map_err(|e| format!("view {k}: {e}")));
+        views.collect::<Result<_, String>>().map(ViewFile::List)
+    }
+}
+
+/// A name that any file may have in the middle of its own.
+fn check_name(name: &str) -> Result<(), String> {
+    let good = |c: char| c.is_ascii_alphanumeric() || "-_".contains(c);
+    if (1..=LONGEST_NAME).contains(&name.len()) && name.chars().all(good) {
+        return Ok(());
+    }
+    Err(format!("field `name`: {name:?} is not of 1 to {LONGEST_NAME} letters, digits, `-` and `_`"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Seen to fail: names that are not checked; an empty list.
+    #[test]
+    fn lists_are_read_and_their_faults_named() {
+        let parse = |text: &str| ViewFile::parse(text.as_bytes(), "turn");
+        let view = |more: &str| format!(r#"{{"eye":[0,0,2],"target":[0,0,0],"yfov":90{more}}}"#);
+        let list = format!(r#"[{},{}]"#, view(r#","name":"a-1""#), view(""));
+        for text in [list.clone(), format!(r#"{{"views":{list}}}"#)] {
+            let Ok(ViewFile::List(views)) = parse(&text) else { panic!("{text}") };
+            assert_eq!([0, 1].map(|k| views[k].1.name.clone()), ["a-1", "turn 1"]);
+            assert_eq!([0, 1].map(|k| views[k].0.name.clone()), [Some("a-1".into()), None]);
+        }
+        assert!(matches!(parse(&view("")), Ok(ViewFile::One(one)) if one.1.name == "turn"));
+        let twice = format!("[{0},{0}]", view(r#","name":"a""#));
+        let faults = [
+            ("[]".into(), "0 views"),
+            (format!(r#"{{"views":{list},"more":1}}"#), "more"),
+            (format!("[{},3]", view("")), "view 1"),
+            (format!("[{}]", view(r#","name":"../a""#)), "name"),
+            (format!("[{}]", view(r#","name":"""#)), "name"),
+            (twice, "two `a`"),
+            (format!("[{}]", view(r#","yfoo":1"#)), "yfoo"),
+        ];
+        for (text, word) in faults {
+            let message = parse(&text).unwrap_err();
+            assert!(message.contains(word), "{text}: {message}");
+        }
+    }
 
     fn view(json: &str) -> Result<Camera, String> {
         let view: View = serde_json::from_str(json).map_err(|e| e.to_string())?;

@@ -24,7 +24,8 @@ pub struct Arguments {
     /// Camera of SCENE by name or index [default: the first]
     #[arg(long, value_name = "NAME|INDEX")]
     pub camera: Option<String>,
-    /// Camera in a file of its own; beats --camera
+    /// Camera in a file of its own; beats --camera. A list of them makes as many images: IMAGE.NAME.exr of the view's
+    /// name, or IMAGE.0000.exr by its place, previews and statistics likewise
     #[arg(long, value_name = "FILE.json")]
     pub view: Option<PathBuf>,
     /// Turn the camera about the vertical axis through the view's target, or through the middle of the translucent

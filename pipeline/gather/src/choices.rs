@@ -7,7 +7,7 @@ use gather::{
     Crop, Filter, Settings,
     estimator::{Estimator, Rule},
 };
-use scene::{Camera, DVec3, Scene, View, light::Environment};
+use scene::{Camera, DVec3, Scene, View, ViewFile, light::Environment};
 use std::path::Path;
 
 /// Default of `--accuracy`.
@@ -37,6 +37,7 @@ pub fn estimator(arguments: &Arguments) -> Result<Estimator, Failure> {
 }
 
 /// A camera, the point that it turns about, and the size of image that its view file asks for.
+#[derive(Clone)]
 pub struct Chosen {
     pub camera: Camera,
     /// World, m.
@@ -45,18 +46,45 @@ pub struct Chosen {
     height: Option<u32>,
 }
 
-/// The camera of the view file, which says what it looks at, or one of the scene, which turns about the `middle`.
-pub fn camera(
+/// The cameras of a list of views, each with its name if it has one.
+pub type List = Vec<(Option<String>, Chosen)>;
+
+/// One camera or a list of them.
+pub enum Cameras {
+    One(Chosen),
+    List(List),
+}
+
+/// The cameras of the view file, which says what they look at, or one of the scene, which turns about the `middle`.
+pub fn cameras(
+    arguments: &Arguments,
+    scene: &Scene,
+    scene_path: &Path,
+    middle: impl Fn() -> DVec3,
+) -> Result<Cameras, Failure> {
+    let Some(path) = &arguments.view else {
+        return own_camera(arguments, scene, scene_path, middle).map(Cameras::One);
+    };
+    let chosen = |view: View, camera: Camera| {
+        let target = DVec3::from_array(view.target);
+        (view.name, Chosen { camera, target, width: view.width, height: view.height })
+    };
+    match View::read(path)? {
+        ViewFile::One(one) => Ok(Cameras::One(chosen(one.0, one.1).1)),
+        ViewFile::List(_) if arguments.orbit.is_some() => {
+            Err(Failure::usage(format!("--orbit: {} is a list of views; give one of both", path.display())))
+        }
+        ViewFile::List(views) => Ok(Cameras::List(views.into_iter().map(|(v, camera)| chosen(v, camera)).collect())),
+    }
+}
+
+/// A camera of the scene.
+fn own_camera(
     arguments: &Arguments,
     scene: &Scene,
     scene_path: &Path,
     middle: impl Fn() -> DVec3,
 ) -> Result<Chosen, Failure> {
-    if let Some(path) = &arguments.view {
-        let (view, camera) = View::read(path)?;
-        let target = DVec3::from_array(view.target);
-        return Ok(Chosen { camera, target, width: view.width, height: view.height });
-    }
     let cameras = &scene.cameras;
     let names = || cameras.iter().map(|c| format!("`{}`", c.name)).collect::<Vec<_>>().join(", ");
     if cameras.is_empty() {

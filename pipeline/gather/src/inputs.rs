@@ -4,7 +4,7 @@ use crate::arguments::Arguments;
 use cli::Failure;
 use formats::cloud::Cloud;
 use gather::clouds::{self, JoinError};
-use scene::{Scene, light::Environment};
+use scene::{Health, Scene, light::Environment};
 use std::path::{Path, PathBuf};
 
 /// CLOUD and SCENE.
@@ -42,6 +42,11 @@ impl CloudFiles {
     /// So small that they are checked before the work.
     pub fn are_small(&self) -> bool {
         self.clouds.iter().map(Cloud::bytes).sum::<u64>() < VERIFIED_FIRST
+    }
+
+    /// Of the sampled surfaces, as phase one found them.
+    pub fn health(&self) -> Health {
+        Health::from_counts(|name| self.clouds[0].meta().mesh_faults.get(name).copied())
     }
 
     /// Checks all of each file.

@@ -3,13 +3,13 @@
 mod arguments;
 mod choices;
 mod inputs;
-mod orbit;
 mod report;
 mod rounds;
+mod shots;
 
 use arguments::Arguments;
-use bssrdf::{Medium, built_in, built_in_names};
-use choices::{camera, estimator, settings};
+use bssrdf::{Medium, Model, built_in, built_in_names};
+use choices::{cameras, estimator, settings};
 use clap::Parser;
 use cli::{Failure, Need, camera_table, material_table};
 use formats::{
@@ -18,10 +18,10 @@ use formats::{
 };
 use gather::{Input, Rendered, Settings, clouds, film, media, preview};
 use inputs::CloudFiles;
-use orbit::Step;
 use report::{Facts, Seconds};
 use rounds::{render_all, render_to};
 use scene::{DVec3, Rays, Scene};
+use shots::{Shot, shots};
 use std::{
     fmt::Write as _,
     io::Write as _,
@@ -51,15 +51,15 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (mut scene, environment) = arguments.scene_args.import(scene_path, common)?;
     files.check_fit((&scene, &environment), scene_path, arguments)?;
     let sampled = |material| clouds::materials(clouds).iter().any(|m| m.index == material);
-    let chosen = camera(arguments, &scene, scene_path, || scene.origin + middle(bounds(&scene, sampled)))?;
-    let settings = settings(arguments, &chosen, estimator, environment)?;
-    check_memory(&settings)?;
-    let health = arguments.scene_args.check_mesh(&mut scene, sampled, scene_path, common)?;
+    let cameras = cameras(arguments, &scene, scene_path, || scene.origin + middle(bounds(&scene, sampled)))?;
+    let shots = shots(arguments, &cameras, |chosen| settings(arguments, chosen, estimator, environment.clone()))?;
+    shots.iter().try_for_each(|shot| check_memory(&shot.settings))?;
+    let health = files.health();
+    arguments.scene_args.check_mesh(&mut scene, sampled, health, scene_path, common)?;
     let media = media::assign(&arguments.medium, clouds::materials(clouds), &scene.materials)?;
-    show_scale(arguments, &scene, clouds, &media, &settings);
+    show_scale(arguments, &scene, clouds, &media, shots[0].settings.model);
     let output_path = arguments.output.as_deref().ok_or_else(|| Failure::usage("--output: give IMAGE.exr"))?;
-    let mut steps = orbit::steps(arguments).peekable();
-    let mut first = steps.peek().map(|step| Output::create(&step.file(output_path))).transpose()?;
+    let mut first = shots.first().map(|shot| Output::create(&shot.file(output_path))).transpose()?;
     let at_once = files.are_small();
     if at_once {
         files.verify()?;
@@ -71,33 +71,32 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let mut start = start;
     let mut unverified = !at_once;
-    for step in steps {
-        let path = step.file(output_path);
+    for shot in &shots {
+        let (settings, path) = (&shot.settings, shot.file(output_path));
         let output = first.take().map_or_else(|| Output::create(&path), Ok)?;
-        let camera = step.turned(&chosen.camera, chosen.target);
-        let input = Input { scene: &scene, rays: &rays, clouds, media: &media, camera: &camera };
+        let input = Input { scene: &scene, rays: &rays, clouds, media: &media, camera: &shot.camera };
         let render = Instant::now();
-        let rendered = rendered(arguments, &input, &settings, unverified.then_some(&files))?;
+        let rendered = rendered(arguments, &input, settings, unverified.then_some(&files))?;
         files.check_unchanged()?;
         seconds.0.push(("render", render.elapsed().as_secs_f64()));
         let facts = Facts {
             settings: &Settings { paths_per_pixel: rendered.paths_per_pixel, ..settings.clone() },
             clouds,
             media: &media,
-            camera: &camera,
-            turned_degrees: step.degrees(),
+            camera: &shot.camera,
+            turned_degrees: shot.degrees,
             warnings: &scene.warnings,
             health,
         };
         let write = Instant::now();
         if rendered.non_finite_count == 0 {
-            write_image(arguments, step, &facts, &rendered, output, &path)?;
+            write_image(arguments, shot, &facts, &rendered, output, &path)?;
         }
         seconds.0.push(("write", write.elapsed().as_secs_f64()));
         seconds.0.push(("total", start.elapsed().as_secs_f64()));
         if let Some(path) = &arguments.stats {
             let seconds = (!arguments.no_timings).then_some(&seconds);
-            atomic::write(&step.file(path), &facts.statistics(&rendered, seconds, common.thread_count()))?;
+            atomic::write(&shot.file(path), &facts.statistics(&rendered, seconds, common.thread_count()))?;
         }
         finish(arguments, &facts, &rendered)?;
         (start, seconds, unverified) = (Instant::now(), Seconds::default(), false);
@@ -135,7 +134,7 @@ fn check_memory(settings: &Settings) -> Result<(), Failure> {
 }
 
 /// Prints each medium's lengths beside its object's.
-fn show_scale(arguments: &Arguments, scene: &Scene, clouds: &[Cloud], media: &[Medium], settings: &Settings) {
+fn show_scale(arguments: &Arguments, scene: &Scene, clouds: &[Cloud], media: &[Medium], model: Model) {
     for (slot, (material, medium)) in clouds::materials(clouds).iter().zip(media).enumerate() {
         let (low, high) = bounds(scene, |m| m == material.index);
         let extent = low.abs().max(high.abs()).max_element();
@@ -145,14 +144,14 @@ fn show_scale(arguments: &Arguments, scene: &Scene, clouds: &[Cloud], media: &[M
             spacing: (material.area_m2 / clouds::count(clouds, slot).max(1) as f64).sqrt(),
             rounding: 0.5 * f64::from(f32::EPSILON) * extent,
         };
-        let scale = media::scale(&object, medium, settings.model.of(medium).transport());
+        let scale = media::scale(&object, medium, model.of(medium).transport());
         scale.lines.iter().for_each(|line| arguments.common.say(line));
         scale.warnings.iter().for_each(|warning| arguments.common.warn(warning));
-        if let Some(errors) = settings.model.poor_reflectance(medium) {
+        if let Some(errors) = model.poor_reflectance(medium) {
             let [r, g, b] = errors.map(|e| format!("{:+.0}", 100.0 * e));
             arguments.common.say(format_args!(
                 "  {} reflects {r} {g} {b} % more than {} does (red, green, blue; docs/accuracy.md)",
-                settings.model.name(),
+                model.name(),
                 medium.name
             ));
         }
@@ -173,7 +172,7 @@ fn middle((low, high): (DVec3, DVec3)) -> DVec3 {
 
 fn write_image(
     arguments: &Arguments,
-    step: Step,
+    shot: &Shot,
     facts: &Facts,
     rendered: &Rendered,
     mut output: Output,
@@ -187,7 +186,7 @@ fn write_image(
     output.write_all(&bytes).map_err(|source| formats::Error::write(path, source))?;
     if let Some(preview_path) = &arguments.preview {
         let png = preview::png(&rendered.pixels, part.width, part.height, arguments.exposure)?;
-        atomic::write(&step.file(preview_path), &png)?;
+        atomic::write(&shot.file(preview_path), &png)?;
     }
     output.commit()?;
     Ok(())

@@ -19,7 +19,7 @@ pub use sample::{Drawn, LitSurface, draw};
 
 use formats::cloud::{Content, Group, Meta, Options, Record, SampledMaterial, version};
 use rayon::prelude::*;
-use scene::{NormalKind, Rays, Scene, light::LightTree, random};
+use scene::{Health, NormalKind, Rays, Scene, light::LightTree, random};
 use std::collections::BTreeMap;
 
 /// Samples that one task draws.
@@ -82,6 +82,8 @@ pub struct Plan {
     /// The file marked none of them: every surface that does not emit was taken.
     pub unmarked: bool,
     pub geometry: [u8; 32],
+    /// Of the sampled surfaces.
+    pub health: Health,
     /// Identity of everything the samples depend on.
     pub content: [u8; 32],
 }
@@ -102,7 +104,8 @@ impl Plan {
         hasher.update(&settings.samples.to_le_bytes());
         let options = serde_json::json!({ "options": &settings.options, "materials": &materials });
         hasher.update(options.to_string().as_bytes());
-        Ok(Plan { materials, shares, unmarked, geometry, content: *hasher.finalize().as_bytes() })
+        let health = scene.health(|material| materials.contains(&material));
+        Ok(Plan { materials, shares, unmarked, geometry, health, content: *hasher.finalize().as_bytes() })
     }
 }
 
@@ -299,6 +302,7 @@ fn join(
             ("no_bounce".into(), total(|p| p.no_bounce)),
         ]),
         shadow_rays: total(|p| p.shadow_rays),
+        mesh_faults: plan.health.counts().map(|(name, count)| (name.to_owned(), count)).into(),
         surface_area_m2: choice.area(),
         mean_flux_w: (flux / settings.samples as f64).to_array(),
         diagonal_m: scene.mesh.diagonal(),

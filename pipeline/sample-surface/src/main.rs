@@ -138,7 +138,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         plan.depends_on(goal);
     }
     let sampled = |material| plan.materials.contains(&material);
-    let health = arguments.scene_args.check_mesh(&mut scene, sampled, &arguments.scene, common)?;
+    arguments.scene_args.check_mesh(&mut scene, sampled, plan.health, &arguments.scene, common)?;
     seconds.add("import", start);
     if plan.unmarked {
         common.say("no material is marked as a volume: all surfaces that do not emit are translucent");
@@ -161,7 +161,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     seconds.add("total", start);
     if let Some(path) = &arguments.stats {
-        atomic::write(path, &statistics(&cloud, &health, &seconds, common, kept))?;
+        atomic::write(path, &statistics(&cloud, &plan.health, &seconds, common, kept))?;
     }
     report(&cloud, common);
     Ok(())

@@ -26,6 +26,8 @@ pub struct Meta {
     pub samples_dropped: BTreeMap<String, u64>,
     /// Shadow rays traced.
     pub shadow_rays: u64,
+    /// Faults of the sampled surfaces as a mesh, by name: who gathers need not look for them again.
+    pub mesh_faults: BTreeMap<String, u64>,
     /// Area of the sampled surfaces, m².
     pub surface_area_m2: f64,
     /// Mean of the flux over all drawn samples, per channel, W.

@@ -176,9 +176,7 @@ impl Cloud {
         for section in &self.header.sections {
             layout::verify(&self.map, section).map_err(|what| Error::invalid(path, what))?;
         }
-        let good =
-            |r: &Record| r.position.iter().all(|x| x.is_finite()) && r.flux.iter().all(|x| x.is_finite() && *x >= 0.0);
-        if !self.tiles().as_flattened().iter().all(good) {
+        if !records_are_good(self.tiles().as_flattened()) {
             return Err(Error::invalid(path, "a sample is not finite, or its flux negative; sample again"));
         }
         let numbers: &[f32] = bytemuck::cast_slice(self.nodes());
@@ -218,6 +216,19 @@ impl Cloud {
         };
         bytemuck::cast_slice(&self.map[s.offset as usize..s.end() as usize])
     }
+}
+
+/// True if positions are finite, and fluxes finite and not negative.
+fn records_are_good(records: &[Record]) -> bool {
+    // As whole numbers: of floats without sign those that are finite come first, of all the positive ones. Without a
+    // branch for each record this takes as long as reading the memory does.
+    const SIGN: u32 = 1 << 31;
+    const MASKS: [u32; 8] = [!SIGN, !SIGN, !SIGN, 0, 0, !0, !0, !0];
+    let words: &[[u32; 8]] = bytemuck::cast_slice(records);
+    let worst = words
+        .iter()
+        .fold([0; 8], |worst: [u32; 8], record| std::array::from_fn(|i| worst[i].max(record[i] & MASKS[i])));
+    worst.iter().all(|word| *word < f32::INFINITY.to_bits())
 }
 
 /// Maps a file for reading.
@@ -283,6 +294,7 @@ mod tests {
             samples_drawn: 2 * count + 1,
             samples_dropped: BTreeMap::from([("shadowed".into(), count + 1)]),
             shadow_rays: 2 * count,
+            mesh_faults: BTreeMap::from([("open_edges".into(), count)]),
             surface_area_m2: 0.5,
             mean_flux_w: [1.0; 3],
             diagonal_m: 2.0,
@@ -352,6 +364,22 @@ mod tests {
         let (head, table) = (HEADER, 64 * SECTIONS.len());
         assert!(unseen < 4096 + 64 * SECTIONS.len(), "{unseen} of {} bytes unseen", good.len());
         assert!(good.len() - unseen > head + table);
+    }
+
+    /// Seen to fail: a coordinate left out; fluxes without their sign.
+    #[test]
+    fn only_finite_samples_with_flux_that_is_not_negative_are_good() {
+        let good = Record::new(&sample(-2.0));
+        let good = Record { flux: [0.0, 1.0, f32::MAX], ..good };
+        assert!(records_are_good(&[]) && records_are_good(&[good; 3]));
+        for bad in [f32::NAN, -f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            for c in 0..3 {
+                let (mut place, mut flux) = (good, good);
+                (place.position[c], flux.flux[c]) = (bad, bad);
+                assert!(!records_are_good(&[good, place]) && !records_are_good(&[flux, good]), "{bad}");
+            }
+        }
+        assert!(!records_are_good(&[Record { flux: [0.0, -1e-40, 0.0], ..good }]));
     }
 
     #[test]

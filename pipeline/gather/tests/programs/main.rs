@@ -13,3 +13,4 @@ mod shards;
 mod support;
 mod targets;
 mod user_files;
+mod views;

@@ -1,0 +1,113 @@
+//! The images of one call: of a camera, of a turntable about a vertical axis, or of a list of views; and a file for each.
+
+use crate::{
+    arguments::Arguments,
+    choices::{Cameras, Chosen},
+};
+use gather::Settings;
+use glam::{DMat3, DVec3};
+use scene::Camera;
+use std::{
+    ffi::OsString,
+    path::{Path, PathBuf},
+};
+
+/// One image.
+pub struct Shot {
+    pub camera: Camera,
+    pub settings: Settings,
+    /// By how much an orbit has turned the camera.
+    pub degrees: f64,
+    /// What its files have before their ending; none if there is one image only.
+    tag: Option<String>,
+}
+
+/// All images, the sizes of which `settings` gives.
+pub fn shots<E>(
+    arguments: &Arguments,
+    cameras: &Cameras,
+    settings: impl Fn(&Chosen) -> Result<Settings, E>,
+) -> Result<Vec<Shot>, E> {
+    match cameras {
+        Cameras::One(chosen) => {
+            let (count, settings) = (arguments.orbit.unwrap_or(1), settings(chosen)?);
+            let shot = |index: u32| {
+                let degrees = 360.0 * f64::from(index) / f64::from(count);
+                let camera = turned(&chosen.camera, chosen.target, degrees);
+                let tag = arguments.orbit.map(|_| format!("{index:04}"));
+                Shot { camera, settings: settings.clone(), degrees, tag }
+            };
+            Ok((0..count).map(shot).collect())
+        }
+        Cameras::List(list) => {
+            let shot = |(index, (name, chosen)): (usize, &(Option<String>, Chosen))| {
+                let tag = Some(name.clone().unwrap_or_else(|| format!("{index:04}")));
+                Ok(Shot { camera: chosen.camera.clone(), settings: settings(chosen)?, degrees: 0.0, tag })
+            };
+            list.iter().enumerate().map(shot).collect()
+        }
+    }
+}
+
+impl Shot {
+    /// `NAME.exr` as `NAME.0007.exr`.
+    pub fn file(&self, path: &Path) -> PathBuf {
+        self.tag.as_ref().map_or_else(|| path.to_owned(), |tag| tagged(path, tag))
+    }
+}
+
+/// A camera turned about +Y through `target` (world, m), counter-clockwise seen from above.
+fn turned(camera: &Camera, target: DVec3, degrees: f64) -> Camera {
+    if degrees == 0.0 {
+        return camera.clone(); // to the last digit
+    }
+    let turn = DMat3::from_rotation_y(degrees.to_radians());
+    Camera {
+        position: target + turn * (camera.position - target),
+        right: turn * camera.right,
+        up: turn * camera.up,
+        forward: turn * camera.forward,
+        ..camera.clone()
+    }
+}
+
+fn tagged(path: &Path, tag: &str) -> PathBuf {
+    let mut end = OsString::from(tag);
+    if let Some(extension) = path.extension() {
+        end.push(".");
+        end.push(extension);
+    }
+    path.with_extension(end)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use scene::Projection;
+
+    /// A quarter of a turn, on paper. Seen to catch: a turn the other way, and about the origin.
+    #[test]
+    fn a_quarter_turn_goes_from_the_front_to_the_right() {
+        let camera = Camera {
+            name: "front".into(),
+            node: "front".into(),
+            position: DVec3::new(1.0, 3.0, 7.0),
+            right: DVec3::X,
+            up: DVec3::Y,
+            forward: DVec3::NEG_Z,
+            projection: Projection::Perspective { tangent: 0.2 },
+            aspect: None,
+        };
+        let turned = super::turned(&camera, DVec3::new(1.0, 2.0, 2.0), 90.0);
+        assert!(turned.position.distance(DVec3::new(6.0, 3.0, 2.0)) < 1e-12, "{}", turned.position);
+        assert!(turned.forward.distance(DVec3::NEG_X) < 1e-12 && turned.right.distance(DVec3::NEG_Z) < 1e-12);
+        assert!(turned.up.distance(DVec3::Y) < 1e-12);
+        assert_eq!(super::turned(&camera, DVec3::splat(0.3), 0.0), camera);
+    }
+
+    #[test]
+    fn files_are_numbered_before_their_ending() {
+        assert_eq!(tagged(Path::new("a.b/turn.v2.exr"), "0007"), Path::new("a.b/turn.v2.0007.exr"));
+        assert_eq!(tagged(Path::new("turn"), "front"), Path::new("turn.front"));
+    }
+}

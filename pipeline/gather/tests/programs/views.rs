@@ -1,0 +1,55 @@
+//! A list of views: one call, an image for each, the same bytes as one by one. Planted errors seen: the first view's size for
+//! all; files numbered from one.
+
+use crate::support::{Bench, data};
+use std::fs;
+
+const VIEWS: [&str; 3] = [
+    r#"{"eye":[0.002,0.08,0.178],"target":[0.002,0.028,0.002],"yfov":25,"width":24,"height":16}"#,
+    r#"{"eye":[0.178,0.08,0.002],"target":[0.002,0.028,0.002],"yfov":20,"width":16}"#,
+    r#"{"eye":[0.002,0.08,0.178],"target":[0.002,0.028,0.002],"yfov":30,"height":20}"#,
+];
+
+#[test]
+fn a_list_of_views_makes_the_images_of_its_views() {
+    let bench = Bench::new();
+    let scene = data("scenes/figure.glb");
+    bench.succeed("sample-surface", &[&scene, "-n", "5k", "-o", "figure.cloud", "--quiet"]);
+    let gather = |view: &str, output: &str, stats: &str, preview: &str| {
+        let own =
+            ["figure.cloud", &scene, "--medium", "skin1", "--spp", "2", "--no-timings", "--quiet", "--view", view];
+        bench.succeed("gather", &[&own[..], &["-o", output, "--stats", stats, "--preview", preview]].concat());
+    };
+    for (k, view) in VIEWS.iter().enumerate() {
+        bench.write("one.json", view);
+        gather("one.json", &format!("{k}.exr"), &format!("{k}.json"), &format!("{k}.png"));
+    }
+    let named = VIEWS[1].replace("{\"eye\"", "{\"name\":\"side\",\"eye\"");
+    bench.write("list.json", format!("[{},{named},{}]", VIEWS[0], VIEWS[2]));
+    gather("list.json", "all.exr", "all.json", "all.png");
+    let bytes = |name: String| fs::read(bench.path(&name)).expect("reads");
+    for (k, tag) in ["0000", "side", "0002"].into_iter().enumerate() {
+        for ending in ["exr", "json", "png"] {
+            assert!(bytes(format!("all.{tag}.{ending}")) == bytes(format!("{k}.{ending}")), "{tag}.{ending}");
+        }
+    }
+    assert!(!bench.path("all.exr").exists() && !bench.path("all.0001.exr").exists());
+    let files = fs::read_dir(bench.path("")).expect("lists").count();
+    bench.write("views.json", format!("{{\"views\":[{}]}}", VIEWS[0]));
+    gather("views.json", "object.exr", "object.json", "object.png");
+    assert!(bytes("object.0000.exr".into()) == bytes("0.exr".into()));
+    assert_eq!(fs::read_dir(bench.path("")).expect("lists").count(), files + 4);
+}
+
+#[test]
+fn lists_that_say_too_much_are_refused() {
+    let bench = Bench::new();
+    let scene = data("scenes/figure.glb");
+    bench.succeed("sample-surface", &[&scene, "-n", "1k", "-o", "figure.cloud", "--quiet"]);
+    let own = ["figure.cloud", &scene, "--medium", "skin1", "-o", "x.exr", "--view", "list.json"];
+    bench.write("list.json", format!("[{},{}]", VIEWS[0], VIEWS[1]));
+    bench.refuses(&[&own[..], &["--orbit", "3"]].concat(), &["list.json", "--orbit"]);
+    bench.refuses(&[&own[..], &["--crop", "16,0,8,1"]].concat(), &["--crop"]);
+    bench.write("list.json", format!("[{},{{}}]", VIEWS[0]));
+    bench.refuses(&own, &["list.json", "view 1", "eye"]);
+}
