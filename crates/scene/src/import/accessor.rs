@@ -113,7 +113,7 @@ impl<'a> Column<'a> {
                 let offset = accessor.byte_offset.map_or(0, |o| o.0);
                 Run { view, offset, count, size, unit }.elements(document)
             }
-            None if accessor.sparse.is_some() => zeros(count, size),
+            None if accessor.sparse.is_some() => zeros(count, size, document.longest()),
             None => {
                 Err("the accessor has no bufferView (compressed geometry? export again without compression)".into())
             }
@@ -212,14 +212,16 @@ impl Run<'_> {
     }
 }
 
-/// Most elements that no byte of the file bears out.
-const MAX_ZEROS: u64 = 1 << 22;
+/// The least that a vertex takes in a file: a position of 8-bit integers, aligned.
+const BYTES_PER_VERTEX: u64 = 4;
 
-/// What a sparse accessor without a buffer view starts from.
-fn zeros(count: u64, size: usize) -> Result<Elements<'static>, Fault> {
+/// What a sparse accessor without a buffer view starts from. No byte of the file bears these elements out, but others
+/// of the same vertices must: a short file that names many would take any memory.
+fn zeros(count: u64, size: usize, longest: usize) -> Result<Elements<'static>, Fault> {
     const ZEROS: [u8; 16] = [0; 16];
-    if count > MAX_ZEROS {
-        return Err(format!("{count} elements without a bufferView, at most {MAX_ZEROS} are read"));
+    let limit = longest as u64 / BYTES_PER_VERTEX;
+    if count > limit {
+        return Err(format!("{count} elements without a bufferView, a file of this length holds at most {limit}"));
     }
     Ok(Elements { bytes: &ZEROS, count: count as usize, stride: 0, size })
 }

@@ -71,6 +71,12 @@ impl Document {
         }
     }
 
+    /// Bytes of the file or of its longest buffer.
+    pub fn longest(&self) -> usize {
+        let lengths = (0..self.buffers.len()).filter_map(|k| self.buffer(k)).map(<[u8]>::len);
+        lengths.fold(self.bytes.len(), usize::max)
+    }
+
     /// The bytes of a buffer view.
     pub fn view(&self, index: &Index<View>) -> Result<&[u8], Fault> {
         let view = get(&self.root.buffer_views, index, "bufferView")?;
