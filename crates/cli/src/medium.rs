@@ -2,7 +2,7 @@
 
 use bssrdf::{Medium, MediumError, MediumFile, Optics, Unit, built_in, single_scattering_albedo};
 use scene::{Draft, Material};
-use std::fs;
+use std::{fs, io};
 
 /// Why there is no such medium.
 #[derive(Debug, thiserror::Error)]
@@ -23,8 +23,16 @@ pub fn read_medium(name: &str) -> Result<Medium, ReadMediumError> {
     if !is_file {
         return built_in(name).map_err(ReadMediumError::Name);
     }
-    let text = fs::read_to_string(name).map_err(|source| ReadMediumError::Read { path: name.into(), source })?;
+    let text = read_text(name).map_err(|source| ReadMediumError::Read { path: name.into(), source })?;
     Medium::from_json(&text).map_err(|source| ReadMediumError::File { path: name.into(), source })
+}
+
+/// A device might never end, nor a pipe begin.
+fn read_text(name: &str) -> io::Result<String> {
+    if !fs::metadata(name)?.is_file() {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "not a regular file"));
+    }
+    fs::read_to_string(name)
 }
 
 /// The medium that the scene's file gives a material; none if it gives no coefficients.
@@ -52,4 +60,16 @@ pub fn scene_medium(material: &Material) -> Result<Option<Medium>, ReadMediumErr
     };
     let fault = |source| ReadMediumError::Scene { material: material.name.clone(), source };
     Medium::new(file).map(Some).map_err(fault)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Planted: without the look at its kind, which takes all memory.
+    #[test]
+    fn a_device_is_refused() {
+        let message = read_medium("/dev/zero").expect_err("refused").to_string();
+        assert!(message.contains("/dev/zero: cannot read: not a regular file"), "{message}");
+    }
 }
