@@ -61,7 +61,7 @@ endif
 # Title=picture, for the contact sheet.
 titled = $(foreach p,$(call pictures_of,$(1),$(2)),"$(1) $(basename $(notdir $(p)))/$(subst $(space),$(comma)$(space),$(call names_of,$(2)))=$(basename $(p)).png")
 
-.PHONY: .FORCE gallery own contact-sheet build test check check-images check-alarms check-power golden references browser-test slow farm-test peers accuracy curve curve-full bench lint scenes clouds images help clean clean-images
+.PHONY: .FORCE gallery own contact-sheet build test check check-images check-alarms check-power golden references browser-test slow farm-test peers fuzz accuracy curve curve-full bench lint scenes clouds images help clean clean-images
 
 ## gallery: build, and render every scene, medium and view of the gallery (what `make` does)
 gallery: contact-sheet
@@ -258,6 +258,17 @@ slow: build
 	$(CARGO) test --release --package bssrdf --test lanes -- --nocapture
 	$(CARGO) test --release --package pipeline-tests --features slow
 	$(CARGO) test --release --package gather --features slow --test programs -- --nocapture mutations faults
+
+# Outside the workspace, with a nightly compiler. What is new goes to OUT, not into the corpus.
+TARGET  ?= cloud
+SECONDS ?= 3600
+
+## fuzz: look for bytes that break TARGET=cloud, gltf, image, limits, medium or view, for SECONDS=3600 (fuzz/README.md)
+fuzz:
+	@mkdir -p $(OUT)/fuzz/$(TARGET)/found
+	$(CARGO) +nightly fuzz run --fuzz-dir fuzz $(TARGET) $(OUT)/fuzz/$(TARGET)/found fuzz/corpus/$(TARGET) -- \
+	  -artifact_prefix=$(abspath $(OUT))/fuzz/$(TARGET)/ -max_total_time=$(SECONDS) \
+	  -rss_limit_mb=2048 -timeout=10 -max_len=65536 -print_final_stats=1
 
 ## peers: the metrics of `compare` against scikit-image and flip-evaluator (Python 3.11 or later, and a network once)
 peers: build

@@ -9,7 +9,6 @@ mod import;
 mod import_faults;
 mod import_files;
 mod import_lights;
-mod import_mutations;
 mod import_quantised;
 mod import_textures;
 mod import_volumes;

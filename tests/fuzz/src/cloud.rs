@@ -1,0 +1,68 @@
+//! Clouds. Checksums keep random damage out, so that what lies behind them is only reached if they are made right again.
+
+use crate::file::with_file;
+use formats::cloud::{Cloud, TILE};
+use std::{ops::Range, path::Path};
+use xxhash_rust::xxh3::{Xxh3, xxh3_64};
+
+/// An accepted cloud has the groups that it speaks of; one that was verified has samples that are points with normals,
+/// directions and flux. The bytes are tried as they are, and with length and checksums that fit.
+pub fn cloud(bytes: &[u8]) -> bool {
+    let mut sealed = bytes.to_vec();
+    seal(&mut sealed);
+    with_file("a.cloud", bytes, look_at) | with_file("b.cloud", &sealed, look_at)
+}
+
+fn look_at(path: &Path) -> bool {
+    let Ok(cloud) = Cloud::open(path) else { return false };
+    let good = cloud.verify(path).is_ok();
+    let mut samples = 0;
+    for material in &cloud.meta().materials {
+        for half in &material.halves {
+            let (tiles, nodes) = cloud.group(half);
+            assert!(half.samples <= (tiles.len() * TILE) as u64 && (tiles.is_empty() == nodes.is_empty()));
+        }
+        for sample in cloud.samples(material) {
+            samples += 1;
+            let unit = |length: f64| (length - 1.0).abs() < 1e-12;
+            assert!(unit(sample.normal.length()) && unit(sample.direction.length()), "{sample:?}");
+            let lit = sample.position.is_finite() && sample.flux.is_finite() && sample.flux.min_element() >= 0.0;
+            assert!(lit || !good, "{sample:?}");
+        }
+    }
+    assert_eq!(samples, cloud.len());
+    assert!(cloud.meta().samples_drawn >= cloud.len());
+    true
+}
+
+const HEADER: usize = 64;
+const ENTRY: usize = 64;
+
+/// Makes the length and all checksums right as far as the file has them; the layout is that of `formats::cloud`.
+fn seal(file: &mut [u8]) -> Option<()> {
+    let length = file.len() as u64;
+    file.get_mut(16..24)?.copy_from_slice(&length.to_le_bytes());
+    let count = u32::from_le_bytes(file.get(32..36)?.try_into().ok()?) as usize;
+    let table = HEADER..count.checked_mul(ENTRY)?.checked_add(HEADER)?;
+    file.get(table.clone())?;
+    for entry in table.clone().step_by(ENTRY) {
+        if let Some(range) = section(&file[entry..entry + ENTRY])
+            && let Some(bytes) = file.get(range)
+        {
+            let sum = xxh3_64(bytes);
+            file[entry + 56..entry + 64].copy_from_slice(&sum.to_le_bytes());
+        }
+    }
+    let mut hasher = Xxh3::new();
+    hasher.update(&file[..56]);
+    hasher.update(&file[table]);
+    file[56..64].copy_from_slice(&hasher.digest().to_le_bytes());
+    Some(())
+}
+
+/// Where the bytes of a section lie, by its entry in the table.
+fn section(entry: &[u8]) -> Option<Range<usize>> {
+    let number = |at: usize| usize::try_from(u64::from_le_bytes(entry[at..at + 8].try_into().ok()?)).ok();
+    let (start, length) = (number(24)?, number(32)?);
+    Some(start..start.checked_add(length)?)
+}

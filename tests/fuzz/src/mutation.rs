@@ -1,0 +1,165 @@
+//! Damage to a file: the same in every run, and after the checks that it would meet first.
+//!
+//! A .glb is damaged within its chunks as often as from outside: a length that does not fit hides all else.
+
+use scene::random::{Item, Purpose, Stream};
+
+/// Numbers that lengths, counts and offsets are replaced by.
+const LENGTHS: [u64; 14] = [
+    0,
+    1,
+    2,
+    16,
+    0xff,
+    0xffff,
+    0x7fff_ffff,
+    0x8000_0000,
+    0xffff_ffff,
+    1 << 32,
+    1 << 60,
+    i64::MAX as u64,
+    i64::MIN as u64,
+    u64::MAX,
+];
+
+/// What stands for a number in a text.
+const TEXTS: [&str; 26] = [
+    "0",
+    "1",
+    "2",
+    "3",
+    "4",
+    "5",
+    "7",
+    "-1",
+    "65535",
+    "5121",
+    "5125",
+    "5126",
+    "2147483648",
+    "4294967295",
+    "4294967296",
+    "18446744073709551615",
+    "-0.0",
+    "0.5",
+    "1e-45",
+    "1e39",
+    "1e300",
+    "-1e300",
+    "1e-300",
+    "null",
+    "[]",
+    "\"1\"",
+];
+
+/// What stands for a byte.
+const BYTES: [u8; 9] = [0, 1, 0x7f, 0x80, 0xff, b'0', b'9', b'-', b'{'];
+
+struct Random(Item, u64);
+
+impl Random {
+    /// A number below `limit`, or 0.
+    fn below(&mut self, limit: usize) -> usize {
+        self.1 += 1;
+        (self.0.bits(self.1) % limit.max(1) as u64) as usize
+    }
+
+    fn pick<T: Copy>(&mut self, list: &[T]) -> T {
+        list[self.below(list.len())]
+    }
+}
+
+/// Mutation `number` of a file.
+pub fn mutate(file: &[u8], number: u64) -> Vec<u8> {
+    let mut random = Random(Stream::new(11, Purpose::Surface).item(number), 0);
+    match chunks(file) {
+        Some((text, binary)) if random.below(3) > 0 => {
+            let (mut text, mut binary) = (text.to_vec(), binary.to_vec());
+            let part = if random.below(4) == 0 { &mut binary } else { &mut text };
+            *part = damage(part, number, &mut random);
+            container(&text, &binary)
+        }
+        _ => damage(file, number, &mut random),
+    }
+}
+
+fn damage(bytes: &[u8], kind: u64, random: &mut Random) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    if bytes.is_empty() {
+        return vec![random.pick(&BYTES)];
+    }
+    match kind % 6 {
+        0 => flip(&mut bytes, random),
+        1 => bytes.truncate(random.below(bytes.len())),
+        2 => overwrite_length(&mut bytes, random),
+        3 => splice(&mut bytes, random),
+        _ => (0..=random.below(3)).for_each(|_| replace_number(&mut bytes, random)),
+    }
+    bytes
+}
+
+fn flip(bytes: &mut [u8], random: &mut Random) {
+    for _ in 0..=random.below(4) {
+        let at = random.below(bytes.len());
+        bytes[at] = match random.below(3) {
+            0 => bytes[at] ^ 1 << random.below(8),
+            _ => random.pick(&BYTES),
+        };
+    }
+}
+
+/// Two, four or eight bytes become another number.
+fn overwrite_length(bytes: &mut [u8], random: &mut Random) {
+    let size = random.pick(&[2, 4, 8]).min(bytes.len());
+    let at = random.below(bytes.len() - size + 1) & !(random.pick(&[0, 1, 3, 7]));
+    let near = bytes.len() as u64 + random.below(3) as u64 - 1;
+    let number = if random.below(4) == 0 { near } else { random.pick(&LENGTHS) };
+    bytes[at..at + size].copy_from_slice(&number.to_le_bytes()[..size]);
+}
+
+/// A part of the file is put in the place of another part of any length.
+fn splice(bytes: &mut Vec<u8>, random: &mut Random) {
+    let mut range = || {
+        let start = random.below(bytes.len());
+        start..start + random.below((bytes.len() - start).min(256))
+    };
+    let (from, to) = (range(), range());
+    let copy = bytes[from].to_vec();
+    bytes.splice(to, copy);
+}
+
+/// A run of digits becomes another number; bytes without one are flipped.
+fn replace_number(bytes: &mut Vec<u8>, random: &mut Random) {
+    let is_part = |b: &u8| b.is_ascii_digit() || b"+-.eE".contains(b);
+    let from = random.below(bytes.len());
+    let Some(start) = bytes[from..].iter().position(u8::is_ascii_digit).map(|k| from + k) else {
+        return flip(bytes, random);
+    };
+    let end = bytes[start..].iter().position(|b| !is_part(b)).map_or(bytes.len(), |k| start + k);
+    bytes.splice(start..end, random.pick(&TEXTS).bytes());
+}
+
+/// JSON and binary chunk of a .glb.
+fn chunks(file: &[u8]) -> Option<(&[u8], &[u8])> {
+    let chunk = |at: usize| {
+        let length = u32::from_le_bytes(file.get(at..at + 4)?.try_into().ok()?) as usize;
+        file.get(at + 8..)?.get(..length)
+    };
+    file.starts_with(b"glTF").then_some(())?;
+    let text = chunk(12)?;
+    Some((text, chunk(20 + text.len())?))
+}
+
+/// A .glb of these chunks.
+fn container(text: &[u8], binary: &[u8]) -> Vec<u8> {
+    let mut body = Vec::new();
+    for (kind, filler, content) in [(b"JSON", b' ', text), (b"BIN\0", 0, binary)] {
+        let length = content.len().next_multiple_of(4);
+        body.extend((length as u32).to_le_bytes());
+        body.extend(kind);
+        body.extend(content);
+        body.resize(body.len() + length - content.len(), filler);
+    }
+    let length = body.len() as u32 + 12;
+    [b"glTF".as_slice(), &2u32.to_le_bytes(), &length.to_le_bytes(), &body].concat()
+}
