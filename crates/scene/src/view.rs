@@ -160,7 +160,8 @@ impl View {
 #[derive(Clone, Debug)]
 pub enum ViewFile {
     One(Box<(View, Camera)>),
-    /// At least one. Names are there once, and can be parts of file names.
+    /// At least one. Names, or numbers for those without, are there once, whatever their case, and can be parts of file
+    /// names.
     List(Vec<(View, Camera)>),
 }
 
@@ -197,13 +198,13 @@ impl ViewFile {
         let mut names = HashSet::new();
         let mut read = |index: usize, value: Value| {
             let view: View = serde_json::from_value(value).map_err(|e| format!("{e}; {EXPECTED}"))?;
-            if let Some(name) = &view.name {
-                check_name(name)?;
-                if !names.insert(name.clone()) {
-                    return Err(format!("field `name`: there are two `{name}`"));
-                }
+            view.name.as_deref().map_or(Ok(()), check_name)?;
+            // A view without a name takes its number's.
+            let name = view.name.clone().unwrap_or_else(|| format!("{index:04}"));
+            if !names.insert(name.to_ascii_lowercase()) {
+                return Err(format!("field `name`: there are two `{name}`"));
             }
-            view.with_camera(&format!("{stem} {index}"))
+            view.with_camera(&format!("{stem} {name}"))
         };
         let views = list.into_iter().enumerate().map(|(k, v)| read(k, v).map_err(|e| format!("view {k}: {e}")));
         views.collect::<Result<_, String>>().map(ViewFile::List)
@@ -223,7 +224,7 @@ fn check_name(name: &str) -> Result<(), String> {
 mod tests {
     use super::*;
 
-    /// Seen to fail: names that are not checked; an empty list.
+    /// Seen to fail: names that are not checked; an empty list; a name that is also a number; names alike but for case.
     #[test]
     fn lists_are_read_and_their_faults_named() {
         let parse = |text: &str| ViewFile::parse(text.as_bytes(), "turn");
@@ -231,7 +232,7 @@ mod tests {
         let list = format!(r#"[{},{}]"#, view(r#","name":"a-1""#), view(""));
         for text in [list.clone(), format!(r#"{{"views":{list}}}"#)] {
             let Ok(ViewFile::List(views)) = parse(&text) else { panic!("{text}") };
-            assert_eq!([0, 1].map(|k| views[k].1.name.clone()), ["a-1", "turn 1"]);
+            assert_eq!([0, 1].map(|k| views[k].1.name.clone()), ["a-1", "turn 0001"]);
             assert_eq!([0, 1].map(|k| views[k].0.name.clone()), [Some("a-1".into()), None]);
         }
         assert!(matches!(parse(&view("")), Ok(ViewFile::One(one)) if one.1.name == "turn"));
@@ -243,6 +244,8 @@ mod tests {
             (format!("[{}]", view(r#","name":"../a""#)), "name"),
             (format!("[{}]", view(r#","name":"""#)), "name"),
             (twice, "two `a`"),
+            (format!("[{},{}]", view(r#","name":"a""#), view(r#","name":"A""#)), "two `A`"),
+            (format!("[{},{}]", view(r#","name":"0001""#), view("")), "two `0001`"),
             (format!("[{}]", view(r#","yfoo":1"#)), "yfoo"),
         ];
         for (text, word) in faults {
