@@ -1,14 +1,34 @@
 //! View files.
 
 use crate::file::with_file;
-use scene::{Camera, Projection, View};
+use scene::{Camera, Projection, View, ViewFile};
+use std::collections::HashSet;
 
-/// An accepted view is a camera whose rays have directions.
+/// An accepted view is a camera whose rays have directions; views of a list have names that can be parts of file names.
 pub fn view(bytes: &[u8]) -> bool {
-    let Ok((view, camera)) = with_file("view.json", bytes, View::read) else { return false };
-    assert!(camera.aspect.is_none_or(|a| a > 0.0 && a.is_finite()), "{:?} {:?}", view.width, view.height);
-    check_camera(&camera);
+    let Ok(file) = with_file("view.json", bytes, View::read) else { return false };
+    match file {
+        ViewFile::One(one) => check_view(&one.0, &one.1),
+        ViewFile::List(views) => {
+            assert!(!views.is_empty());
+            views.iter().for_each(|(view, camera)| check_view(view, camera));
+            check_names(views.iter().filter_map(|(view, _)| view.name.as_deref()));
+        }
+    }
     true
+}
+
+fn check_view(view: &View, camera: &Camera) {
+    assert!(camera.aspect.is_none_or(|a| a > 0.0 && a.is_finite()), "{:?} {:?}", view.width, view.height);
+    check_camera(camera);
+}
+
+fn check_names<'a>(names: impl Iterator<Item = &'a str>) {
+    let mut seen = HashSet::new();
+    for name in names {
+        assert!(seen.insert(name), "{name} twice");
+        assert!(!name.is_empty() && name.len() < 200 && !name.contains(['/', '\\', '\0']), "{name:?}");
+    }
 }
 
 /// Pixels of the image that rays are sent through.
