@@ -61,7 +61,7 @@ endif
 # Title=picture, for the contact sheet.
 titled = $(foreach p,$(call pictures_of,$(1),$(2)),"$(1) $(basename $(notdir $(p)))/$(subst $(space),$(comma)$(space),$(call names_of,$(2)))=$(basename $(p)).png")
 
-.PHONY: .FORCE gallery own contact-sheet build test check check-images check-alarms check-power golden references browser-test slow farm-test peers fuzz accuracy curve curve-full bench lint scenes clouds images help clean clean-images
+.PHONY: .FORCE gallery own contact-sheet build test check check-images check-alarms check-power golden references browser-test slow farm-test peers fuzz accuracy curve curve-full scale bench lint scenes clouds images help clean clean-images
 
 ## gallery: build, and render every scene, medium and view of the gallery (what `make` does)
 gallery: contact-sheet
@@ -293,6 +293,10 @@ curve: build
 ## curve-full: the same with larger clouds and more runs (an hour)
 curve-full: build
 	$(CURVE) --full
+
+## scale: what sizes cost, and what that says of farms: docs/scale.md (minutes)
+scale: build
+	$(CURVE) --scale
 
 ## bench: the kernels, the trees and the rays by themselves
 bench:

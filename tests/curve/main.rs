@@ -1,5 +1,6 @@
 //! `curve --meshes FOLDER --programs FOLDER --output FOLDER [--full]`: time against error of the two programs, as
-//! `speed.md`, its plots and `speed.csv`. Minutes; with `--full` an hour or so.
+//! `speed.md`, its plots and `speed.csv`. Minutes; with `--full` an hour or so. With `--scale` what sizes cost instead, as
+//! `scale.md`: minutes.
 //!
 //! FOLDER of `--meshes` should hold `bunny.glb` and `dragon.glb`, and `../peers` beside it the scenes that other
 //! renderers were measured on. `--tiny` tries the program itself: half a minute, and figures that mean nothing.
@@ -15,8 +16,10 @@ mod error;
 mod estimate;
 mod everywhere;
 mod findings;
+mod forecast;
 mod frame;
 mod growth;
+mod linear;
 mod measure;
 mod model;
 mod peers;
@@ -26,6 +29,7 @@ mod program;
 mod race;
 mod record;
 mod reference;
+mod scale;
 mod scaling;
 
 use bench::Bench;
@@ -49,23 +53,25 @@ fn main() -> ExitCode {
     }
 }
 
-const USAGE: &str = "usage: curve --meshes FOLDER --programs FOLDER --output FOLDER [--full | --tiny]";
+const USAGE: &str = "usage: curve --meshes FOLDER --programs FOLDER --output FOLDER [--full | --tiny | --scale]";
 
 struct Arguments {
     meshes: PathBuf,
     programs: PathBuf,
     output: PathBuf,
     effort: Effort,
+    scale: bool,
 }
 
 impl Arguments {
     fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, Error> {
         let usage = || Error::Usage(USAGE.into());
-        let (mut meshes, mut programs, mut output, mut effort) = (None, None, None, Effort::Quick);
+        let (mut meshes, mut programs, mut output, mut effort, mut scale) = (None, None, None, Effort::Quick, false);
         while let Some(word) = words.next() {
             match word.as_str() {
                 "--full" => effort = Effort::Full,
                 "--tiny" => effort = Effort::Tiny,
+                "--scale" => scale = true,
                 "--meshes" => meshes = words.next(),
                 "--programs" => programs = words.next(),
                 "--output" => output = words.next(),
@@ -74,7 +80,7 @@ impl Arguments {
         }
         let [meshes, programs, output] = [meshes, programs, output].map(|path| path.map(PathBuf::from));
         match (meshes, programs, output) {
-            (Some(meshes), Some(programs), Some(output)) => Ok(Arguments { meshes, programs, output, effort }),
+            (Some(meshes), Some(programs), Some(output)) => Ok(Arguments { meshes, programs, output, effort, scale }),
             _ => Err(usage()),
         }
     }
@@ -82,13 +88,16 @@ impl Arguments {
 
 fn run(arguments: &Arguments) -> Result<(), Error> {
     let gallery = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data");
-    let subjects = Subjects::find(&arguments.meshes, &gallery);
-    let mut bench = Bench::new(&arguments.programs, arguments.effort, &subjects.main[0])?;
-    let findings = measure_all(&mut bench, &subjects)?;
     let write = |name: &str, text: String| {
         let path = arguments.output.join(name);
         fs::write(&path, text).map_err(Error::file(&path))
     };
+    if arguments.scale {
+        return write("scale.md", scale::scale(&arguments.programs, &gallery)?);
+    }
+    let subjects = Subjects::find(&arguments.meshes, &gallery);
+    let mut bench = Bench::new(&arguments.programs, arguments.effort, &subjects.main[0])?;
+    let findings = measure_all(&mut bench, &subjects)?;
     for (name, plot) in &findings.plots {
         write(&format!("speed-{name}.svg"), plot.to_svg())?;
     }

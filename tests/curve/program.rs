@@ -50,6 +50,11 @@ impl Program {
 
     /// Runs the program to its end; `statistics` is where it may put a file for a moment.
     pub fn run(&self, arguments: &[String], statistics: &Path) -> Result<Spent, Error> {
+        self.run_list(arguments, statistics, statistics)
+    }
+
+    /// The same where it writes statistics of each image: `last` is the file that is read.
+    pub fn run_list(&self, arguments: &[String], statistics: &Path, last: &Path) -> Result<Spent, Error> {
         let mut command = Command::new(&self.path);
         command.args(arguments).arg("--stats").arg(statistics).args(["--quiet", "--progress", "none"]);
         command.stdin(Stdio::null()).stdout(Stdio::null());
@@ -62,9 +67,8 @@ impl Program {
             let (program, arguments) = (self.path.clone(), arguments.to_vec());
             return Err(Error::Failed { program, arguments, code: output.status.code(), message });
         }
-        let text = fs::read_to_string(statistics).map_err(Error::file(statistics))?;
-        let unreadable =
-            |e: serde_json::Error| Error::Unreadable { path: statistics.to_owned(), message: e.to_string() };
+        let text = fs::read_to_string(last).map_err(Error::file(last))?;
+        let unreadable = |e: serde_json::Error| Error::Unreadable { path: last.to_owned(), message: e.to_string() };
         Ok(Spent { wall, cpu, statistics: serde_json::from_str(&text).map_err(unreadable)? })
     }
 }
