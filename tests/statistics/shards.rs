@@ -28,14 +28,17 @@ fn brightness(scene: &Scene, clouds: &[Cloud], settings: &Settings) -> f64 {
     pixels.iter().map(|p| p.beauty().element_sum()).sum::<f64>() / pixels.len() as f64
 }
 
+/// Of 4 paths one cloud is sure of a turn, of 18 two are.
+///
 /// Seen to catch: sums over the samples of one cloud divided by those of all; clouds taken in turn divided by those of the
-/// first; the whole sum divided by the samples of the first.
+/// first; the whole sum divided by the samples of the first; weights of turns for clouds that may have none.
 #[test]
 fn the_mean_of_uneven_shards_is_that_of_one_cloud() {
     let scene = edge(built_in("marble").expect("a built-in medium"));
     let kinds = [
         (Estimator::Cut { accuracy: 0.1 }, 4),
         (Estimator::Cut { accuracy: 0.1 }, 1),
+        (Estimator::Cut { accuracy: 0.1 }, 18),
         (Estimator::Exhaustive, 2),
         (Estimator::Roulette(Rule::Mixture), 2),
     ];

@@ -1,6 +1,7 @@
 //! The light that leaves a translucent surface scattered: sums over the halves of a cloud.
 
 use crate::{
+    clouds::Turn,
     estimator::{Calibration, Cut, Estimator, Exhaustive, Radial, Rates, Roulette, Scratch, Sum},
     film::Layer,
     path::{PathLight, Renderer, Walker, Worker},
@@ -72,7 +73,8 @@ impl<M: LaneModel> Renderer<'_, M> {
         // The second half is empty if one sample was drawn.
         let half = if drawn[1] == 0 { 0 } else { walker.half };
         if self.alternates() {
-            let value = of_half(half, Some(walker.part)) / self.drawn.part(half, walker.part).max(1) as f64;
+            let Turn { part, weight } = walker.turn;
+            let value = weight * of_half(half, Some(part)) / self.drawn.part(half, part).max(1) as f64;
             light.add_halves(walker, Layer::Subsurface, value, [value; 2]);
         } else {
             let sums = [of_half(0, None), of_half(1, None)];

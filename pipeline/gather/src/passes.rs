@@ -61,6 +61,7 @@ impl<'a, M: LaneModel> Passes<'a, M> {
             estimator: settings.estimator,
             drawn: Drawn::of(input.clouds),
             paths_per_pixel: settings.paths_per_pixel,
+            pass: 0..settings.paths_per_pixel,
             max_depth: settings.max_depth,
             clearance: CLEARANCE * input.scene.mesh.diagonal(),
             paths: Stream::new(settings.seed, Purpose::CameraPath),
@@ -178,6 +179,7 @@ impl<M: LaneModel> Session for Passes<'_, M> {
     fn pass(&mut self, paths: u32, progress: &(dyn Fn(u64) + Sync)) {
         let range = self.paths..self.paths.saturating_add(paths);
         self.renderer.paths_per_pixel = self.settings.paths_per_pixel.max(range.end);
+        self.renderer.pass = range.clone();
         let tile = |tile: usize| {
             let mut worker = Worker::new(self.renderer.bodies.len());
             let add = |place: usize| (place, self.add_paths(place, range.clone(), &mut worker));

@@ -1,7 +1,7 @@
 //! note: [split] One camera path: Fresnel roulette at the interfaces, and `L_o = L_e + L_t + L_r` where light leaves.
 
 use crate::{
-    clouds::Drawn,
+    clouds::{Drawn, Turn},
     counts::Counts,
     estimator::{Estimator, Scratch},
     film::{Guide, Layer, Layers},
@@ -13,7 +13,7 @@ use scene::{
     light::{Environment, LightTree, all_light_at},
     random::{Item, Stream},
 };
-use std::f64::consts::PI;
+use std::{f64::consts::PI, ops::Range};
 
 /// Everything a path needs; shared by all threads.
 pub struct Renderer<'a, M> {
@@ -30,6 +30,8 @@ pub struct Renderer<'a, M> {
     /// Samples of each cloud, the unlit ones included.
     pub drawn: Drawn,
     pub paths_per_pixel: u32,
+    /// Paths of each pixel that are added at once.
+    pub pass: Range<u32>,
     pub max_depth: u32,
     /// How far beyond a surface a ray goes on that passes it straight, m.
     pub clearance: f64,
@@ -91,7 +93,7 @@ pub(crate) struct Walker {
     /// Which half of the cloud it gathers from, if it is one.
     pub half: usize,
     /// Which of several clouds, if it is one.
-    pub part: usize,
+    pub turn: Turn,
     random: Item,
     pub dimension: u64,
     pub key: Item,
@@ -140,7 +142,7 @@ impl<M: LaneModel> Renderer<'_, M> {
             layer: None,
             events: 0,
             half,
-            part: self.drawn.turn(half, index.path / 2, || self.turns.item(index.pixel).uniform(half as u64)),
+            turn: self.turn(index),
             random: self.paths.item(item),
             dimension: 0,
             key: self.gathers.item(item),
@@ -153,6 +155,16 @@ impl<M: LaneModel> Renderer<'_, M> {
             self.follow(&mut walker, &mut None, &mut light, worker);
         }
         light
+    }
+
+    /// Among the paths of its half that are added at once.
+    fn turn(&self, index: PathIndex) -> Turn {
+        let half = index.path % 2;
+        // The first path of this half, at `path` or after it.
+        let first = |path: u32| (path + 1 - half) / 2;
+        let (start, end) = (first(self.pass.start), first(self.pass.end));
+        let random = || self.turns.item(index.pixel).uniform(u64::from(2 * start + half));
+        self.drawn.turn(half as usize, index.path / 2 - start, end - start, random)
     }
 
     fn follow(&self, walker: &mut Walker, mirrored: &mut Option<Walker>, light: &mut PathLight, worker: &mut Worker) {

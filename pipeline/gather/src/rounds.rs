@@ -25,7 +25,10 @@ pub fn render_to(target: f64, input: &Input, settings: &Settings, common: &Commo
         if errors.total <= target {
             break;
         }
-        let cloud_error = errors.cloud.max(lasting(errors.total, before, settings.estimator));
+        // What differs because paths have not had their turns at all clouds does not last.
+        let judged = input.clouds.len() == 1 || done as usize >= 2 * input.clouds.len();
+        let lasts = || errors.cloud.max(lasting(errors.total, before, settings.estimator));
+        let cloud_error = if judged { lasts() } else { 0.0 };
         before = errors.total;
         if cloud_error > CLOUD_LIMITS * target {
             // The error of well-spread samples falls at least as their number to the power 3/4.
