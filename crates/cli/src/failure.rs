@@ -19,6 +19,11 @@ impl Failure {
         Failure { code: 2, message: message.into() }
     }
 
+    /// The same of a part of the input that the message does not name.
+    pub fn within(self, part: impl Display) -> Failure {
+        Failure { message: format!("{part}: {}", self.message), ..self }
+    }
+
     /// A number that is not finite reached an output: exit code 3.
     pub fn numerical(message: impl Into<String>) -> Failure {
         Failure { code: 3, message: message.into() }

@@ -31,18 +31,11 @@ pub struct Output {
 impl Output {
     /// Creates the temporary file, so that a target that cannot be written fails before the work starts.
     pub fn create(target: &Path) -> Result<Output, Error> {
+        check(target)?;
         let fail = |source| Error::write(target, source);
         // A link is followed: it is its target that is replaced, not the link.
         let target = &fs::canonicalize(target).unwrap_or_else(|_| target.to_owned());
-        let in_place = match fs::metadata(target) {
-            Ok(meta) if meta.is_dir() => return Err(fail(io::Error::other("is a folder"))),
-            Ok(meta) if meta.is_file() && meta.permissions().readonly() => {
-                return Err(fail(io::Error::other("is read-only")));
-            }
-            Ok(meta) => !meta.is_file(),
-            Err(_) => false,
-        };
-        if in_place {
+        if is_written_in_place(target) {
             let file = OpenOptions::new().write(true).open(target).map_err(fail)?;
             return Ok(Output { target: target.clone(), temporary: None, file: BufWriter::new(file) });
         }
@@ -91,6 +84,26 @@ impl Drop for Output {
             registered().retain(|p| *p != temporary);
         }
     }
+}
+
+/// Refuses a target that can be seen not to be writable.
+pub fn check(target: &Path) -> Result<(), Error> {
+    let fail = |why: &str| Err(Error::write(target, io::Error::other(why)));
+    match fs::metadata(target) {
+        Ok(meta) if meta.is_dir() => fail("is a folder"),
+        Ok(meta) if meta.is_file() && meta.permissions().readonly() => fail("is read-only"),
+        Ok(_) => Ok(()),
+        Err(_) => match target.parent().filter(|p| p.as_os_str() != "").map(fs::metadata) {
+            Some(Err(source)) => Err(Error::write(target, source)),
+            Some(Ok(meta)) if !meta.is_dir() => fail("lies in what is no folder"),
+            _ => Ok(()),
+        },
+    }
+}
+
+/// Devices and pipes are.
+pub fn is_written_in_place(target: &Path) -> bool {
+    fs::metadata(target).is_ok_and(|meta| !meta.is_file())
 }
 
 /// Writes `bytes` to `path`, whole or not at all.

@@ -176,15 +176,19 @@ const EXPECTED: &str = "expected {\"eye\": [x,y,z], \"target\": [x,y,z], \"up\",
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Views {
-    views: Vec<Value>,
+    views: Vec<View>,
 }
 
 impl ViewFile {
     fn parse(text: &[u8], stem: &str) -> Result<ViewFile, String> {
         let fault = |e: serde_json::Error| format!("not a view: {e}; {EXPECTED}");
-        let list = match serde_json::from_slice(text).map_err(fault)? {
-            Value::Array(list) => list,
+        let list: Vec<View> = match serde_json::from_slice(text).map_err(fault)? {
+            Value::Array(list) => {
+                check_views(&list)?;
+                serde_json::from_slice(text).map_err(fault)?
+            }
             Value::Object(fields) if fields.contains_key("views") => {
+                fields["views"].as_array().map_or(Ok(()), |list| check_views(list))?;
                 serde_json::from_slice::<Views>(text).map_err(fault)?.views
             }
             _ => {
@@ -196,8 +200,7 @@ impl ViewFile {
             return Err(format!("not a view: a list of {} views; there may be 1 to {MOST_VIEWS}", list.len()));
         }
         let mut names = HashSet::new();
-        let mut read = |index: usize, value: Value| {
-            let view: View = serde_json::from_value(value).map_err(|e| format!("{e}; {EXPECTED}"))?;
+        let mut read = |index: usize, view: View| {
             view.name.as_deref().map_or(Ok(()), check_name)?;
             // A view without a name takes its number's.
             let name = view.name.clone().unwrap_or_else(|| format!("{index:04}"));
@@ -209,6 +212,16 @@ impl ViewFile {
         let views = list.into_iter().enumerate().map(|(k, v)| read(k, v).map_err(|e| format!("view {k}: {e}")));
         views.collect::<Result<_, String>>().map(ViewFile::List)
     }
+}
+
+/// Says which view is none. Structures are read from lists of their fields, too, which nobody means; fields that are there
+/// twice are seen in the text alone.
+fn check_views(list: &[Value]) -> Result<(), String> {
+    list.iter().enumerate().try_for_each(|(k, value)| match View::deserialize(value) {
+        Err(e) => Err(format!("view {k}: {e}; {EXPECTED}")),
+        Ok(_) if !value.is_object() => Err(format!("view {k}: not an object; {EXPECTED}")),
+        Ok(_) => Ok(()),
+    })
 }
 
 /// A name that any file may have in the middle of its own.
@@ -244,6 +257,8 @@ mod tests {
             (format!("[{}]", view(r#","name":"../a""#)), "name"),
             (format!("[{}]", view(r#","name":"""#)), "name"),
             (twice, "two `a`"),
+            (format!("[{}]", view(r#","yfov":30"#)), "duplicate field `yfov`"),
+            (r#"{"views":[[null,[0,0,1],[0,0,0],[0,1,0],30,8,8]]}"#.into(), "view 0"),
             (format!("[{},{}]", view(r#","name":"a""#), view(r#","name":"A""#)), "two `A`"),
             (format!("[{},{}]", view(r#","name":"0001""#), view("")), "two `0001`"),
             (format!("[{}]", view(r#","yfoo":1"#)), "yfoo"),

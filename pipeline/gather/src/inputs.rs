@@ -1,18 +1,46 @@
 //! The files that an image is made from: clouds and their scene, and whether they belong together.
 
-use crate::arguments::Arguments;
+use crate::{arguments::Arguments, shots::Shot};
 use cli::Failure;
-use formats::cloud::Cloud;
+use formats::{atomic, cloud::Cloud};
 use gather::clouds::{self, JoinError};
 use scene::{Health, Scene, light::Environment};
-use std::path::{Path, PathBuf};
+use std::{
+    collections::HashMap,
+    path::{Path, PathBuf},
+};
 
 /// CLOUD and SCENE.
 pub fn paths(arguments: &Arguments) -> Result<(&Path, &Path), Failure> {
     match (&arguments.cloud, &arguments.scene) {
         (Some(cloud), Some(scene)) => Ok((cloud, scene)),
+        _ if !arguments.with.is_empty() => {
+            Err(Failure::usage("give CLOUD and SCENE before --with: all names that follow it are clouds"))
+        }
         _ => Err(Failure::usage("give CLOUD and SCENE; see --help")),
     }
+}
+
+/// Refuses outputs that cannot be written, that replace an input, or that are the same file, before any work is done.
+pub fn check_outputs(arguments: &Arguments, shots: &[Shot], images: &Path) -> Result<(), Failure> {
+    let inputs = [&arguments.cloud, &arguments.scene, &arguments.view].into_iter().flatten().chain(&arguments.with);
+    let mut taken: HashMap<PathBuf, &str> = inputs.map(|path| (whole(path), "read")).collect();
+    let outputs = [Some(images), arguments.preview.as_deref(), arguments.stats.as_deref()];
+    for path in outputs.into_iter().flatten().flat_map(|path| shots.iter().map(|shot| shot.file(path))) {
+        atomic::check(&path)?;
+        let seen = if atomic::is_written_in_place(&path) { None } else { taken.insert(whole(&path), "written") };
+        if let Some(how) = seen {
+            return Err(Failure::usage(format!("{}: this file is also {how}; give another", path.display())));
+        }
+    }
+    Ok(())
+}
+
+/// The path without links, as far as it is there.
+fn whole(path: &Path) -> PathBuf {
+    let file = |folder: PathBuf| folder.join(path.file_name().unwrap_or_default());
+    let folder = path.parent().filter(|p| p.as_os_str() != "").unwrap_or(Path::new("."));
+    path.canonicalize().or_else(|_| folder.canonicalize().map(file)).unwrap_or_else(|_| path.to_owned())
 }
 
 /// Clouds of fewer bytes are checked before the work, in milliseconds; larger ones beside it, before anything is written.

@@ -53,12 +53,13 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let sampled = |material| clouds::materials(clouds).iter().any(|m| m.index == material);
     let cameras = cameras(arguments, &scene, scene_path, || scene.origin + middle(bounds(&scene, sampled)))?;
     let shots = shots(arguments, &cameras, |chosen| settings(arguments, chosen, estimator, environment.clone()))?;
-    shots.iter().try_for_each(|shot| check_memory(&shot.settings))?;
+    shots.iter().try_for_each(|shot| check_memory(&shot.settings).map_err(|e| shot.failure(e)))?;
     let health = files.health();
     arguments.scene_args.check_mesh(&mut scene, sampled, health, scene_path, common)?;
     let media = media::assign(&arguments.medium, clouds::materials(clouds), &scene.materials)?;
     show_scale(arguments, &scene, clouds, &media, shots[0].settings.model);
     let output_path = arguments.output.as_deref().ok_or_else(|| Failure::usage("--output: give IMAGE.exr"))?;
+    inputs::check_outputs(arguments, &shots, output_path)?;
     let mut first = shots.first().map(|shot| Output::create(&shot.file(output_path))).transpose()?;
     let at_once = files.are_small();
     if at_once {
@@ -98,7 +99,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             let seconds = (!arguments.no_timings).then_some(&seconds);
             atomic::write(&shot.file(path), &facts.statistics(&rendered, seconds, common.thread_count()))?;
         }
-        finish(arguments, &facts, &rendered)?;
+        finish(arguments, &facts, &rendered).map_err(|e| shot.failure(e))?;
         (start, seconds, unverified) = (Instant::now(), Seconds::default(), false);
     }
     Ok(())

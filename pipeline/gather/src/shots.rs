@@ -4,6 +4,7 @@ use crate::{
     arguments::Arguments,
     choices::{Cameras, Chosen},
 };
+use cli::Failure;
 use gather::Settings;
 use glam::{DMat3, DVec3};
 use scene::Camera;
@@ -23,11 +24,11 @@ pub struct Shot {
 }
 
 /// All images, the sizes of which `settings` gives.
-pub fn shots<E>(
+pub fn shots(
     arguments: &Arguments,
     cameras: &Cameras,
-    settings: impl Fn(&Chosen) -> Result<Settings, E>,
-) -> Result<Vec<Shot>, E> {
+    settings: impl Fn(&Chosen) -> Result<Settings, Failure>,
+) -> Result<Vec<Shot>, Failure> {
     match cameras {
         Cameras::One(chosen) => {
             let (count, settings) = (arguments.orbit.unwrap_or(1), settings(chosen)?);
@@ -41,8 +42,9 @@ pub fn shots<E>(
         }
         Cameras::List(list) => {
             let shot = |(index, (name, chosen)): (usize, &(Option<String>, Chosen))| {
-                let tag = Some(name.clone().unwrap_or_else(|| format!("{index:04}")));
-                Ok(Shot { camera: chosen.camera.clone(), settings: settings(chosen)?, degrees: 0.0, tag })
+                let tag = name.clone().unwrap_or_else(|| format!("{index:04}"));
+                let settings = settings(chosen).map_err(|e| e.within(place(&tag)))?;
+                Ok(Shot { camera: chosen.camera.clone(), settings, degrees: 0.0, tag: Some(tag) })
             };
             list.iter().enumerate().map(shot).collect()
         }
@@ -50,6 +52,14 @@ pub fn shots<E>(
 }
 
 impl Shot {
+    /// A failure of this image, which says which it is if there are several.
+    pub fn failure(&self, failure: Failure) -> Failure {
+        match &self.tag {
+            Some(tag) => failure.within(place(tag)),
+            None => failure,
+        }
+    }
+
     /// `NAME.exr` as `NAME.0007.exr`.
     pub fn file(&self, path: &Path) -> PathBuf {
         self.tag.as_ref().map_or_else(|| path.to_owned(), |tag| tagged(path, tag))
@@ -69,6 +79,10 @@ fn turned(camera: &Camera, target: DVec3, degrees: f64) -> Camera {
         forward: turn * camera.forward,
         ..camera.clone()
     }
+}
+
+fn place(tag: &str) -> String {
+    format!("view {tag}")
 }
 
 fn tagged(path: &Path, tag: &str) -> PathBuf {

@@ -1,5 +1,5 @@
 //! A list of views: one call, an image for each, the same bytes as one by one. Planted errors seen: the first view's size for
-//! all; files numbered from one.
+//! all; files numbered from one; outputs looked at one by one.
 
 use crate::support::{Bench, data};
 use std::fs;
@@ -52,4 +52,44 @@ fn lists_that_say_too_much_are_refused() {
     bench.refuses(&[&own[..], &["--crop", "16,0,8,1"]].concat(), &["--crop"]);
     bench.write("list.json", format!("[{},{{}}]", VIEWS[0]));
     bench.refuses(&own, &["list.json", "view 1", "eye"]);
+}
+
+/// What is wrong with one view is said of it, and before any view is rendered.
+#[test]
+fn faults_of_one_view_name_it_and_come_first() {
+    let bench = Bench::new();
+    let scene = data("scenes/figure.glb");
+    bench.succeed("sample-surface", &[&scene, "-n", "1k", "-o", "figure.cloud", "--quiet"]);
+    let own = ["figure.cloud", &scene, "--medium", "skin1", "--spp", "1", "--view", "list.json", "-o", "x.exr"];
+    let wide = VIEWS[0].replace("24", "70000").replace("{\"eye\"", "{\"name\":\"wide\",\"eye\"");
+    bench.write("list.json", format!("[{},{wide}]", VIEWS[0]));
+    bench.refuses(&own, &["view wide", "70000"]);
+    let large = wide.replace("70000", "16000").replace("16,", "16000,").replace(":16}", ":16000}");
+    bench.write("list.json", format!("[{},{large}]", VIEWS[0]));
+    bench.refuses(&own, &["view wide", "GiB"]);
+    bench.write("list.json", format!("[{},{}]", VIEWS[0], VIEWS[1]));
+    fs::create_dir(bench.path("x.0001.exr")).expect("makes");
+    bench.refuses(&own, &["x.0001.exr", "folder"]);
+    for missing in ["--preview", "--stats"] {
+        bench.refuses(&[&own[..8], &["-o", "y.exr", missing, "none/y"]].concat(), &["none/y.0000"]);
+    }
+}
+
+/// Nothing that was read is replaced, and no output by another.
+#[test]
+fn outputs_are_files_of_their_own() {
+    let bench = Bench::new();
+    let scene = data("scenes/figure.glb");
+    bench.succeed("sample-surface", &[&scene, "-n", "1k", "-o", "a.cloud", "--quiet"]);
+    let cloud = fs::read(bench.path("a.cloud")).expect("reads");
+    bench.write("view.json", VIEWS[0]);
+    let own = ["a.cloud", &scene, "--medium", "skin1", "--spp", "1", "--view", "view.json", "-o"];
+    bench.refuses(&[&own[..], &["./a.cloud"]].concat(), &["a.cloud", "read"]);
+    bench.refuses(&[&own[..], &["x.exr", "--stats", "view.json"]].concat(), &["view.json", "read"]);
+    bench.refuses(&[&own[..], &["x.exr", "--preview", "x.exr"]].concat(), &["x.exr", "written"]);
+    assert!(fs::read(bench.path("a.cloud")).expect("reads") == cloud);
+    bench.succeed(
+        "gather",
+        &[&own[..], &["x.exr", "--preview", "/dev/null", "--stats", "/dev/null", "--quiet"]].concat(),
+    );
 }
