@@ -128,8 +128,15 @@ $(eval $(call settings,$(OWN).settings,$(ENVIRONMENT) $(TRANSLUCENT)))
 $(eval $(call settings,$(OWN_IMAGES)/settings,$(SPP) $(EXPOSURE)))
 
 ifdef VIEWS
-OWN_PICTURES := $(patsubst %.json,$(OWN_IMAGES)/%.exr,$(notdir $(wildcard $(VIEWS))))
-$(if $(OWN_PICTURES),,$(error no view at $(VIEWS)))
+VIEW_FILES := $(foreach v,$(VIEWS),$(or $(wildcard $(v)),$(error no view at $(v))))
+VIEW_NAMES := $(basename $(notdir $(VIEW_FILES)))
+$(if $(filter-out %.json,$(VIEW_FILES)),$(error VIEWS: not a .json file: $(filter-out %.json,$(VIEW_FILES))))
+$(if $(filter-out $(words $(sort $(VIEW_NAMES))),$(words $(VIEW_NAMES))),$(error VIEWS: two files of one name: $(VIEW_FILES)))
+# Of a list of views NAME.json the images are NAME.VIEW.exr, and NAME.views is written when all are there.
+LISTS := $(shell awk 'FNR == 1 { text = "" } length(text) < 9 { text = text $$0; gsub(/[ \t\r]/, "", text); \
+  if (text ~ /^(\[|{"views":)/ && !(FILENAME in seen)) { seen[FILENAME]; print FILENAME } }' $(VIEWS))
+picture_of = $(OWN_IMAGES)/$(notdir $(basename $(1))).$(if $(filter $(1),$(LISTS)),views,exr)
+OWN_PICTURES := $(foreach v,$(VIEW_FILES),$(call picture_of,$(v)))
 else
 # Made, and then read again by make itself: the cameras are those of the file.
 include $(OWN).cameras
@@ -150,14 +157,15 @@ $(OWN).cloud: $(SCENE) $(wildcard $(ENVIRONMENT)) $(OWN).settings crates/formats
 	$(SUBMIT) $(SAMPLE) --threads $(THREADS) --seed $(SEED) --samples $(SAMPLES) $(foreach t,$(TRANSLUCENT),--translucent $(t)) \
 	  $(if $(ENVIRONMENT),--environment $(ENVIRONMENT)) '$<' -o $@
 
-# $(1) image, $(2) the file of its view if it has one, $(3) option that says the view
+# $(1) image, or what says that all images of a list are there; $(2) the file of its view if it has one, $(3) option that says the view
 define own_picture
 $(1): $(OWN).cloud $(wildcard $(MEDIUM)) $(2) $(OWN_IMAGES)/settings | $(GATHER)
 	$$(SUBMIT) $(GATHER) --threads $$(THREADS) --seed $$(SEED) --spp $$(SPP) --bssrdf $$(MODEL) $$(if $$(MEDIUM),--medium $$(MEDIUM)) $(3) \
-	  $$(if $$(ENVIRONMENT),--environment $$(ENVIRONMENT)) --preview $$(basename $$@).png --exposure $$(or $$(EXPOSURE),0) $$< '$$(SCENE)' -o $$@
+	  $$(if $$(ENVIRONMENT),--environment $$(ENVIRONMENT)) --preview $$(basename $$@).png --exposure $$(or $$(EXPOSURE),0) $$< '$$(SCENE)' -o $$(basename $$@).exr
+	$(if $(filter %.views,$(1)),@touch $$@)
 endef
 $(foreach c,$(CAMERAS),$(eval $(call own_picture,$(OWN_IMAGES)/camera$(c).exr,,--camera $(c))))
-$(foreach v,$(wildcard $(VIEWS)),$(eval $(call own_picture,$(OWN_IMAGES)/$(notdir $(basename $(v))).exr,$(v),--view $(v))))
+$(foreach v,$(VIEW_FILES),$(eval $(call own_picture,$(call picture_of,$(v)),$(v),--view $(v))))
 endif
 
 $(SAMPLE) $(GATHER) $(COMPARE) $(MAKE_SCENES) $(CONTACT_SHEET): | build ;
