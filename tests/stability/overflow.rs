@@ -6,6 +6,7 @@ use gather::{Input, Rendered, Settings, render};
 use glam::{DVec3, Vec3};
 use sample_surface::{Plan, SampleError};
 use scene::NormalKind;
+use std::slice::from_ref;
 use support::{
     meshes::{Light, Part, World, quad, world},
     pipeline::{MODELS, by_area, cloud, filed, grey, orthographic, sampled, settings},
@@ -27,13 +28,8 @@ fn rendered(flux: Vec3, twins: bool, settings: &Settings) -> Rendered {
     let halves = if twins { [one.clone(), one] } else { [one, other] };
     let cloud = filed(&planted(drawn.meta(), &[halves]));
     let (media, camera) = ([grey(0.0, 1e3, 0.0, 1.3)], orthographic(DVec3::Z, 0.1));
-    let input = Input {
-        scene: &world.scene,
-        rays: &world.rays,
-        clouds: std::slice::from_ref(&cloud),
-        media: &media,
-        camera: &camera,
-    };
+    let input =
+        Input { scene: &world.scene, rays: &world.rays, clouds: from_ref(&cloud), media: &media, camera: &camera };
     render(&input, settings, |_| ())
 }
 

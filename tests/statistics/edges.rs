@@ -4,6 +4,7 @@ use crate::error_bars::{Scene, edge, of_paths};
 use gather::{Input, Settings, estimator::Estimator, film::Pixel};
 use glam::DVec3;
 use rayon::prelude::*;
+use std::slice::from_ref;
 use support::{
     EFFORT,
     pipeline::{cloud, grey, orthographic},
@@ -20,7 +21,7 @@ fn brightness(scene: &Scene, paths_per_pixel: u32) -> Estimate {
     let input = Input {
         scene: &scene.world.scene,
         rays: &scene.world.rays,
-        clouds: std::slice::from_ref(&cloud),
+        clouds: from_ref(&cloud),
         media: &media,
         camera: &camera,
     };

@@ -4,6 +4,7 @@ use bssrdf::{Model, fresnel};
 use gather::{Filter, Input, Rendered, Settings};
 use glam::DVec3;
 use scene::Camera;
+use std::slice::from_ref;
 use support::{
     EFFORT,
     meshes::{Part, World, slab, sphere, world},
@@ -14,8 +15,7 @@ use support::{
 /// An image of a body of index 1.5 that scatters nothing; `sigma_a` in 1/m.
 fn render(world: &World, camera: &Camera, sigma_a: f64, settings: &Settings) -> Rendered {
     let (cloud, media) = (cloud(world, &by_area(16, 0)), [grey(sigma_a, 0.0, 0.0, 1.5)]);
-    let input =
-        Input { scene: &world.scene, rays: &world.rays, clouds: std::slice::from_ref(&cloud), media: &media, camera };
+    let input = Input { scene: &world.scene, rays: &world.rays, clouds: from_ref(&cloud), media: &media, camera };
     gather::render(&input, settings, |_| ())
 }
 

@@ -5,6 +5,7 @@ use bssrdf::Model;
 use gather::{Input, Settings, estimator::Estimator};
 use glam::{DVec3, Vec3};
 use sample_surface::{Choice, Pattern};
+use std::slice::from_ref;
 use support::{
     EFFORT,
     meshes::{Part, World, rectangle, slab, world},
@@ -74,7 +75,7 @@ fn few_samples_have_the_mean_of_many() {
             let input = Input {
                 scene: &world.scene,
                 rays: &world.rays,
-                clouds: std::slice::from_ref(&cloud),
+                clouds: from_ref(&cloud),
                 media: &media,
                 camera: &camera,
             };
