@@ -40,7 +40,7 @@ const FORGERIES: [(&str, bool, Change); 18] = [
     ("a node far away", true, |p| p.meta.materials[0].halves[1].first_node = 1 << 62),
     ("fewer drawn than stored", true, |p| p.meta.samples_drawn = 1),
     ("none drawn", true, |p| p.meta.samples_drawn = 0),
-    ("very many drawn", false, |p| p.meta.samples_drawn = u64::MAX),
+    ("very many drawn", true, |p| p.meta.samples_drawn = u64::MAX),
     ("no material", true, |p| p.meta.materials.clear()),
     ("another material", true, |p| p.meta.materials[0].index = u16::MAX),
     ("a name without end", true, |p| p.meta.materials[0].name = "x".repeat(900_000)),
