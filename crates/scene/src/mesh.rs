@@ -60,10 +60,9 @@ impl Mesh {
         self.triangles[triangle].vertices.map(|i| self.positions[i as usize].as_dvec3())
     }
 
-    /// note: [area] `A_j = ½ ‖(v₁−v₀) × (v₂−v₀)‖`, m².
+    /// Area of a triangle, m².
     pub fn area(&self, triangle: usize) -> f64 {
-        let [a, b, c] = self.corners(triangle);
-        0.5 * (b - a).cross(c - a).length()
+        area(self.corners(triangle))
     }
 
     /// The point with barycentric `weights` on a triangle.
@@ -134,6 +133,11 @@ impl Mesh {
         let (low, high) = self.bounds();
         (high - low).length()
     }
+}
+
+/// note: [area] `A_j = ½ ‖(v₁−v₀) × (v₂−v₀)‖`.
+pub(crate) fn area([a, b, c]: [DVec3; 3]) -> f64 {
+    0.5 * (b - a).cross(c - a).length()
 }
 
 /// `v/‖v‖` without the underflow that squaring a tiny triangle's cross product brings.

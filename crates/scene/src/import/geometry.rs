@@ -6,7 +6,7 @@ use super::{
     nodes::Placed,
     primitive::{MeshParts, Part},
 };
-use crate::mesh::{Mesh, Triangle};
+use crate::mesh::{Mesh, Triangle, area};
 use glam::{DMat3, DVec3, Vec3};
 use std::{collections::BTreeMap, hint::black_box};
 
@@ -151,33 +151,61 @@ impl Builder {
         Ok(centre)
     }
 
-    /// Centres the mesh and drops triangles without area.
+    /// Positions about an origin, m, in float32.
+    fn about(&self, origin: DVec3) -> Result<Vec<Vec3>, Fault> {
+        let positions: Vec<Vec3> = self.positions.iter().map(|p| (*p - origin).as_vec3()).collect();
+        if !positions.iter().all(|p| p.is_finite()) {
+            return Err("the mesh is too large for float32 coordinates; set --metres-per-unit".into());
+        }
+        Ok(positions)
+    }
+
+    /// Drops triangles without area and centres what remains. One that has none in float32 about a centre of its own goes
+    /// first: a needle to a stray vertex far away would move the centre of all, and cost the others their digits.
     fn finish(mut self) -> Result<Geometry, Fault> {
         if self.triangles.is_empty() {
             return Err("no triangles: nothing to light or to see".into());
         }
-        let origin = self.centre()?;
-        let relative = |p: &DVec3| (*p - origin).as_vec3();
-        let positions: Vec<Vec3> = self.positions.iter().map(relative).collect();
-        if !positions.iter().all(|p| p.is_finite()) {
-            return Err("the mesh is too large for float32 coordinates; set --metres-per-unit".into());
-        }
-        let triangles = std::mem::take(&mut self.triangles);
-        let count = triangles.len();
-        let (coordinates, colors) = (self.coordinates, self.colors);
-        let mut mesh = Mesh { positions, normals: self.normals, triangles, coordinates, colors };
-        let keep: Vec<bool> = (0..count).map(|k| mesh.area(k) > 0.0).collect();
-        let (mut flags, mut degenerate) = (keep.iter(), BTreeMap::new());
-        mesh.triangles.retain(|t| {
-            let keep = *flags.next().unwrap_or(&true);
-            if !keep {
-                *degenerate.entry(t.material).or_default() += 1;
+        let count = self.triangles.len();
+        let mut degenerate = BTreeMap::new();
+        drop_degenerate(
+            &mut self.triangles,
+            |corners| area_by_itself(corners.map(|i| self.positions[i as usize])),
+            &mut degenerate,
+        );
+        // Each turn but the last drops triangles, which are 2^24 times as large as what they cost its digits: few turns.
+        let (origin, positions) = loop {
+            if self.triangles.is_empty() {
+                return Err(format!("all {count} triangles have no area (scale 0?)"));
             }
-            keep
-        });
-        if mesh.triangles.is_empty() {
-            return Err(format!("all {count} triangles have no area (scale 0?)"));
-        }
-        Ok(Geometry { mesh, origin, degenerate })
+            let origin = self.centre()?;
+            let (positions, before) = (self.about(origin)?, self.triangles.len());
+            let placed = |corners: [u32; 3]| area(corners.map(|i| positions[i as usize].as_dvec3()));
+            drop_degenerate(&mut self.triangles, placed, &mut degenerate);
+            if self.triangles.len() == before {
+                break (origin, positions);
+            }
+        };
+        let Builder { normals, triangles, coordinates, colors, .. } = self;
+        Ok(Geometry { mesh: Mesh { positions, normals, triangles, coordinates, colors }, origin, degenerate })
     }
+}
+
+/// Drops triangles without area and counts them by material.
+fn drop_degenerate(triangles: &mut Vec<Triangle>, area: impl Fn([u32; 3]) -> f64, degenerate: &mut BTreeMap<u16, u64>) {
+    triangles.retain(|triangle| {
+        let keep = area(triangle.vertices) > 0.0;
+        if !keep {
+            *degenerate.entry(triangle.material).or_default() += 1;
+        }
+        keep
+    });
+}
+
+/// Area of a triangle alone in the world, as the smaller of what float64 and, about its centre, float32 make of it.
+fn area_by_itself(corners: [DVec3; 3]) -> f64 {
+    let [a, b, c] = corners;
+    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+    let centre = low + (high - low) * 0.5;
+    area(corners).min(area(corners.map(|p| (p - centre).as_vec3().as_dvec3())))
 }
