@@ -1,7 +1,7 @@
 //! How a program ends.
 
 use signal_hook::{
-    consts::{SIGINT, SIGTERM},
+    consts::{SIGHUP, SIGINT, SIGTERM},
     iterator::Signals,
 };
 use std::fmt::Display;
@@ -41,15 +41,22 @@ fn one_line(error: impl Display) -> String {
     error.to_string().lines().map(str::trim).collect::<Vec<_>>().join(" ")
 }
 
-/// Runs a program and ends the process with its exit code. SIGINT and SIGTERM remove the temporary files and end it
-/// with 128 + the signal's number.
+/// Whether the process was started with this signal ignored, as far as the system says.
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| u64::from_str_radix(line.strip_prefix("SigIgn:")?.trim(), 16).ok());
+    ignored.is_some_and(|signals| signals >> (signal - 1) & 1 == 1)
+}
+
+/// Runs a program and ends the process with its exit code. SIGHUP, SIGINT and SIGTERM remove the temporary files and end
+/// it with 128 + the signal's number; under `nohup` SIGHUP does nothing.
 pub fn run(name: &str, program: impl FnOnce() -> Result<u8, Failure>) -> ! {
     crate::truncated::end_with_a_message();
-    if let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) {
+    let hangup = (!is_ignored(SIGHUP)).then_some(SIGHUP);
+    if let Ok(mut signals) = Signals::new(hangup.into_iter().chain([SIGINT, SIGTERM])) {
         std::thread::spawn(move || {
             if let Some(signal) = signals.forever().next() {
-                formats::atomic::remove_temporaries();
-                std::process::exit(128 + signal);
+                formats::atomic::abandon(128 + signal);
             }
         });
     }

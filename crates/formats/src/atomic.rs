@@ -113,11 +113,14 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     output.commit()
 }
 
-/// Removes the temporary files of all outputs in progress: what a signal handler does before the process ends.
-pub fn remove_temporaries() {
-    registered().drain(..).for_each(|path| {
+/// Removes the temporary files of all outputs in progress and ends the process: what a signal asks for.
+pub fn abandon(exit_code: i32) -> ! {
+    // Held to the end, so that no thread begins another, or says that its own could not be put in its place.
+    let mut temporaries = registered();
+    temporaries.drain(..).for_each(|path| {
         fs::remove_file(path).ok();
     });
+    std::process::exit(exit_code)
 }
 
 fn registered() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {

@@ -2,14 +2,14 @@
 //! and what is run again is right.
 //!
 //! Planted errors that these tests caught: the target written in place; temporary files of a killed process left; the
-//! handlers of signals left out; the need of memory taken a hundred times too small; a cloud that is written to not looked at.
+//! handlers of signals left out, one for an ignored signal; the need of memory taken a hundred times too small; a cloud that is written to not looked at.
 
 use crate::support::{Bench, Limits, data, program};
 use std::{
     collections::BTreeSet,
     fs,
     path::Path,
-    process::{Child, Command, ExitStatus, Output},
+    process::{Child, Command, ExitStatus, Output, Stdio},
     thread::sleep,
     time::{Duration, Instant},
 };
@@ -99,9 +99,19 @@ impl<'a> Victim<'a> {
 /// Whether a process has its handlers of SIGINT and SIGTERM, or is no more.
 fn catches_signals(child: &Child) -> bool {
     let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
-    let caught = status.lines().find_map(|line| u64::from_str_radix(line.strip_prefix("SigCgt:")?.trim(), 16).ok());
     let over = status.contains("State:\tZ");
-    over || caught.is_none_or(|signals| signals & (1 << (2 - 1)) != 0 && signals & (1 << (15 - 1)) != 0)
+    over || signals(&status, "SigCgt:").is_none_or(|caught| caught >> (2 - 1) & caught >> (15 - 1) & 1 == 1)
+}
+
+/// A set of signals of a process's status.
+fn signals(status: &str, name: &str) -> Option<u64> {
+    status.lines().find_map(|line| u64::from_str_radix(line.strip_prefix(name)?.trim(), 16).ok())
+}
+
+/// Whether this process, and so its children, ignore SIGHUP: under `nohup` they do.
+fn ignores_hangup() -> bool {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    signals(&status, "SigIgn:").is_some_and(|ignored| ignored & 1 == 1)
 }
 
 fn send(signal: &str, child: &Child) {
@@ -149,7 +159,8 @@ fn a_killed_gather_leaves_the_old_image_or_the_new() {
 fn signals_to_end_leave_no_temporary_file() {
     let bench = Bench::new();
     for victim in [sampling(&bench), gathering(&bench)] {
-        for (signal, code) in [("-INT", 130), ("-TERM", 143)] {
+        let hangup = (!ignores_hangup()).then_some(("-HUP", 129));
+        for (signal, code) in hangup.into_iter().chain([("-INT", 130), ("-TERM", 143)]) {
             let mut stopped = 0;
             for k in 0..6 {
                 let status = victim.signalled(signal, victim.delay(k, 6));
@@ -161,6 +172,22 @@ fn signals_to_end_leave_no_temporary_file() {
             assert!(stopped > 0, "{}: every {signal} came too late", victim.name);
         }
     }
+}
+
+/// What `nohup` starts works on when its terminal goes.
+#[test]
+fn a_hangup_that_is_ignored_does_nothing() {
+    let bench = Bench::new();
+    let victim = sampling(&bench);
+    let mut command = Command::new("nohup");
+    command.arg(program(victim.name)).args(&victim.arguments).current_dir(bench.path("."));
+    let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("there is a program nohup");
+    while !catches_signals(&child) {
+        sleep(Duration::from_millis(1));
+    }
+    send("-HUP", &child);
+    assert!(child.wait().expect("ends").success());
+    assert!(victim.is_new());
 }
 
 /// Two at once on one target, many times: it is one of the two, whole, whoever is faster.
