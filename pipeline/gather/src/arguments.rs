@@ -9,15 +9,12 @@ use std::path::PathBuf;
 ///
 /// Lengths are metres, radiance W/(m² sr); media are in the unit that their file states.
 #[derive(Parser)]
-#[command(version)]
+#[command(version, override_usage = "gather [OPTIONS] CLOUD... SCENE --output IMAGE.exr")]
 pub struct Arguments {
-    /// Cloud of sample-surface (with --list-cameras or --list-materials: SCENE alone is enough)
-    pub cloud: Option<PathBuf>,
-    /// The scene that the cloud was sampled from
-    pub scene: Option<PathBuf>,
-    /// More clouds of the scene, to be gathered together with CLOUD in any order: other shards or seeds
-    #[arg(long, value_name = "CLOUD", num_args = 1..)]
-    pub with: Vec<PathBuf>,
+    /// Clouds of sample-surface: one, or shards and seeds of one scene, which are gathered as one whatever their order;
+    /// and last the scene that they were sampled from (with --list-cameras or --list-materials it alone)
+    #[arg(value_name = "CLOUD... SCENE")]
+    pub files: Vec<PathBuf>,
     /// OpenEXR image to write
     #[arg(short, long, value_name = "IMAGE.exr", required_unless_present_any = ["list_cameras", "list_materials", "list_media"])]
     pub output: Option<PathBuf>,

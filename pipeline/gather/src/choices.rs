@@ -119,13 +119,6 @@ pub fn settings(
     if width as u64 * height as u64 > MAX_PIXELS {
         return Err(Failure::usage(format!("--width, --height: {width} x {height} is more than {MAX_PIXELS} pixels")));
     }
-    let wanted = chosen.camera.aspect.filter(|a| (a * height as f64 / width as f64 - 1.0).abs() > 0.01);
-    if let Some(aspect) = wanted {
-        arguments.common.warn(format_args!(
-            "the camera's aspect is {aspect:.3}, the image's {:.3}: its vertical field of view is kept",
-            width as f64 / height as f64
-        ));
-    }
     let model = match arguments.bssrdf {
         ModelName::Directional => Model::DirectionalDipole,
         ModelName::Better => Model::BetterDipole,

@@ -196,12 +196,12 @@ pub fn relative_error(pixels: &[Pixel]) -> Option<f64> {
     (power > 0.0).then(|| (variance.max(0.0) / power).sqrt())
 }
 
-/// What [`relative_error`] and the variance of an image cover.
-pub fn covers(paths_per_pixel: u32, samples_drawn: u64) -> &'static str {
-    match (paths_per_pixel, samples_drawn) {
-        (1, 1) => "nothing: one path a pixel, one sample",
+/// What [`relative_error`] and the variance of an image cover, given the samples drawn for the second half of the cloud.
+pub fn covers(paths_per_pixel: u32, second_half: u64) -> &'static str {
+    match (paths_per_pixel, second_half) {
+        (1, 0) => "nothing: one path a pixel, one sample",
         (1, _) => "cloud and gather, not the one path a pixel",
-        (_, 1) => "camera paths, not the one sample",
+        (_, 0) => "camera paths, not the one sample",
         _ => "cloud, gather and camera paths",
     }
 }

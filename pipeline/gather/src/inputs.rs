@@ -10,20 +10,25 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// CLOUD and SCENE.
-pub fn paths(arguments: &Arguments) -> Result<(&Path, &Path), Failure> {
-    match (&arguments.cloud, &arguments.scene) {
-        (Some(cloud), Some(scene)) => Ok((cloud, scene)),
-        _ if !arguments.with.is_empty() => {
-            Err(Failure::usage("give CLOUD and SCENE before --with: all names that follow it are clouds"))
-        }
-        _ => Err(Failure::usage("give CLOUD and SCENE; see --help")),
+/// At least one CLOUD, and SCENE.
+pub fn paths(arguments: &Arguments) -> Result<(&[PathBuf], &Path), Failure> {
+    match arguments.files.split_last() {
+        Some((scene, clouds)) if !clouds.is_empty() => Ok((clouds, scene)),
+        _ => Err(Failure::usage("give CLOUD and then SCENE; see --help")),
     }
+}
+
+/// Reads SCENE; says so if it was left out after several clouds.
+pub fn import(arguments: &Arguments, scene_path: &Path) -> Result<(Scene, Environment), Failure> {
+    arguments.scene_args.import(scene_path, &arguments.common).map_err(|failure| match Cloud::open(scene_path) {
+        Ok(_) => Failure::usage(format!("{}: this is a cloud; give SCENE after all clouds", scene_path.display())),
+        Err(_) => failure,
+    })
 }
 
 /// Refuses outputs that cannot be written, that replace an input, or that are the same file, before any work is done.
 pub fn check_outputs(arguments: &Arguments, shots: &[Shot], images: &Path) -> Result<(), Failure> {
-    let inputs = [&arguments.cloud, &arguments.scene, &arguments.view].into_iter().flatten().chain(&arguments.with);
+    let inputs = arguments.files.iter().chain(&arguments.view);
     let mut taken: HashMap<PathBuf, &str> = inputs.map(|path| (whole(path), "read")).collect();
     let outputs = [Some(images), arguments.preview.as_deref(), arguments.stats.as_deref()];
     for path in outputs.into_iter().flatten().flat_map(|path| shots.iter().map(|shot| shot.file(path))) {
@@ -53,11 +58,10 @@ pub struct CloudFiles {
 }
 
 impl CloudFiles {
-    /// Opens a cloud and those to gather with it.
-    pub fn open(first: &Path, others: &[PathBuf]) -> Result<CloudFiles, Failure> {
-        let open = |path: &Path| Ok((path.to_owned(), Cloud::open(path)?));
-        let paths = std::iter::once(first).chain(others.iter().map(PathBuf::as_path));
-        let files: Vec<(PathBuf, Cloud)> = paths.map(open).collect::<Result<_, formats::Error>>()?;
+    /// Opens clouds that belong together, at least one.
+    pub fn open(paths: &[PathBuf]) -> Result<CloudFiles, Failure> {
+        let open = |path: &PathBuf| Ok((path.clone(), Cloud::open(path)?));
+        let files: Vec<(PathBuf, Cloud)> = paths.iter().map(open).collect::<Result<_, formats::Error>>()?;
         let (paths, clouds) = clouds::join(files).map_err(|e: JoinError| Failure::usage(e.to_string()))?;
         Ok(CloudFiles { paths, clouds })
     }

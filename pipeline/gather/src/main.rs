@@ -1,4 +1,4 @@
-//! `gather CLOUD SCENE -o IMAGE.exr`: arguments and files; the phase itself is the library.
+//! `gather CLOUD... SCENE -o IMAGE.exr`: arguments and files; the phase itself is the library.
 
 mod arguments;
 mod choices;
@@ -21,14 +21,8 @@ use inputs::CloudFiles;
 use report::{Facts, Seconds};
 use rounds::{render_all, render_to};
 use scene::{DVec3, Rays, Scene};
-use shots::{Shot, shots};
-use std::{
-    fmt::Write as _,
-    io::Write as _,
-    num::NonZeroUsize,
-    path::{Path, PathBuf},
-    time::Instant,
-};
+use shots::{Shot, shots, warn_of_aspects};
+use std::{fmt::Write as _, io::Write as _, num::NonZeroUsize, path::Path, time::Instant};
 
 fn main() {
     let arguments = Arguments::parse();
@@ -44,15 +38,16 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let start = Instant::now();
     let common = &arguments.common;
-    let (cloud_path, scene_path) = inputs::paths(arguments)?;
+    let (cloud_paths, scene_path) = inputs::paths(arguments)?;
     let estimator = estimator(arguments)?;
-    let files = CloudFiles::open(cloud_path, &arguments.with)?;
+    let files = CloudFiles::open(cloud_paths)?;
     let clouds = files.clouds();
-    let (mut scene, environment) = arguments.scene_args.import(scene_path, common)?;
+    let (mut scene, environment) = inputs::import(arguments, scene_path)?;
     files.check_fit((&scene, &environment), scene_path, arguments)?;
     let sampled = |material| clouds::materials(clouds).iter().any(|m| m.index == material);
     let cameras = cameras(arguments, &scene, scene_path, || scene.origin + middle(bounds(&scene, sampled)))?;
     let shots = shots(arguments, &cameras, |chosen| settings(arguments, chosen, estimator, environment.clone()))?;
+    warn_of_aspects(&shots, arguments);
     shots.iter().try_for_each(|shot| check_memory(&shot.settings).map_err(|e| shot.failure(e)))?;
     let health = files.health();
     arguments.scene_args.check_mesh(&mut scene, sampled, health, scene_path, common)?;
@@ -245,10 +240,7 @@ fn list_media() -> Result<(), Failure> {
 }
 
 fn list_scene(arguments: &Arguments) -> Result<(), Failure> {
-    let path: &PathBuf = match (&arguments.cloud, &arguments.scene) {
-        (_, Some(scene)) | (Some(scene), None) => scene,
-        _ => return Err(Failure::usage("--list-cameras, --list-materials: give SCENE")),
-    };
+    let path = arguments.files.last().ok_or_else(|| Failure::usage("--list-cameras, --list-materials: give SCENE"))?;
     let (scene, _) = arguments.scene_args.import(path, &arguments.common)?;
     let mut text = String::new();
     if arguments.list_cameras {

@@ -150,7 +150,7 @@ impl Facts<'_> {
 
     /// What variance and estimated error cover.
     pub fn covers(&self) -> &'static str {
-        film::covers(self.settings.paths_per_pixel, clouds::drawn(self.clouds))
+        film::covers(self.settings.paths_per_pixel, clouds::Drawn::of(self.clouds).half(1))
     }
 
     /// Column and row of a pixel in the whole image.

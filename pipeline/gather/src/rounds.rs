@@ -38,7 +38,7 @@ pub fn render_to(target: f64, input: &Input, settings: &Settings, common: &Commo
             let way_out = if input.clouds.len() == 1 {
                 format!("sample it again with --samples {needed:.1e}")
             } else {
-                format!("about {needed:.1e} samples in all would do; add shards --with")
+                format!("about {needed:.1e} samples in all would do; add shards")
             };
             common.warn(format_args!("the cloud alone has an error of {percent:.2} %: {way_out}"));
             break;

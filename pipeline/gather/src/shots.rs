@@ -51,6 +51,17 @@ pub fn shots(
     }
 }
 
+/// Says once if images have other proportions than their cameras ask for.
+pub fn warn_of_aspects(shots: &[Shot], arguments: &Arguments) {
+    let aspects = |shot: &Shot| Some((shot.camera.aspect?, shot.settings.width as f64 / shot.settings.height as f64));
+    let misfit = |(wanted, own): &(f64, f64)| (wanted / own - 1.0).abs() > 0.01;
+    if let Some((wanted, own)) = shots.iter().filter_map(aspects).find(misfit) {
+        arguments.common.warn(format_args!(
+            "the camera's aspect is {wanted:.3}, the image's {own:.3}: its vertical field of view is kept"
+        ));
+    }
+}
+
 impl Shot {
     /// A failure of this image, which says which it is if there are several.
     pub fn failure(&self, failure: Failure) -> Failure {

@@ -29,7 +29,7 @@ struct Arguments {
     /// Samples drawn over all translucent surfaces: 250k, 1M, 1e6
     #[arg(short = 'n', long, value_name = "K", default_value = "1M", value_parser = parse_samples)]
     samples: u64,
-    /// Draw a part of a cloud, with random numbers of its own: part I of N, from 0. `gather --with` takes all parts
+    /// Draw a part of a cloud, with random numbers of its own: part I of N, from 0. `gather` takes all parts
     /// together; --samples is this part's number, and need not be that of the others
     #[arg(long, value_name = "I/N", default_value = "0/1", value_parser = parse_shard)]
     shard: Shard,

@@ -25,13 +25,13 @@ fn the_order_of_files_does_not_matter() {
     for estimator in ["cut", "roulette", "exhaustive"] {
         let image = |first: &str, others: &[&str]| {
             let output = format!("{first}.exr");
-            let own = [first, &scene, "--view", &view, "--medium", "skin1", "--estimator", estimator, "--with"];
-            bench.succeed("gather", &[&own, others, &["-o", &output, "--stats", "s.json"], &SIZE, &["3"]].concat());
+            let how = [&scene, "--view", &view, "--medium", "skin1", "--estimator", estimator, "--stats", "s.json"];
+            bench.succeed("gather", &[&[first], others, &how, &["-o", &output], &SIZE, &["3"]].concat());
             (fs::read(bench.path(&output)).expect("reads"), bench.json("s.json"))
         };
         let one = image("a.cloud", &["b.cloud", "c.cloud", "d.cloud"]);
         assert!(one == image("c.cloud", &["d.cloud", "a.cloud", "b.cloud"]), "{estimator}");
-        assert!(one == image("d.cloud", &["c.cloud", "--with", "b.cloud", "a.cloud"]), "{estimator}");
+        assert!(one == image("d.cloud", &["c.cloud", "b.cloud", "a.cloud"]), "{estimator}");
         assert_eq!((&one.1["samples_drawn"], &one.1["clouds"]), (&16_000.into(), &4.into()));
         let attributes = bench.image("a.cloud.exr").attributes;
         let Some(Attribute::Texts(lines)) = attributes.get("pcsss/clouds") else { panic!("{attributes:?}") };
@@ -41,6 +41,23 @@ fn the_order_of_files_does_not_matter() {
         assert!(lines.iter().all(|line| !line.starts_with(all)));
         assert_eq!(attributes.get("pcsss/cloud"), Some(&Attribute::Text(all.into())));
     }
+}
+
+/// Clouds of one sample each have no second half to tell their error by, however many they are.
+#[test]
+fn one_sample_each_is_no_measure_of_the_clouds() {
+    let bench = Bench::new();
+    let (scene, view) = (data("scenes/sphere.glb"), data("views/sphere/front.json"));
+    let covered = |samples: &str| {
+        for k in ["0", "1"] {
+            sample(&bench, &scene, &format!("{k}.cloud"), &["-n", samples, "--shard", &format!("{k}/2")]);
+        }
+        let own = ["0.cloud", "1.cloud", &scene, "--view", &view, "--medium", "skin1", "-o", "x.exr"];
+        bench.succeed("gather", &[&own[..], &["--spp", "4", "--stats", "s.json"], &SIZE, &["0"]].concat());
+        bench.json("s.json")["estimated_relative_error_covers"].as_str().expect("words").to_owned()
+    };
+    assert_eq!(covered("1"), "camera paths, not the one sample");
+    assert_eq!(covered("2"), "cloud, gather and camera paths");
 }
 
 /// Once every cloud has its turn, a pixel's paths weigh them by their samples: where all paths are one, the cut's image is
@@ -53,8 +70,7 @@ fn turns_make_the_whole_sum() {
         sample(&bench, &scene, &format!("{k}.cloud"), &["-n", samples, "--shard", &format!("{k}/3")]);
     }
     let subsurface = |estimator: &str, paths: &str| {
-        let own =
-            ["0.cloud", &scene, "--with", "1.cloud", "2.cloud", "--medium", "skin1", "--view", &view, "-o", "x.exr"];
+        let own = ["0.cloud", "1.cloud", "2.cloud", &scene, "--medium", "skin1", "--view", &view, "-o", "x.exr"];
         let how = ["--filter", "point", "--accuracy", "0.001", "--spp", paths];
         let how = if estimator == "cut" { &how[..] } else { &["--filter", "point", "--spp", "1"] };
         bench.succeed("gather", &[&own[..], &["--estimator", estimator], how, &SIZE, &["3"]].concat());
@@ -82,7 +98,7 @@ fn clouds_that_do_not_belong_together_are_refused() {
     sample(&bench, &sphere, "large.cloud", &[&few[..], &["1/2", "--metres-per-unit", "2"]].concat());
     sample(&bench, &data("scenes/slab.glb"), "slab.cloud", &[&few[..], &["1/2"]].concat());
     let refused = |other: &str, words: &[&str]| {
-        let arguments = ["a.cloud", &sphere, "--with", other, "--medium", "skin1", "--view", &view, "-o", "x.exr"];
+        let arguments = ["a.cloud", other, &sphere, "--medium", "skin1", "--view", &view, "-o", "x.exr"];
         bench.refuses(&arguments, &[&["a.cloud", other], words].concat());
     };
     refused("a.cloud", &["shard 0/2 of seed 0", "leave one out"]);
@@ -91,10 +107,13 @@ fn clouds_that_do_not_belong_together_are_refused() {
     refused("flat.cloud", &["--normals"]);
     refused("large.cloud", &["--metres-per-unit"]);
     refused("slab.cloud", &["meshes"]);
-    let swallowed = ["--with", "same.cloud", "a.cloud", &sphere, "--medium", "skin1", "--view", &view, "-o", "x.exr"];
-    bench.refuses(&swallowed, &["before --with"]);
-    let nothing = ["a.cloud", &sphere, "--with", "none.cloud", "--medium", "skin1", "--view", &view, "-o", "x.exr"];
-    bench.refuses(&nothing, &["none.cloud"]);
+    for (files, word) in [
+        (&["a.cloud", "none.cloud", &sphere][..], "none.cloud"),
+        (&["a.cloud", "slab.cloud"], "slab.cloud: this is a cloud; give SCENE after all clouds"),
+        (&["a.cloud", &sphere, "slab.cloud"], "sphere.glb: not a cloud"),
+    ] {
+        bench.refuses(&[files, &["--medium", "skin1", "--view", &view, "-o", "x.exr"]].concat(), &[word]);
+    }
     for shard in ["2/2", "0/0", "1", "a/b", "-1/2", "0/65537"] {
         let shard = format!("--shard={shard}");
         let arguments = [sphere.as_str(), "-n", "1k", "-o", "x.cloud", &shard];
@@ -129,10 +148,9 @@ fn a_target_waits_for_all_clouds_to_have_a_turn() {
     for (k, file) in files.iter().enumerate() {
         sample(&bench, &scene, file, &["-n", "1k", "--shard", &format!("{k}/40")]);
     }
-    let mut own = vec![&*files[0], &scene, "--medium", "skin1", "--view", &view, "-o", "x.exr", "--stats", "s.json"];
-    own.extend(
-        ["--target-error", "0.2", "--spp", "1024", "--with"].into_iter().chain(files[1..].iter().map(String::as_str)),
-    );
+    let mut own: Vec<&str> = files.iter().map(String::as_str).collect();
+    own.extend([&scene, "--medium", "skin1", "--view", &view, "-o", "x.exr", "--stats", "s.json"]);
+    own.extend(["--target-error", "0.2", "--spp", "1024"]);
     for seed in ["0", "2"] {
         bench.succeed("gather", &[&own[..], &SIZE, &[seed]].concat());
         let statistics = bench.json("s.json");
@@ -153,12 +171,12 @@ fn four_shards_agree_with_one_cloud_within_their_error() {
     for k in 0..4 {
         sample(&bench, &scene, &format!("{k}.cloud"), &["-n", "250k", "--shard", &format!("{k}/4")]);
     }
-    let gather = |cloud: &str, output: &str, more: &[&str]| {
-        let own = [cloud, &scene, "--view", &view, "--medium", "skin1", "-o", output, "--spp", "8"];
-        bench.succeed("gather", &[&own, &SIZE[..], &[output.split('.').next().expect("a digit")], more].concat());
+    let gather = |clouds: &[&str], output: &str| {
+        let own = [&scene, "--view", &view, "--medium", "skin1", "-o", output, "--spp", "8"];
+        bench.succeed("gather", &[clouds, &own, &SIZE[..], &[output.split('.').next().expect("a digit")]].concat());
     };
-    gather("one.cloud", "1.exr", &[]);
-    gather("0.cloud", "2.exr", &["--with", "1.cloud", "2.cloud", "3.cloud"]);
+    gather(&["one.cloud"], "1.exr");
+    gather(&["0.cloud", "1.cloud", "2.cloud", "3.cloud"], "2.exr");
     let images = ["1.exr", "2.exr"].map(|name| bench.image(name));
     let (mut squares, mut variances, mut sums) = (0.0, 0.0, [0.0; 2]);
     for c in ["R", "G", "B"] {

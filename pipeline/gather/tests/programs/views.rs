@@ -54,6 +54,18 @@ fn lists_that_say_too_much_are_refused() {
     bench.refuses(&own, &["list.json", "view 1", "eye"]);
 }
 
+/// What may be wrong with all of a list is said once.
+#[test]
+fn a_list_is_warned_of_once() {
+    let bench = Bench::new();
+    let scene = data("scenes/figure.glb");
+    bench.succeed("sample-surface", &[&scene, "-n", "1k", "-o", "figure.cloud", "--quiet"]);
+    bench.write("list.json", format!("[{0},{0},{0}]", VIEWS[0]));
+    let own = ["figure.cloud", &scene, "--medium", "skin1", "--spp", "1", "--view", "list.json", "-o", "x.exr"];
+    let said = bench.says("gather", &[&own[..], &["--width", "8", "--height", "8"]].concat());
+    assert_eq!(said.matches("aspect is 1.500, the image's 1.000").count(), 1, "{said}");
+}
+
 /// What is wrong with one view is said of it, and before any view is rendered.
 #[test]
 fn faults_of_one_view_name_it_and_come_first() {
