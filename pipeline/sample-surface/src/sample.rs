@@ -78,7 +78,8 @@ fn drawn(
         },
     };
     // note: [flux] Φ = E/pdf(x); the estimator divides by K (method.md 6.5).
-    let flux = (irradiance / place.pdf_area).as_vec3();
+    // Of a colour of -0 it would be -0; a cloud has no negative flux.
+    let flux = (irradiance / place.pdf_area).as_vec3() + scene::Vec3::ZERO;
     if !flux.is_finite() {
         return Drawn::NotFinite;
     }

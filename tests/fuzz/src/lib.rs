@@ -10,6 +10,7 @@ mod image;
 mod limits;
 mod medium;
 pub mod mutation;
+mod pipeline;
 mod scene;
 mod view;
 

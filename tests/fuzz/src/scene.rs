@@ -1,6 +1,6 @@
 //! Scenes: .glb and .gltf files.
 
-use crate::{file::with_file, medium::check_medium, view::check_camera};
+use crate::{file::with_file, medium::check_medium, pipeline::check_pipeline, view::check_camera};
 use scene::{
     DVec3, ImportOptions, LightUnit, NormalKind, Rays, Scene,
     light::{LightTree, all_light_at},
@@ -57,4 +57,5 @@ fn check_surface(scene: &Scene) {
         rays.closest(origin - scene.origin, direction, None);
     }
     assert!(rays.closest(DVec3::ZERO, DVec3::X, None).is_none_or(|hit| hit.distance >= 0.0));
+    check_pipeline(scene, &rays);
 }
