@@ -1,12 +1,22 @@
 //! Clouds. Checksums keep random damage out, so that what lies behind them is only reached if they are made right again.
 
 use crate::file::with_file;
-use formats::cloud::{Cloud, TILE};
-use std::{ops::Range, path::Path};
+use bssrdf::{
+    Medium, Model, built_in,
+    lanes::{DirectionalLanes, LaneModel},
+    simd,
+};
+use formats::cloud::{Cloud, Sample, TILE};
+use gather::{
+    estimator::{Calibration, Cut, Exhaustive, Radial, Roulette, Rule, Scratch},
+    samples::{Exit, LitSamples},
+};
+use std::{ops::Range, path::Path, sync::LazyLock};
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
 /// An accepted cloud has the groups that it speaks of; one that was verified has samples that are points with normals,
-/// directions and flux. The bytes are tried as they are, and with length and checksums that fit.
+/// directions and flux, and sums over them are finite, unless they are absurd. The bytes are tried as they are, and with
+/// length and checksums that fit.
 pub fn cloud(bytes: &[u8]) -> bool {
     let mut sealed = bytes.to_vec();
     seal(&mut sealed);
@@ -23,6 +33,9 @@ fn look_at(path: &Path) -> bool {
             assert!(half.samples <= (tiles.len() * TILE) as u64 && (tiles.is_empty() == nodes.is_empty()));
         }
         for sample in cloud.samples(material) {
+            if good && samples % 1000 == 0 {
+                check_sums(&cloud, &sample);
+            }
             samples += 1;
             let unit = |length: f64| (length - 1.0).abs() < 1e-12;
             assert!(unit(sample.normal.length()) && unit(sample.direction.length()), "{sample:?}");
@@ -33,6 +46,40 @@ fn look_at(path: &Path) -> bool {
     assert_eq!(samples, cloud.len());
     assert!(cloud.meta().samples_drawn >= cloud.len());
     true
+}
+
+/// Beyond, numbers may get too large for float32.
+const SANE: f32 = 1e12;
+
+/// Sums over all groups at a sample, and at a point beside it.
+fn check_sums(cloud: &Cloud, sample: &Sample) {
+    static MARBLE: LazyLock<(Medium, Radial)> = LazyLock::new(|| {
+        let medium = built_in("marble").expect("it is built in");
+        let radial = Radial::new(&medium, &*Model::DirectionalDipole.of(&medium), 0.1);
+        (medium, radial)
+    });
+    let (medium, radial) = &*MARBLE;
+    let model = &DirectionalLanes::new(medium);
+    let rates = Rule::Mixture.rates(Model::DirectionalDipole.of(medium).transport());
+    let (calibration, scratch) = (&Calibration::default(), &mut Scratch::default());
+    let small = |s: &Sample| s.position.abs().max(s.flux).max_element() < SANE;
+    for group in cloud.meta().materials.iter().flat_map(|m| &m.halves) {
+        let samples = &LitSamples::new(cloud, group, medium.eta);
+        if samples.is_empty() {
+            continue;
+        }
+        for offset in [0.0, 1e-3] {
+            let exit = &Exit::new(sample.position.as_dvec3() + offset, sample.normal, 7);
+            let sums = [
+                simd::dispatch(Exhaustive { model, samples, exit }),
+                simd::dispatch(Roulette { model, samples, exit, rates }),
+                simd::dispatch(Cut { model, samples, radial, exit, accuracy: 0.1, calibration, scratch }),
+            ];
+            if cloud.meta().materials.iter().flat_map(|m| cloud.samples(m)).all(|s| small(&s)) {
+                assert!(sums.iter().all(|s| s.radiance.is_finite() && s.radiance.min_element() >= 0.0), "{sums:?}");
+            }
+        }
+    }
 }
 
 const HEADER: usize = 64;
