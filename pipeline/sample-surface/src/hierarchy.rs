@@ -128,8 +128,7 @@ impl Moments {
         Node {
             centre: centre.to_array(),
             spread: (self.scatter / self.count).sqrt() as f32,
-            // Of a scene wider than 1e19 m the square overflows; a bound may be too large.
-            radius: reach.length().min(f32::MAX),
+            radius: reach.length(),
             flux: (self.flux * self.count).min(f64::from(f32::MAX)) as f32,
             flux_deviation: ((self.flux_scatter / self.count).sqrt() / self.flux) as f32,
             turn: (turn(self.direction) + turn(self.normal)).sqrt() as f32,

@@ -19,6 +19,11 @@ const MAX_PRIMITIVES: u64 = 1 << 22;
 /// What a triangle takes with its vertices and its share of the tree of rays while that is built: 360 were measured.
 const BYTES_PER_TRIANGLE: usize = 512;
 
+/// Longest diagonal, m: squares of distances stay numbers in float32.
+const LARGEST: f64 = 1e18;
+
+const TOO_LARGE: &str = "the mesh is too large for float32 coordinates; set --metres-per-unit";
+
 /// A mesh on a node.
 pub(super) struct Instance<'a> {
     pub parts: &'a MeshParts<'a>,
@@ -142,6 +147,9 @@ impl Builder {
         let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let (low, high) = corners.fold(start, |(low, high), p| (low.min(p), high.max(p)));
         let size = high - low;
+        if size.length() > LARGEST {
+            return Err(TOO_LARGE.into());
+        }
         let centre = low + size * 0.5;
         // Beyond, float64 has fewer digits left than the float32 that follows.
         if size != DVec3::ZERO && centre.length() * f64::EPSILON > size.length() * f64::from(f32::EPSILON) {
@@ -155,7 +163,7 @@ impl Builder {
     fn about(&self, origin: DVec3) -> Result<Vec<Vec3>, Fault> {
         let positions: Vec<Vec3> = self.positions.iter().map(|p| (*p - origin).as_vec3()).collect();
         if !positions.iter().all(|p| p.is_finite()) {
-            return Err("the mesh is too large for float32 coordinates; set --metres-per-unit".into());
+            return Err(TOO_LARGE.into());
         }
         Ok(positions)
     }

@@ -142,6 +142,7 @@ fn nodes() {
             ("/nodes/0/rotation", json!([0, 0, 0, 0]), "`body`&quaternion"),
             ("/nodes/0/rotation", json!([1e200, 0, 0, 1e200]), "quaternion"),
             ("/nodes/0/scale", json!([1e308, 1e308, 1e308]), "too large&--metres-per-unit"),
+            ("/nodes/0/scale", json!([2e18, 1, 1]), "too large&--metres-per-unit"),
             ("/nodes/0/translation", json!([1e308, 0, 0]), "too far&move it"),
             ("/nodes/0/translation", json!([1e10, 0, 0]), "too far"),
             ("/nodes/0/scale", json!([0, 0, 0]), "no area"),
