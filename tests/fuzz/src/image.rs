@@ -1,13 +1,13 @@
 //! OpenEXR images, and panoramas as OpenEXR or Radiance HDR files.
 
-use crate::file::with_file;
+use crate::{comparison::check_comparison, file::with_file};
 use formats::{Image, ImageError, Panorama};
 use scene::{DVec3, Vec3, light::EnvironmentMap};
 
 /// Larger pictures are read and no more: what follows takes time that says nothing.
 const MAX_PIXELS: usize = 1 << 14;
 
-/// An accepted image is written and read again as the same; an accepted panorama has its pixels, and as an environment a
+/// An accepted image is compared, written and read again as the same; an accepted panorama has its pixels, and as an environment a
 /// radiance in every direction.
 pub fn image(bytes: &[u8]) -> bool {
     with_file("image.exr", bytes, |path| {
@@ -25,6 +25,7 @@ fn check_image(image: &Image) {
     if pixels * image.channels.len() > MAX_PIXELS {
         return;
     }
+    check_comparison(image);
     match image.encode() {
         Ok(bytes) => {
             let again = Image::decode(&bytes).expect("what was written is read");

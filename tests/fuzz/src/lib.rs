@@ -5,6 +5,7 @@
 //! fuzzer's programs in `fuzz/` and the ordinary test of this package call the same functions.
 
 mod cloud;
+mod comparison;
 mod file;
 mod image;
 mod limits;

@@ -1,0 +1,37 @@
+//! Comparisons of images that were accepted.
+
+use compare::{Gate, Mismatch, Settings, compare, difference, heatmap, html};
+use formats::Image;
+
+/// Larger images say nothing more, and take longer.
+const MAX_SAMPLES: usize = 1 << 9;
+
+/// An image is equal to itself, and with its samples in another order as it may be: both are measured, judged, drawn and
+/// put on a page.
+pub fn check_comparison(image: &Image) {
+    if image.channels.iter().map(|c| c.samples.len()).sum::<usize>() > MAX_SAMPLES {
+        return;
+    }
+    let mut turned = image.clone();
+    turned.channels.iter_mut().for_each(|channel| channel.samples.reverse());
+    let numbers = image.channels.iter().flat_map(|c| &c.samples).all(|x| x.is_finite());
+    for (test, same) in [(image, true), (&turned, false)] {
+        let gates = vec![Gate::Exact, Gate::Bias(0.1), Gate::Rmse(0.1), Gate::Outliers { count: 3, threshold: 0.1 }];
+        let settings = Settings { gates, ignore_meta: true, ..Settings::default() };
+        let report = match compare(image, test, &settings) {
+            Ok(report) => report,
+            Err(Mismatch::NoLayer { .. }) => return,
+            Err(error) => panic!("{error}"),
+        };
+        assert!(!same || report.pass || !numbers, "{}", report.verdict("itself"));
+        assert!(numbers || !report.pass, "{}", report.verdict("no numbers"));
+        if same {
+            continue;
+        }
+        assert!(!report.table().is_empty());
+        let page = html::page(&report, &report, image, test).expect("a page");
+        assert!(page.starts_with(b"<!DOCTYPE html>"));
+        difference(image, test).encode().ok();
+        heatmap::heatmap(image, test, &settings.choice, heatmap::DEFAULT_MAX).ok();
+    }
+}
