@@ -34,6 +34,9 @@ const META_LIMIT: usize = 1 << 20;
 /// Most samples drawn for a cloud: the sums over thousands of clouds are whole numbers still, in float64 too.
 const MOST_DRAWN: u64 = 1 << 40;
 
+/// No scene is wider, m.
+const FARTHEST: f64 = 1e18;
+
 fn meta_config() -> impl bincode::config::Config {
     bincode::config::standard().with_little_endian().with_fixed_int_encoding().with_limit::<META_LIMIT>()
 }
@@ -173,14 +176,15 @@ impl Cloud {
         self.len() == 0
     }
 
-    /// Checks every section against its checksum, every sample for being a finite point with flux not negative, and
+    /// Checks every section against its checksum, every sample for being a point of the scene with flux not negative, and
     /// every node for numbers. Reads the whole file.
     pub fn verify(&self, path: &Path) -> Result<(), Error> {
         for section in &self.header.sections {
             layout::verify(&self.map, section).map_err(|what| Error::invalid(path, what))?;
         }
-        if !records_are_good(self.tiles().as_flattened()) {
-            return Err(Error::invalid(path, "a sample is not finite, or its flux negative; sample again"));
+        if !records_are_good(self.tiles().as_flattened(), self.meta.diagonal_m.clamp(0.0, FARTHEST) as f32) {
+            let what = "a sample is not finite or lies beyond its scene, or its flux is negative; sample again";
+            return Err(Error::invalid(path, what));
         }
         let numbers: &[f32] = bytemuck::cast_slice(self.nodes());
         if !numbers.iter().all(|x| x.is_finite()) || !self.nodes().iter().all(|n| n.flux >= 0.0) {
@@ -221,8 +225,8 @@ impl Cloud {
     }
 }
 
-/// True if positions are finite, and fluxes finite and not negative.
-fn records_are_good(records: &[Record]) -> bool {
+/// True if positions lie within `reach` of the origin along each axis, and fluxes are finite and not negative.
+fn records_are_good(records: &[Record], reach: f32) -> bool {
     // As whole numbers: of floats without sign those that are finite come first, of all the positive ones. Without a
     // branch for each record this takes as long as reading the memory does.
     const SIGN: u32 = 1 << 31;
@@ -231,7 +235,8 @@ fn records_are_good(records: &[Record]) -> bool {
     let worst = words
         .iter()
         .fold([0; 8], |worst: [u32; 8], record| std::array::from_fn(|i| worst[i].max(record[i] & MASKS[i])));
-    worst.iter().all(|word| *word < f32::INFINITY.to_bits())
+    let limits = [reach, reach, reach, f32::MAX, f32::MAX, f32::MAX, f32::MAX, f32::MAX];
+    worst.iter().zip(limits).all(|(word, limit)| *word <= limit.to_bits())
 }
 
 /// Maps a file for reading.
