@@ -55,6 +55,8 @@ fn lists_that_say_too_much_are_refused() {
 }
 
 /// What may be wrong with all of a list is said once.
+///
+/// Seen to fail: said of each view.
 #[test]
 fn a_list_is_warned_of_once() {
     let bench = Bench::new();
