@@ -28,10 +28,12 @@ pub use rays::{Hit, Rays};
 pub use view::{Camera, Projection, View, ViewFile};
 pub use volume::{Draft, Scatter, Volume};
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, path::PathBuf};
 
 /// An imported scene, checked: indices in range, every number finite, no triangle without area.
 pub struct Scene {
+    /// Every file that was read to make it, each once: its own, then buffers and pictures in the order of reading.
+    pub files: Vec<PathBuf>,
     pub mesh: Mesh,
     pub materials: Vec<Material>,
     pub lights: Vec<Box<dyn light::Light>>,

@@ -9,16 +9,12 @@ use super::{
 use crate::SceneError;
 use gltf::json::{self, Index, buffer::View};
 use serde::Deserialize;
-use std::{
-    ops::Range,
-    path::{Path, PathBuf},
-    rc::Rc,
-};
+use std::{cell::RefCell, ops::Range, path::Path, rc::Rc};
 
 /// A parsed file with its buffers; nothing in it is checked yet.
 pub(super) struct Document {
-    /// Of the file itself.
-    pub path: PathBuf,
+    /// The file itself, and those that it names.
+    pub files: RefCell<Files>,
     pub root: json::Root,
     /// As the file has them: the gltf crate rounds them to float32. One for each node.
     pub transforms: Vec<NodeTransform>,
@@ -60,7 +56,7 @@ impl Document {
         for (k, buffer) in root.buffers.iter().enumerate() {
             buffers.push(locate(k, buffer, chunk.clone(), &mut files)?);
         }
-        Ok(Document { path: path.to_owned(), root, transforms: transforms.nodes, bytes, buffers })
+        Ok(Document { files: RefCell::new(files), root, transforms: transforms.nodes, bytes, buffers })
     }
 
     /// The bytes of a buffer, as many as its `byteLength` says.

@@ -9,7 +9,7 @@ use std::{
     collections::HashMap,
     io,
     path::{Component, Path, PathBuf},
-    rc::Rc,
+    rc::{Rc, Weak},
 };
 
 /// Base64 with or without its padding: writers differ.
@@ -26,16 +26,24 @@ pub(crate) fn read(path: &Path) -> io::Result<Vec<u8>> {
     std::fs::read(path)
 }
 
-/// Resolves URIs relative to a scene.
-pub(super) struct Files<'a> {
-    folder: &'a Path,
-    /// Many buffers may name one file: it is read once.
-    known: HashMap<PathBuf, Rc<Vec<u8>>>,
+/// Resolves URIs relative to a scene, and keeps account of what was read.
+pub(super) struct Files {
+    folder: PathBuf,
+    /// Many buffers may name one file: it is read once, as long as one of them has it.
+    known: HashMap<PathBuf, Weak<Vec<u8>>>,
+    /// Paths of all that was read, the scene's own first.
+    read: Vec<PathBuf>,
 }
 
-impl<'a> Files<'a> {
-    pub fn new(scene: &'a Path) -> Self {
-        Files { folder: scene.parent().unwrap_or(Path::new("")), known: HashMap::new() }
+impl Files {
+    pub fn new(scene: &Path) -> Self {
+        let folder = scene.parent().unwrap_or(Path::new("")).to_owned();
+        Files { folder, known: HashMap::new(), read: vec![scene.to_owned()] }
+    }
+
+    /// Paths of all that was read, each once and in the order of reading, the scene's own first.
+    pub fn read(&self) -> &[PathBuf] {
+        &self.read
     }
 
     /// The bytes of a data URI, or of a file in the scene's folder or below.
@@ -45,14 +53,16 @@ impl<'a> Files<'a> {
             return BASE64.decode(encoded).map(Rc::new).map_err(|e| format!("the data URI is not base64: {e}"));
         }
         let relative = relative_path(uri)?;
-        if let Some(data) = self.known.get(&relative) {
-            return Ok(data.clone());
+        if let Some(data) = self.known.get(&relative).and_then(Weak::upgrade) {
+            return Ok(data);
         }
         let path = self.folder.join(&relative);
         let data = read(&path).map(Rc::new).map_err(|e| {
             format!("{}: {e}; a .gltf needs the files it names beside it, a .glb has them inside", path.display())
         })?;
-        self.known.insert(relative, data.clone());
+        if self.known.insert(relative, Rc::downgrade(&data)).is_none() {
+            self.read.push(path);
+        }
         Ok(data)
     }
 }

@@ -77,6 +77,7 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Fault> 
     let mut lights = lights::punctual(root, &nodes, options, origin, &mut warnings)?;
     lights.add_emitters(&mesh, &materials);
     Ok(Scene {
+        files: document.files.borrow().read().to_owned(),
         mesh,
         materials,
         lights: lights.list,

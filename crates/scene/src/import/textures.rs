@@ -1,6 +1,6 @@
 //! Pictures that the file names: PNG and JPEG.
 
-use super::{Fault, container::Document, files::Files, get};
+use super::{Fault, container::Document, get};
 use crate::texture::{Picture, Texture, Wrap};
 use glam::{DMat2, DVec2};
 use gltf::json::{
@@ -18,15 +18,13 @@ const MAX_TEXELS_OF_ALL: u64 = 1 << 28;
 /// Reads textures; each picture once, however many use it.
 pub(super) struct Textures<'a> {
     document: &'a Document,
-    files: Files<'a>,
     known: BTreeMap<usize, Arc<Picture>>,
     texels_left: u64,
 }
 
 impl<'a> Textures<'a> {
     pub fn new(document: &'a Document) -> Self {
-        let files = Files::new(&document.path);
-        Textures { document, files, known: BTreeMap::new(), texels_left: MAX_TEXELS_OF_ALL }
+        Textures { document, known: BTreeMap::new(), texels_left: MAX_TEXELS_OF_ALL }
     }
 
     pub fn read(&mut self, info: &Info) -> Result<Texture, Fault> {
@@ -56,7 +54,7 @@ impl<'a> Textures<'a> {
 
     fn picture(&mut self, image: &json::Image) -> Result<Picture, Fault> {
         let picture = match (&image.uri, &image.buffer_view) {
-            (Some(uri), _) => decode(&self.files.resolve(uri)?, self.texels_left)?,
+            (Some(uri), _) => decode(&self.document.files.borrow_mut().resolve(uri)?, self.texels_left)?,
             (None, Some(view)) => decode(self.document.view(view)?, self.texels_left)?,
             (None, None) => return Err("it has neither uri nor bufferView".into()),
         };

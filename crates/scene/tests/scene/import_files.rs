@@ -1,6 +1,9 @@
 //! The files that a scene is made of: containers, buffers beside them, data URIs, names.
 
-use crate::asset::{Folder, OPTIONS, container, import_bytes, tetrahedron};
+use crate::{
+    asset::{Folder, OPTIONS, container, import_bytes, tetrahedron},
+    import_textures::{encoded, textured, with_picture},
+};
 use base64::{Engine, engine::general_purpose::STANDARD};
 use scene::Scene;
 use serde_json::{Value, json};
@@ -101,6 +104,33 @@ fn one_file_is_read_once() {
     let start = std::time::Instant::now();
     assert!(Scene::import(&path, &OPTIONS).is_ok());
     assert!(start.elapsed().as_secs() < 5, "16 GiB would take longer");
+}
+
+/// Programs refuse to write over what they read: each file is there, once, by the path that it was opened by. Seen to
+/// catch: the pictures left out, which had a record of their own; a file there again for the second that names it.
+#[test]
+fn every_file_that_was_read_is_told() {
+    let folder = Folder::new();
+    let mut asset = with_picture(&[], textured(json!({})), json!({}));
+    asset.set("/images/0", json!({ "uri": "skin%20one.png" }));
+    asset.push("images", json!({ "uri": "./skin%20one.png" }));
+    asset.push("images", json!({ "uri": "unused.png" }));
+    let second = asset.push("textures", json!({ "source": 1 }));
+    let mut material = textured(json!({}));
+    material["pbrMetallicRoughness"]["baseColorTexture"]["index"] = json!(second);
+    asset.push("materials", material);
+    folder.write("parts/mesh.bin", &asset.binary);
+    folder.write("more.bin", &asset.binary);
+    folder.write("skin one.png", &encoded(&image::RgbaImage::new(2, 2), image::ImageFormat::Png));
+    let buffer = |uri: &str| json!({ "uri": uri, "byteLength": asset.binary.len() });
+    let buffers = ["parts/mesh.bin", "parts/./mesh.bin", "more.bin"].map(buffer);
+    asset.json["buffers"] = json!(buffers);
+    let path = folder.write("scene.gltf", asset.json.to_string().as_bytes());
+    let scene = Scene::import(&path, &OPTIONS).expect("a good file");
+    let expected = ["scene.gltf", "parts/mesh.bin", "more.bin", "skin one.png"].map(|name| folder.path().join(name));
+    assert_eq!(scene.files, expected);
+    let path = folder.write("alone.glb", &tetrahedron().glb());
+    assert_eq!(Scene::import(&path, &OPTIONS).expect("a good file").files, [path]);
 }
 
 #[test]
