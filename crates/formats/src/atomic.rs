@@ -1,21 +1,26 @@
 //! Files written whole or not at all: a temporary file beside the target, then a rename.
 //!
-//! Devices and pipes (`/dev/null`, a fifo) are written in place: a rename would replace them.
+//! A link is followed, also one to a file that is not there yet: the file that it leads to is replaced, and the link stays
+//! a link. The new file has the permissions of the one that it replaces, and its owner where the system allows that.
+//! Devices (`/dev/null`) are written in place: a rename would replace them. Named pipes and sockets are refused: to open
+//! one can wait for ever.
 //!
-//! Who writes a temporary file holds a lock on it. A process that was killed holds none, on this machine or another, so
-//! the next that writes the same target removes what it left; that of a live one stays.
+//! A writer holds a lock on its temporary file. A process that was killed holds none, on this machine or another, so
+//! the next writer of the same target removes what it left; the temporary file of a live process stays.
 
 use crate::Error;
 use std::{
     ffi::{OsStr, OsString},
     fs::{self, File, OpenOptions, TryLockError},
     io::{self, BufWriter, Write},
+    os::unix::fs::{FileTypeExt, MetadataExt, OpenOptionsExt, PermissionsExt, fchown},
     path::{Path, PathBuf},
     sync::{
         Mutex, PoisonError,
         atomic::{AtomicU64, Ordering},
     },
 };
+use xxhash_rust::xxh3::xxh3_64;
 
 /// Temporary files of this process that are still there.
 static TEMPORARIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
@@ -33,8 +38,7 @@ impl Output {
     pub fn create(target: &Path) -> Result<Output, Error> {
         check(target)?;
         let fail = |source| Error::write(target, source);
-        // A link is followed: it is its target that is replaced, not the link.
-        let target = &fs::canonicalize(target).unwrap_or_else(|_| target.to_owned());
+        let target = &destination(target).map_err(fail)?;
         if is_written_in_place(target) {
             let file = OpenOptions::new().write(true).open(target).map_err(fail)?;
             return Ok(Output { target: target.clone(), temporary: None, file: BufWriter::new(file) });
@@ -60,7 +64,7 @@ impl Output {
         registered().retain(|p| p != temporary);
         self.temporary = None;
         // The rename itself must survive a power cut; folders that cannot be opened or synced are left to the system.
-        if let Ok(folder) = File::open(self.target.parent().filter(|p| p.as_os_str() != "").unwrap_or(Path::new("."))) {
+        if let Ok(folder) = File::open(folder_of(&self.target)) {
             folder.sync_all().ok();
         }
         Ok(())
@@ -91,19 +95,54 @@ pub fn check(target: &Path) -> Result<(), Error> {
     let fail = |why: &str| Err(Error::write(target, io::Error::other(why)));
     match fs::metadata(target) {
         Ok(meta) if meta.is_dir() => fail("is a folder"),
+        Ok(meta) if meta.file_type().is_fifo() || meta.file_type().is_socket() => {
+            fail("is a pipe or socket, which could wait for ever; name a regular file")
+        }
         Ok(meta) if meta.is_file() && meta.permissions().readonly() => fail("is read-only"),
         Ok(_) => Ok(()),
-        Err(_) => match target.parent().filter(|p| p.as_os_str() != "").map(fs::metadata) {
-            Some(Err(source)) => Err(Error::write(target, source)),
-            Some(Ok(meta)) if !meta.is_dir() => fail("lies in what is no folder"),
-            _ => Ok(()),
-        },
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(Error::write(target, error)),
+        Err(_) => {
+            let file = destination(target).map_err(|source| Error::write(target, source))?;
+            match fs::metadata(folder_of(&file)) {
+                Err(source) => Err(Error::write(target, source)),
+                Ok(meta) if !meta.is_dir() => fail("lies in what is no folder"),
+                Ok(_) => Ok(()),
+            }
+        }
     }
 }
 
-/// Devices and pipes are.
+/// Refuses a target whose folder takes no new file, by making one and removing it again.
+pub fn probe(target: &Path) -> Result<(), Error> {
+    Output::create(target).map(drop)
+}
+
+/// Whether the target is a device, which a rename would replace.
 pub fn is_written_in_place(target: &Path) -> bool {
     fs::metadata(target).is_ok_and(|meta| !meta.is_file())
+}
+
+/// The file that a path leads to, whether or not it is there: links are followed.
+pub fn destination(path: &Path) -> io::Result<PathBuf> {
+    if let Ok(file) = fs::canonicalize(path) {
+        return Ok(file);
+    }
+    let mut here = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        match fs::read_link(&here) {
+            Ok(next) => here = folder_of(&here).join(next),
+            Err(_) => return Ok(here),
+        }
+    }
+    Err(io::Error::other("is a link that leads to itself"))
+}
+
+/// Most links from one to the next that are followed, as of the system.
+const MOST_LINKS: usize = 40;
+
+/// The folder that a file lies in.
+pub fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| folder.as_os_str() != "").unwrap_or(Path::new("."))
 }
 
 /// Writes `bytes` to `path`, whole or not at all.
@@ -129,9 +168,12 @@ fn registered() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
 
 /// A new file beside the target, registered and locked.
 fn create_temporary(target: &Path) -> io::Result<(PathBuf, File)> {
+    let replaced = fs::metadata(target).ok();
+    // The content of a private file is never readable by others, not even while it is written.
+    let mode = replaced.as_ref().map_or(0o666, |old| old.permissions().mode() & 0o777);
     loop {
         let path = temporary_name(target)?;
-        let file = match OpenOptions::new().write(true).create_new(true).open(&path) {
+        let file = match OpenOptions::new().write(true).create_new(true).mode(mode).open(&path) {
             // Of a process with the same number on another machine.
             Err(e) if e.kind() == io::ErrorKind::AlreadyExists => continue,
             opened => opened?,
@@ -140,6 +182,9 @@ fn create_temporary(target: &Path) -> io::Result<(PathBuf, File)> {
         // Where there are no locks nothing is ever taken for abandoned.
         let taken = matches!(file.try_lock(), Err(TryLockError::WouldBlock));
         if !taken && path.exists() {
+            if let Some(old) = &replaced {
+                keep_owner_and_mode(&file, old);
+            }
             return Ok((path, file));
         }
         // Another process took it for abandoned before it was locked, and removes it.
@@ -147,12 +192,22 @@ fn create_temporary(target: &Path) -> io::Result<(PathBuf, File)> {
     }
 }
 
+/// Gives the new file the owner and the permissions of the one that it replaces, where the system allows it.
+fn keep_owner_and_mode(file: &File, old: &fs::Metadata) {
+    if file.metadata().is_ok_and(|new| (new.uid(), new.gid()) != (old.uid(), old.gid())) {
+        fchown(file, Some(old.uid()), Some(old.gid())).or_else(|_| fchown(file, None, Some(old.gid()))).ok();
+    }
+    file.set_permissions(fs::Permissions::from_mode(old.permissions().mode() & 0o777)).ok();
+}
+
 /// Removes temporary files of this target that nobody holds. What cannot be removed stays, and harms nobody.
 fn remove_abandoned(target: &Path) {
-    let (Some(folder), Some(name)) = (target.parent(), target.file_name()) else { return };
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        if is_temporary_of(name, &entry.file_name())
+    let Some(name) = target.file_name() else { return };
+    let stem = temporary_stem(name);
+    for entry in fs::read_dir(folder_of(target)).into_iter().flatten().flatten() {
+        // A pipe of such a name is nobody's temporary file, and to open it would wait for its other end.
+        if is_temporary_of(&stem, &entry.file_name())
+            && entry.file_type().is_ok_and(|kind| kind.is_file())
             && let Ok(file) = OpenOptions::new().write(true).open(entry.path())
             && file.try_lock().is_ok()
         {
@@ -161,12 +216,12 @@ fn remove_abandoned(target: &Path) {
     }
 }
 
-/// Whether [`temporary_name`] could have given `found` for a target named `name`.
-fn is_temporary_of(name: &OsStr, found: &OsStr) -> bool {
+/// Whether [`temporary_name`] could have given `found` for a target with this stem.
+fn is_temporary_of(stem: &OsStr, found: &OsStr) -> bool {
     let found = found.as_encoded_bytes();
     let numbers = found
         .strip_prefix(b".")
-        .and_then(|rest| rest.strip_prefix(name.as_encoded_bytes()))
+        .and_then(|rest| rest.strip_prefix(stem.as_encoded_bytes()))
         .and_then(|rest| rest.strip_prefix(b"."))
         .and_then(|rest| rest.strip_suffix(b".tmp"));
     numbers.is_some_and(|numbers| {
@@ -179,10 +234,20 @@ fn temporary_name(target: &Path) -> io::Result<PathBuf> {
     static COUNTER: AtomicU64 = AtomicU64::new(0);
     let name = target.file_name().ok_or_else(|| io::Error::other("names no file"))?;
     let mut hidden = OsString::from(".");
-    hidden.push(name);
+    hidden.push(temporary_stem(name));
     hidden.push(format!(".{}-{}.tmp", std::process::id(), COUNTER.fetch_add(1, Ordering::Relaxed)));
     Ok(target.with_file_name(hidden))
 }
+
+/// What temporary files of a target are called after: its name, or a hash of a long one, so that a temporary name is
+/// never longer than what the file system takes.
+fn temporary_stem(name: &OsStr) -> OsString {
+    let bytes = name.as_encoded_bytes();
+    if bytes.len() <= LONG_NAME { name.to_owned() } else { format!("{:016x}", xxh3_64(bytes)).into() }
+}
+
+/// Names of more bytes are hashed. The shortest limit on names in use is 143 bytes (eCryptfs).
+const LONG_NAME: usize = 100;
 
 #[cfg(test)]
 mod tests {
@@ -248,5 +313,69 @@ mod tests {
     fn a_target_in_no_folder_is_an_error_at_once() {
         assert!(Output::create(Path::new("no/such/folder/file")).is_err());
         assert!(Output::create(Path::new(".")).is_err());
+    }
+
+    /// Planted errors that this caught: no permissions kept, permissions kept under the umask, the link replaced.
+    #[test]
+    fn a_replaced_file_keeps_its_permissions_and_links_stay_links() {
+        let folder = tempfile::tempdir().expect("folder");
+        let path = |name: &str| folder.path().join(name);
+        let mode = |name: &str| fs::metadata(path(name)).expect("there").permissions().mode() & 0o7777;
+        for wanted in [0o664, 0o600, 0o666, 0o755] {
+            fs::write(path("file"), b"old").expect("writes");
+            fs::set_permissions(path("file"), fs::Permissions::from_mode(wanted)).expect("sets");
+            let output = Output::create(&path("file")).expect("creates");
+            let temporary = output.temporary.clone().expect("a regular file has one");
+            let during = fs::metadata(&temporary).expect("there").permissions().mode() & 0o777;
+            assert_eq!(during & !wanted, 0, "{during:o} while a file of {wanted:o} is written");
+            output.commit().expect("replaces");
+            assert_eq!(mode("file"), wanted, "{:o} instead of {wanted:o}", mode("file"));
+        }
+        fs::create_dir(path("real")).expect("makes");
+        std::os::unix::fs::symlink("real/one", path("link")).expect("links");
+        std::os::unix::fs::symlink("link", path("chain")).expect("links");
+        for content in [b"1", b"2"] {
+            // The first time the links lead to no file.
+            write(&path("chain"), content).expect("writes");
+            assert_eq!(fs::read(path("real/one")).expect("reads"), content);
+        }
+        for link in ["link", "chain"] {
+            assert!(fs::symlink_metadata(path(link)).expect("there").is_symlink(), "{link}");
+        }
+        std::os::unix::fs::symlink("circle", path("circle")).expect("links");
+        write(&path("circle"), b"").expect_err("leads to itself");
+    }
+
+    /// Planted error that this caught: the whole name in the temporary one, which then has 266 bytes.
+    #[test]
+    fn any_name_that_the_file_system_takes_is_taken() {
+        let folder = tempfile::tempdir().expect("folder");
+        for length in [LONG_NAME, LONG_NAME + 1, 200, 255] {
+            let path = folder.path().join("n".repeat(length));
+            write(&path, b"content").expect("writes");
+            // What a killed process left of a long name is found again.
+            let left = temporary_name(&path).expect("a name");
+            fs::write(&left, b"half").expect("writes");
+            write(&path, b"again").expect("writes");
+            assert!(!left.exists(), "{length}");
+        }
+        let message = check(&folder.path().join("n".repeat(256))).expect_err("too long").to_string();
+        assert!(message.contains("too long"), "{message}");
+    }
+
+    /// Each of these waited for ever. Planted errors that this caught: the look at the file's kind left out.
+    #[test]
+    fn pipes_are_refused_and_not_waited_for() {
+        let folder = tempfile::tempdir().expect("folder");
+        let pipe = |name: &str| {
+            let path = folder.path().join(name);
+            assert!(std::process::Command::new("mkfifo").arg(&path).status().expect("starts").success());
+            path
+        };
+        let message = write(&pipe("fifo"), b"").expect_err("refused").to_string();
+        assert!(message.contains("fifo: cannot write: is a pipe"), "{message}");
+        let left = pipe(".file.99-0.tmp");
+        write(&folder.path().join("file"), b"content").expect("writes");
+        assert!(left.exists());
     }
 }

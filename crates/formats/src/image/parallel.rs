@@ -1,6 +1,10 @@
 //! Blocks of pixels, packed and unpacked by several threads.
 
-use std::num::NonZeroUsize;
+use std::{
+    num::NonZeroUsize,
+    sync::{Mutex, PoisonError},
+    thread::{Builder, ScopedJoinHandle},
+};
 
 /// What `work` makes of each item, in the order of the items, whatever the number of threads.
 pub(super) fn parallel<T: Send, R: Send>(threads: NonZeroUsize, items: Vec<T>, work: impl Fn(T) -> R + Sync) -> Vec<R> {
@@ -10,11 +14,21 @@ pub(super) fn parallel<T: Send, R: Send>(threads: NonZeroUsize, items: Vec<T>, w
     let share = items.len().div_ceil(threads.get());
     let mut rest = items.into_iter();
     let shares = std::iter::from_fn(|| Some(rest.by_ref().take(share).collect::<Vec<T>>()).filter(|s| !s.is_empty()));
+    let shares: Vec<Mutex<Vec<T>>> = shares.map(Mutex::new).collect();
+    // Each share is taken once, by its thread or, where that cannot be started, by this one.
+    let done = |share: &Mutex<Vec<T>>| {
+        let items = std::mem::take(&mut *share.lock().unwrap_or_else(PoisonError::into_inner));
+        items.into_iter().map(&work).collect::<Vec<R>>()
+    };
     std::thread::scope(|scope| {
-        let work = &work;
-        let started: Vec<_> =
-            shares.map(|share| scope.spawn(move || share.into_iter().map(work).collect::<Vec<R>>())).collect();
-        started.into_iter().flat_map(|thread| thread.join().expect("no block is one that packing panics at")).collect()
+        let done = &done;
+        let start = |share| (share, Builder::new().spawn_scoped(scope, move || done(share)).ok());
+        let started: Vec<_> = shares.iter().map(start).collect();
+        let result = |(share, thread): (_, Option<ScopedJoinHandle<Vec<R>>>)| match thread {
+            Some(thread) => thread.join().expect("no block is one that packing panics at"),
+            None => done(share),
+        };
+        started.into_iter().flat_map(result).collect()
     })
 }
 
