@@ -1,10 +1,15 @@
 //! How a program ends.
 
 use signal_hook::{
-    consts::{SIGHUP, SIGINT, SIGTERM},
+    consts::{SIGHUP, SIGINT, SIGTERM, SIGXCPU, SIGXFSZ},
+    flag,
     iterator::Signals,
 };
-use std::fmt::Display;
+use std::{
+    fmt::Display,
+    sync::{Arc, atomic::AtomicBool, mpsc},
+    thread,
+};
 
 /// Why a program stops early: one message, and its exit code.
 #[derive(Debug)]
@@ -48,21 +53,36 @@ fn is_ignored(signal: i32) -> bool {
     ignored.is_some_and(|signals| signals >> (signal - 1) & 1 == 1)
 }
 
-/// Runs a program and ends the process with its exit code. SIGHUP, SIGINT and SIGTERM remove the temporary files and end
-/// it with 128 + the signal's number; under `nohup` SIGHUP does nothing.
+/// Runs a program and ends the process with its exit code. SIGHUP, SIGINT, SIGTERM and SIGXCPU (`ulimit -t`) remove the
+/// temporary files and end it with 128 + the signal's number; under `nohup` SIGHUP does nothing. A file that grows beyond
+/// `ulimit -f` is an output that cannot be written, like one on a full disk.
 pub fn run(name: &str, program: impl FnOnce() -> Result<u8, Failure>) -> ! {
     crate::truncated::end_with_a_message();
-    let hangup = (!is_ignored(SIGHUP)).then_some(SIGHUP);
-    if let Ok(mut signals) = Signals::new(hangup.into_iter().chain([SIGINT, SIGTERM])) {
-        std::thread::spawn(move || {
-            if let Some(signal) = signals.forever().next() {
-                formats::atomic::abandon(128 + signal);
-            }
-        });
-    }
+    // With a handler the system tells the writer, instead of ending the process, that the file would be too long.
+    flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false))).ok();
+    clean_up_after_signals();
     let code = program().unwrap_or_else(|failure| {
         crate::tell(format_args!("{name}: {}", failure.message));
         failure.code
     });
     std::process::exit(i32::from(code))
+}
+
+/// Starts the thread that waits for signals. Where no thread is to be had they end the process at once, and the next
+/// writer of the same file removes what was left.
+fn clean_up_after_signals() {
+    let hangup = (!is_ignored(SIGHUP)).then_some(SIGHUP);
+    let (ready, is_ready) = mpsc::channel();
+    let wait = move || {
+        let signals = Signals::new(hangup.into_iter().chain([SIGINT, SIGTERM, SIGXCPU]));
+        ready.send(()).ok();
+        if let Ok(mut signals) = signals
+            && let Some(signal) = signals.forever().next()
+        {
+            formats::atomic::abandon(128 + signal);
+        }
+    };
+    if thread::Builder::new().spawn(wait).is_ok() {
+        is_ready.recv().ok();
+    }
 }

@@ -3,19 +3,24 @@
 mod count;
 mod environment;
 mod failure;
+mod files;
 mod medium;
 mod memory;
+mod printable;
 mod progress;
 mod rgb;
 mod scene_args;
 mod tables;
+mod threads;
 mod truncated;
 
 pub use count::parse_count;
 pub use environment::EnvironmentSource;
 pub use failure::{Failure, run};
-pub use medium::{ReadMediumError, read_medium, scene_medium};
+pub use files::{Files, file_name, is_same_file};
+pub use medium::{ReadMediumError, is_file, read_medium, scene_medium};
 pub use memory::{Need, available_memory_bytes, peak_memory_bytes, require_memory};
+pub use printable::printable;
 pub use progress::Progress;
 pub use rgb::parse_rgb;
 pub use scene_args::{LightUnit, Normals, SceneArgs};
@@ -50,17 +55,15 @@ pub enum ProgressStyle {
 }
 
 impl Common {
-    /// Runs `work` on as many threads as asked for.
+    /// Runs `work` on as many threads as asked for, or as can be started. All parallel work is done inside, so that no
+    /// library starts threads of its own.
     pub fn in_pool<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads.map_or(0, usize::from)).build();
-        let pool = pool.map_err(|e| Failure::usage(format!("--threads: cannot start them: {e}")))?;
-        Ok(pool.install(work))
+        threads::in_pool(self.thread_count(), |line| self.warn(line), work)
     }
 
-    /// Threads that [`Common::in_pool`] uses.
+    /// Threads that were asked for.
     pub fn thread_count(&self) -> usize {
-        let all = || std::thread::available_parallelism().map_or(1, usize::from);
-        self.threads.map_or_else(all, usize::from)
+        self.threads.map_or_else(threads::cores, usize::from)
     }
 
     /// A line for people, on stderr.
@@ -76,9 +79,9 @@ impl Common {
     }
 }
 
-/// A line on stderr; a closed stderr is nobody's fault.
+/// A line on stderr, whatever names it holds; a closed stderr is nobody's fault.
 fn tell(line: impl std::fmt::Display) {
-    writeln!(io::stderr(), "{line}").ok();
+    writeln!(io::stderr(), "{}", printable(&line.to_string())).ok();
 }
 
 /// Writes a result to stdout. A reader that has seen enough (`| head`) is no failure.

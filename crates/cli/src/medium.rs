@@ -17,10 +17,14 @@ pub enum ReadMediumError {
     Scene { material: String, source: MediumError },
 }
 
-/// A medium by its built-in name, or from a file, whose name ends in `.json` or has a slash.
+/// Whether a medium's name is that of a file: it ends in `.json` or has a slash.
+pub fn is_file(name: &str) -> bool {
+    name.ends_with(".json") || name.contains('/')
+}
+
+/// A medium by its built-in name, or from a file.
 pub fn read_medium(name: &str) -> Result<Medium, ReadMediumError> {
-    let is_file = name.ends_with(".json") || name.contains('/');
-    if !is_file {
+    if !is_file(name) {
         return built_in(name).map_err(ReadMediumError::Name);
     }
     let text = read_text(name).map_err(|source| ReadMediumError::Read { path: name.into(), source })?;

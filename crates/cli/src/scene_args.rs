@@ -1,7 +1,7 @@
 //! How the programs read a scene: sampling and gathering must agree on it.
 
 use crate::{
-    Common, Failure,
+    Common, Failure, Files,
     environment::{EnvironmentSource, parse_environment},
 };
 use clap::{Args, ValueEnum};
@@ -50,6 +50,14 @@ pub enum LightUnit {
 }
 
 impl SceneArgs {
+    /// Declares the files that these arguments name.
+    pub fn declare(&self, files: &mut Files) -> Result<(), Failure> {
+        match &self.environment {
+            Some(EnvironmentSource::File(path)) => files.reads("--environment", path),
+            _ => Ok(()),
+        }
+    }
+
     /// Reads the scene and the environment that it is given; prints the import's warnings.
     pub fn import(&self, path: &Path, common: &Common) -> Result<(Scene, Environment), Failure> {
         let light_unit = match self.light_unit {

@@ -1,6 +1,6 @@
 //! Lists that the programs print.
 
-use crate::{Failure, scene_medium};
+use crate::{Failure, printable, scene_medium};
 use bssrdf::Medium;
 use scene::{Camera, Projection, Scene};
 
@@ -18,9 +18,8 @@ impl Table {
         let widths: Vec<usize> = (0..self.0[0].len()).map(width).collect();
         let mut text = String::new();
         for row in &self.0 {
-            // A name may hold anything; a row is a line.
             let cells = row.iter().zip(&widths).map(|(cell, width)| {
-                let cell = cell.replace(char::is_control, " ");
+                let cell = printable(cell);
                 format!("{cell:<width$}")
             });
             text.push_str(cells.collect::<Vec<_>>().join("  ").trim_end());

@@ -12,7 +12,6 @@ use formats::atomic::Output;
 use serde::Serialize;
 
 use crate::arguments::Arguments;
-use crate::outputs::place;
 
 /// Changes only when a key of the log changes its meaning or goes.
 const SCHEMA: u32 = 1;
@@ -49,7 +48,7 @@ struct Change<'a> {
 
 /// What must be so before any file is read: one cannot replace a file by itself.
 pub(crate) fn check(arguments: &Arguments) -> Result<(), Failure> {
-    if arguments.accept && place(&arguments.reference) == place(&arguments.test) {
+    if arguments.accept && cli::is_same_file(&arguments.reference, &arguments.test) {
         let path = arguments.test.display();
         return Err(Failure::usage(format!(
             "{path}: --accept would replace the file by itself; give another test image"

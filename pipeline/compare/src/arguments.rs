@@ -1,10 +1,9 @@
 //! What `compare` is asked on the command line.
 
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Parser;
-use clap::builder::{PathBufValueParser, TypedValueParser};
 use compare::heatmap::DEFAULT_MAX;
 use compare::{Choice, Gate, LimitsError, Settings, read_limits};
 
@@ -18,10 +17,10 @@ use crate::noise_mode::NoiseArguments;
 #[command(version)]
 pub(crate) struct Arguments {
     /// Image that is right, or a folder of them (--replicates)
-    #[arg(value_parser = file())]
+    #[arg(value_parser = cli::file_name())]
     pub(crate) reference: PathBuf,
     /// Image to judge, or a folder of them
-    #[arg(value_parser = file())]
+    #[arg(value_parser = cli::file_name())]
     pub(crate) test: PathBuf,
     /// Largest relative difference of the means, of every channel (0.01 is one per cent)
     #[arg(long, value_name = "R", value_parser = limit)]
@@ -45,7 +44,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     pub(crate) exact: bool,
     /// JSON file of gates, each with its reason, that hold besides those of the command line (docs/compare.md)
-    #[arg(long, value_name = "FILE", value_parser = file())]
+    #[arg(long, value_name = "FILE", value_parser = cli::file_name())]
     pub(crate) limits: Option<PathBuf>,
     /// Layer that gates of the command line and --heatmap look at (beauty is R, G and B), or `all` [default: beauty]
     #[arg(long, value_name = "NAME")]
@@ -60,17 +59,17 @@ pub(crate) struct Arguments {
     #[arg(long)]
     pub(crate) ignore_meta: bool,
     /// Write all metrics and gates as JSON
-    #[arg(short = 'o', long, visible_alias = "output", value_name = "FILE", value_parser = file())]
+    #[arg(short = 'o', long, visible_alias = "output", value_name = "FILE", value_parser = cli::file_name())]
     pub(crate) json: Option<PathBuf>,
     /// Write test - reference of every channel, signed, as OpenEXR
-    #[arg(long, value_name = "FILE.exr", value_parser = file())]
+    #[arg(long, value_name = "FILE.exr", value_parser = cli::file_name())]
     pub(crate) diff_exr: Option<PathBuf>,
     /// Write the layer's absolute error as a picture with its scale
-    #[arg(long, value_name = "FILE.png", value_parser = file())]
+    #[arg(long, value_name = "FILE.png", value_parser = cli::file_name())]
     pub(crate) heatmap: Option<PathBuf>,
     /// Write a page with both images, their difference and all numbers; it needs nothing else. `compare --html-index
     /// FILE REPORT.html...` lists such pages, the worst first
-    #[arg(long, value_name = "FILE", value_parser = file())]
+    #[arg(long, value_name = "FILE", value_parser = cli::file_name())]
     pub(crate) html: Option<PathBuf>,
     /// Error at the end of the heatmap's scale, in units of the channel
     #[arg(long, value_name = "T", default_value_t = DEFAULT_MAX, value_parser = end_of_scale, requires = "heatmap")]
@@ -120,14 +119,6 @@ impl Arguments {
         name.push(".log");
         name.into()
     }
-}
-
-/// A program that expects `-` to be a stream would wait for it, or find the file of that name.
-fn file() -> impl TypedValueParser<Value = PathBuf> {
-    PathBufValueParser::new().try_map(|path| match path == Path::new("-") {
-        true => Err("streams are not accepted; give the name of a file (`./-` if that is its name)"),
-        false => Ok(path),
-    })
 }
 
 fn end_of_scale(text: &str) -> Result<f64, String> {

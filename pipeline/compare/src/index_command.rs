@@ -3,9 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Parser;
-use cli::Failure;
-
-use crate::outputs::place;
+use cli::{Failure, Files};
 
 /// List reports made with --html on one page, the worst first
 #[derive(Debug, Parser)]
@@ -33,10 +31,9 @@ impl IndexArguments {
 
     /// Writes the page.
     pub(crate) fn run(&self) -> Result<u8, Failure> {
-        if self.reports.iter().any(|report| place(report) == place(&self.html_index)) {
-            let path = self.html_index.display();
-            return Err(Failure::usage(format!("{path}: --html-index would replace a report; give another name")));
-        }
+        let mut files = Files::default();
+        self.reports.iter().try_for_each(|path| files.reads("REPORT.html", path))?;
+        files.writes("--html-index", &self.html_index)?;
         formats::atomic::write(&self.html_index, &compare::html::index(&self.html_index, &self.reports)?)?;
         self.common.say(format_args!("{}: {} reports", self.html_index.display(), self.reports.len()));
         Ok(0)

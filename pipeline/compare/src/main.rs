@@ -27,7 +27,7 @@ fn main() {
 fn judge(arguments: &Arguments) -> Result<u8, Failure> {
     accept::check(arguments)?;
     outputs::check(arguments)?;
-    if outputs::place(&arguments.reference) == outputs::place(&arguments.test) {
+    if cli::is_same_file(&arguments.reference, &arguments.test) {
         arguments.common.warn("REFERENCE and TEST are one file: nothing is tested");
     }
     let settings = arguments.settings()?;

@@ -1,8 +1,6 @@
 //! The files that `compare` writes: only those asked for, each whole, and none over an input.
 
-use std::path::{Path, PathBuf};
-
-use cli::Failure;
+use cli::{Failure, Files};
 use compare::heatmap::heatmap;
 use compare::{Report, Settings, difference, html};
 use formats::atomic;
@@ -21,8 +19,12 @@ struct Document<'a> {
     verdict: &'a str,
 }
 
-/// Refuses outputs that would replace an input or each other, before any work is done.
+/// Refuses outputs that cannot be written, or that would replace an input or each other, before any work is done.
 pub(crate) fn check(arguments: &Arguments) -> Result<(), Failure> {
+    let mut files = Files::default();
+    files.reads("REFERENCE", &arguments.reference)?;
+    files.reads("TEST", &arguments.test)?;
+    arguments.limits.iter().try_for_each(|path| files.reads("--limits", path))?;
     let log = arguments.accept.then(|| arguments.log());
     let outputs = [
         ("--json", arguments.json.as_ref()),
@@ -31,27 +33,10 @@ pub(crate) fn check(arguments: &Arguments) -> Result<(), Failure> {
         ("--html", arguments.html.as_ref()),
         ("the log of --accept", log.as_ref()),
     ];
-    let mut taken: Vec<(PathBuf, &str)> = [&arguments.reference, &arguments.test]
+    outputs
         .into_iter()
-        .map(|path| (place(path), "an image"))
-        .chain(arguments.limits.iter().map(|path| (place(path), "the limits")))
-        .collect();
-    for (option, path) in outputs.into_iter().filter_map(|(option, path)| Some((option, path?))) {
-        let here = place(path);
-        if let Some((_, what)) = taken.iter().find(|(place, _)| *place == here) {
-            let path = path.display();
-            return Err(Failure::usage(format!("{path}: {option} would replace {what}; give another name")));
-        }
-        taken.push((here, option));
-    }
-    Ok(())
-}
-
-/// One name for one file, whether or not it is there yet. What cannot be found is left to the writing of it.
-pub(crate) fn place(path: &Path) -> PathBuf {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let beside = || Some(folder.canonicalize().ok()?.join(path.file_name()?));
-    path.canonicalize().ok().or_else(beside).unwrap_or_else(|| path.to_owned())
+        .filter_map(|(what, path)| Some((what, path?)))
+        .try_for_each(|(what, path)| files.writes(what, path))
 }
 
 /// Writes what was asked for, whatever the verdict.

@@ -66,12 +66,12 @@ fn inputs_are_never_replaced() {
     let folder = folder();
     let before = std::fs::read(folder.path().join("reference.exr")).unwrap();
     let output = compare(folder.path(), &["reference.exr", "reference.exr", "--html", "reference.exr"]);
-    refused(&output, &["reference.exr", "--html would replace an image"]);
+    refused(&output, &["reference.exr", "--html would replace REFERENCE"]);
     assert_eq!(std::fs::read(folder.path().join("reference.exr")).unwrap(), before);
     page(folder.path(), 1.0, "page.html", &[]);
     refused(
         &compare(folder.path(), &["--html-index", "page.html", "page.html"]),
-        &["--html-index would replace a report"],
+        &["--html-index would replace REPORT.html"],
     );
 }
 

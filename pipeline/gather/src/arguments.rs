@@ -1,7 +1,7 @@
 //! The command line.
 
 use clap::{Parser, ValueEnum};
-use cli::{Common, SceneArgs};
+use cli::{Common, SceneArgs, file_name};
 use gather::Crop;
 use std::path::PathBuf;
 
@@ -13,17 +13,18 @@ use std::path::PathBuf;
 pub struct Arguments {
     /// Clouds of sample-surface: one, or shards and seeds of one scene, which are gathered as one whatever their order;
     /// and last the scene that they were sampled from (with --list-cameras or --list-materials it alone)
-    #[arg(value_name = "CLOUD... SCENE")]
+    #[arg(value_name = "CLOUD... SCENE", value_parser = file_name())]
     pub files: Vec<PathBuf>,
     /// OpenEXR image to write
-    #[arg(short, long, value_name = "IMAGE.exr", required_unless_present_any = ["list_cameras", "list_materials", "list_media"])]
+    #[arg(short, long, value_name = "IMAGE.exr", value_parser = file_name(),
+        required_unless_present_any = ["list_cameras", "list_materials", "list_media"])]
     pub output: Option<PathBuf>,
     /// Camera of SCENE by name or index [default: the first]
     #[arg(long, value_name = "NAME|INDEX")]
     pub camera: Option<String>,
     /// Camera in a file of its own; beats --camera. A list of them makes as many images: IMAGE.NAME.exr of the view's
     /// name, or IMAGE.0000.exr by its place, previews and statistics likewise
-    #[arg(long, value_name = "FILE.json")]
+    #[arg(long, value_name = "FILE.json", value_parser = file_name())]
     pub view: Option<PathBuf>,
     /// Turn the camera about the vertical axis through the view's target, or through the middle of the translucent
     /// surfaces, in N equal steps: IMAGE.0000.exr and so on, previews and statistics likewise
@@ -70,13 +71,13 @@ pub struct Arguments {
     #[command(flatten)]
     pub scene_args: SceneArgs,
     /// Also write a tone-mapped picture
-    #[arg(long, value_name = "FILE.png")]
+    #[arg(long, value_name = "FILE.png", value_parser = file_name())]
     pub preview: Option<PathBuf>,
     /// Brighten the preview by powers of two
     #[arg(long, value_name = "STOPS", default_value_t = 0.0, value_parser = parse_stops, allow_hyphen_values = true)]
     pub exposure: f64,
     /// Write statistics as JSON
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = file_name())]
     pub stats: Option<PathBuf>,
     /// Leave out of image and statistics what differs from run to run
     #[arg(long)]

@@ -1,14 +1,11 @@
 //! The files that an image is made from: clouds and their scene, and whether they belong together.
 
 use crate::{arguments::Arguments, shots::Shot};
-use cli::Failure;
-use formats::{atomic, cloud::Cloud};
+use cli::{Failure, Files, is_file};
+use formats::cloud::Cloud;
 use gather::clouds::{self, JoinError};
 use scene::{Health, Scene, light::Environment};
-use std::{
-    collections::HashMap,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 /// At least one CLOUD, and SCENE.
 pub fn paths(arguments: &Arguments) -> Result<(&[PathBuf], &Path), Failure> {
@@ -26,26 +23,36 @@ pub fn import(arguments: &Arguments, scene_path: &Path) -> Result<(Scene, Enviro
     })
 }
 
-/// Refuses outputs that cannot be written, that replace an input, or that are the same file, before any work is done.
-pub fn check_outputs(arguments: &Arguments, shots: &[Shot], images: &Path) -> Result<(), Failure> {
-    let inputs = arguments.files.iter().chain(&arguments.view);
-    let mut taken: HashMap<PathBuf, &str> = inputs.map(|path| (whole(path), "read")).collect();
-    let outputs = [Some(images), arguments.preview.as_deref(), arguments.stats.as_deref()];
-    for path in outputs.into_iter().flatten().flat_map(|path| shots.iter().map(|shot| shot.file(path))) {
-        atomic::check(&path)?;
-        let seen = if atomic::is_written_in_place(&path) { None } else { taken.insert(whole(&path), "written") };
-        if let Some(how) = seen {
-            return Err(Failure::usage(format!("{}: this file is also {how}; give another", path.display())));
-        }
+/// The files that the run reads, as far as the arguments name them.
+pub fn declare(arguments: &Arguments) -> Result<Files, Failure> {
+    let mut files = Files::default();
+    let (clouds, scene) = paths(arguments)?;
+    clouds.iter().try_for_each(|path| files.reads("CLOUD", path))?;
+    files.reads("SCENE", scene)?;
+    arguments.scene_args.declare(&mut files)?;
+    arguments.view.iter().try_for_each(|path| files.reads("--view", path))?;
+    // The name of a material may hold an equals sign: what follows any of them may be the file.
+    let after = |argument: &'_ str| -> Vec<PathBuf> {
+        let starts = argument.match_indices('=').map(|(k, _)| k + 1);
+        starts.chain([0]).map(|start| &argument[start..]).filter(|name| is_file(name)).map(PathBuf::from).collect()
+    };
+    for path in arguments.medium.iter().flat_map(|argument| after(argument)) {
+        files.reads("--medium", &path)?;
     }
-    Ok(())
+    Ok(files)
 }
 
-/// The path without links, as far as it is there.
-fn whole(path: &Path) -> PathBuf {
-    let file = |folder: PathBuf| folder.join(path.file_name().unwrap_or_default());
-    let folder = path.parent().filter(|p| p.as_os_str() != "").unwrap_or(Path::new("."));
-    path.canonicalize().or_else(|_| folder.canonicalize().map(file)).unwrap_or_else(|_| path.to_owned())
+/// Refuses outputs that cannot be written, that replace an input, or that are the same file, before any work is done.
+pub fn declare_outputs(files: &mut Files, arguments: &Arguments, shots: &[Shot], images: &Path) -> Result<(), Failure> {
+    let outputs = [
+        ("--output", Some(images)),
+        ("--preview", arguments.preview.as_deref()),
+        ("--stats", arguments.stats.as_deref()),
+    ];
+    for (option, path) in outputs.into_iter().filter_map(|(option, path)| Some((option, path?))) {
+        shots.iter().try_for_each(|shot| files.writes(option, &shot.file(path)))?;
+    }
+    Ok(())
 }
 
 /// Clouds of fewer bytes are checked before the work, in milliseconds; larger ones beside it, before anything is written.

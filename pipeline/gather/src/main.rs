@@ -39,6 +39,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let start = Instant::now();
     let common = &arguments.common;
     let (cloud_paths, scene_path) = inputs::paths(arguments)?;
+    let mut declared = inputs::declare(arguments)?;
     let estimator = estimator(arguments)?;
     let files = CloudFiles::open(cloud_paths)?;
     let clouds = files.clouds();
@@ -54,7 +55,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let media = media::assign(&arguments.medium, clouds::materials(clouds), &scene.materials)?;
     show_scale(arguments, &scene, clouds, &media, shots[0].settings.model);
     let output_path = arguments.output.as_deref().ok_or_else(|| Failure::usage("--output: give IMAGE.exr"))?;
-    inputs::check_outputs(arguments, &shots, output_path)?;
+    scene.files.iter().try_for_each(|path| declared.reads("a file that SCENE names", path))?;
+    inputs::declare_outputs(&mut declared, arguments, &shots, output_path)?;
     let mut first = shots.first().map(|shot| Output::create(&shot.file(output_path))).transpose()?;
     let at_once = files.are_small();
     if at_once {

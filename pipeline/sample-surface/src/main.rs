@@ -1,7 +1,9 @@
 //! `sample-surface SCENE -o CLOUD`: arguments and files; the phase itself is the library.
 
 use clap::Parser;
-use cli::{Common, Failure, Need, Progress, SceneArgs, material_table, parse_count, read_medium};
+use cli::{
+    Common, Failure, Files, Need, Progress, SceneArgs, file_name, is_file, material_table, parse_count, read_medium,
+};
 use formats::{
     atomic::{self, Output},
     cloud::{self, Cloud, Options, Shard},
@@ -22,9 +24,10 @@ use std::{
 #[command(version)]
 struct Arguments {
     /// Scene to light and sample: .glb or .gltf
+    #[arg(value_parser = file_name())]
     scene: PathBuf,
     /// Cloud to write
-    #[arg(short, long, value_name = "CLOUD", required_unless_present = "list_materials")]
+    #[arg(short, long, value_name = "CLOUD", required_unless_present = "list_materials", value_parser = file_name())]
     output: Option<PathBuf>,
     /// Samples drawn over all translucent surfaces: 250k, 1M, 1e6
     #[arg(short = 'n', long, value_name = "K", default_value = "1M", value_parser = parse_samples)]
@@ -56,10 +59,10 @@ struct Arguments {
     #[command(flatten)]
     scene_args: SceneArgs,
     /// Also write the cloud as binary PLY for viewers
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = file_name())]
     ply: Option<PathBuf>,
     /// Write statistics as JSON
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = file_name())]
     stats: Option<PathBuf>,
     /// Print the materials of SCENE
     #[arg(long)]
@@ -125,6 +128,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         return cli::print(&material_table(&scene)?);
     }
     let output_path = arguments.output.as_deref().ok_or_else(|| Failure::usage("--output: give CLOUD"))?;
+    let mut files = declare(arguments, output_path)?;
     check_memory(arguments)?;
     let medium = arguments.for_medium.as_deref().map(read_medium).transpose()?;
     let room = cli::available_memory_bytes().map_or(MAX_SAMPLES - 1, |bytes| bytes / BYTES_PER_SAMPLE);
@@ -132,6 +136,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let goal = goal.map(|(medium, error)| Goal { medium, error, most: room.min(MAX_SAMPLES - 1) });
     let mut seconds = Seconds::default();
     let (mut scene, environment) = arguments.scene_args.import(&arguments.scene, common)?;
+    scene.files.iter().try_for_each(|path| files.reads("a file that SCENE names", path))?;
     let settings = settings(arguments, &environment);
     let mut plan = Plan::new(&scene, &settings).map_err(|e| named(&arguments.scene, &e))?;
     if let Some(goal) = &goal {
@@ -165,6 +170,20 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     report(&cloud, common);
     Ok(())
+}
+
+/// All files that the arguments name. Those that the scene names are known once it is read.
+fn declare(arguments: &Arguments, output: &Path) -> Result<Files, Failure> {
+    let mut files = Files::default();
+    files.reads("SCENE", &arguments.scene)?;
+    arguments.scene_args.declare(&mut files)?;
+    if let Some(medium) = arguments.for_medium.as_deref().filter(|name| is_file(name)) {
+        files.reads("--for-medium", Path::new(medium))?;
+    }
+    files.writes("--output", output)?;
+    arguments.ply.iter().try_for_each(|path| files.writes("--ply", path))?;
+    arguments.stats.iter().try_for_each(|path| files.writes("--stats", path))?;
+    Ok(files)
 }
 
 /// Refuses what cannot fit before any work is done: the samples, and the scene's file once it is unpacked.

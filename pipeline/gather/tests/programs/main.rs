@@ -8,6 +8,7 @@ mod hostile;
 mod mutations;
 mod opaque;
 mod orbit;
+mod outputs;
 mod pipeline;
 mod shards;
 mod support;
