@@ -7,7 +7,14 @@
 .SUFFIXES:
 unexport MAKEFLAGS
 
+# All that is made goes to OUT, where `make clean` removes it: a name of the command line, never one that the environment
+# happens to hold.
+ifneq ($(filter environment%,$(origin OUT)),)
+$(warning OUT=$(OUT) of the environment is not used; give it to make: make OUT=FOLDER)
+override OUT := out
+endif
 OUT     ?= out
+$(if $(OUT),,$(error OUT is empty; give a folder, or leave it away for `out`))
 THREADS ?= $(shell nproc)
 SUBMIT  ?=
 CARGO   ?= cargo
@@ -15,6 +22,16 @@ SAMPLES ?= 1M
 SEED    ?= 0
 SPP     ?= 16
 MODEL   ?= directional-dipole
+
+# Names become targets and words of commands: one that make or the shell would read as something else is refused.
+odd      := ' " ` \ $$ ; & | < > ( ) * ? [ ] { } \# % : = ~ ! ^
+odd_in    = $(strip $(foreach c,$(odd),$(findstring $(c),$(1))) $(if $(filter 1,$(words x$(1)x)),,a space))
+CHECKED  := $(filter-out clean clean-images help,$(or $(MAKECMDGOALS),gallery))
+# $(1) a variable or what the name is of, $(2) the name
+check_name = $(if $(and $(CHECKED),$(call odd_in,$(2))),$(error $(1)=$(2): make cannot work with a name that has \
+  $(call odd_in,$(2)) in it; rename it, or give a link to it))
+check_names = $(foreach v,$(1),$(call check_name,$(v),$($(v))))
+$(call check_names,OUT SCENE MEDIUM ENVIRONMENT SAMPLES SEED MODEL)
 
 BIN := target/release
 SAMPLE := $(BIN)/sample-surface
@@ -61,6 +78,8 @@ endif
 # Title=picture, for the contact sheet.
 titled = $(foreach p,$(call pictures_of,$(1),$(2)),"$(1) $(basename $(notdir $(p)))/$(subst $(space),$(comma)$(space),$(call names_of,$(2)))=$(basename $(p)).png")
 
+SHEET  = $(foreach g,$(GALLERY),$(call titled,$(word 1,$(subst :, ,$(g))),$(word 2,$(subst :, ,$(g)))))
+
 .PHONY: .FORCE gallery own contact-sheet build test check check-images check-alarms check-power golden references browser-test slow farm-test peers fuzz accuracy curve curve-full scale bench lint scenes clouds images help clean clean-images
 
 ## gallery: build, and render every scene, medium and view of the gallery (what `make` does)
@@ -74,8 +93,8 @@ images: $(PICTURES)
 ## contact-sheet: all pictures of the gallery on one sheet, with their scenes, views and media
 contact-sheet: $(OUT)/gallery-$(RUN_NAME).png
 
-$(OUT)/gallery-$(RUN_NAME).png: $(PICTURES) | $(CONTACT_SHEET)
-	$(CONTACT_SHEET) $(foreach g,$(GALLERY),$(call titled,$(word 1,$(subst :, ,$(g))),$(word 2,$(subst :, ,$(g))))) -o $@
+$(OUT)/gallery-$(RUN_NAME).png: $(PICTURES) $(OUT)/gallery-$(RUN_NAME).settings | $(CONTACT_SHEET)
+	$(CONTACT_SHEET) $(SHEET) -o $@
 
 ## clouds: the gallery's clouds
 clouds: $(foreach s,$(sort $(foreach g,$(GALLERY),$(word 1,$(subst :, ,$(g))))),$(OUT)/$(s)/$(RUN_NAME).cloud)
@@ -84,39 +103,60 @@ clouds: $(foreach s,$(sort $(foreach g,$(GALLERY),$(word 1,$(subst :, ,$(g))))),
 build:
 	$(CARGO) build --release --workspace --quiet
 
-# What changes a result and is no file lies in one that is written only when it changes: $(1) file, $(2) text.
+# Beside every cloud and picture NAME lies NAME.settings, which says what it is made from: its own name, by which `make
+# clean` knows that it was made here; the folder make ran in; options; of each file its path, its size, and when its
+# content and it itself changed last. It is written only when that changes, and what depends on it is then made again:
+# also from a file of the same name in another folder, or from one that is older than the last.
+# $(1) NAME, $(2) options, expanded when it is written, $(3) files.
 define settings
-$(1): .FORCE
-	@mkdir -p $$(@D)
-	@echo '$(2)' | cmp -s - $$@ || echo '$(2)' > $$@
+$(1).settings: name = $(patsubst $(OUT)/%,%,$(1))
+$(1).settings: options = $(2)
+$(1).settings: $(3) .FORCE
+	$$(write_settings)
 endef
+define write_settings
+@[ -d $(@D) ] || mkdir -p $(@D); new=$$(printf '%s\n' $(call quoted,made by make: $(name)) "$$PWD" $(call quoted,$(options)); \
+  $(foreach f,$(filter-out .FORCE,$^),$(call identity,'$(f)'); $(if $(filter %.json %.exr %.hdr,$(f)),,$(call named_by,$(f));))); \
+  [ "$$new" = "$$(cat $@ 2>/dev/null)" ] || { printf '%s\n' "$$new" > $@.$$$$ && mv $@.$$$$ $@; }
+endef
+quoted   = '$(subst ','\'',$(1))'
+identity = stat -L -c '%n %s %.9Y %.9Z' $(1)
+# The same of the files that a .gltf or .glb names: of each "uri" of its JSON that is neither data nor elsewhere. A name
+# with an escape of JSON, which is not read here, counts as changed every time.
+define named_by
+{ if [ "$$(head -c 4 '$(1)')" = glTF ]; then head -c $$(($$(od -An -tu4 -j 12 -N 4 '$(1)') + 20)) '$(1)'; else cat '$(1)'; fi; } | \
+  tr '\t\n\r' '   ' | LC_ALL=C grep -ao '"uri" *: *"[^"]*"' | \
+  LC_ALL=C sed -e 's/^"uri" *: *"//' -e 's/"$$//' -e '/^data:/d' -e 's,\\/,/,g' -e '/:\/\//d' | LC_ALL=C sort -u | \
+  while IFS= read -r uri; do case $$uri in *\\*) date +%s.%N; continue; esac; \
+    file=$$(env printf %b "$$(printf %s "$$uri" | LC_ALL=C sed 's/%\([0-9A-Fa-f]\{2\}\)/\\x\1/g')"); \
+    $(call identity,"$(dir $(1))$$file") 2>/dev/null || printf '%s is not there\n' "$$file"; done
+endef
+# Makes what depends on it again if a file is not there that is made with it.
+unless_there = $(if $(wildcard $(1)),,.FORCE)
 
-ifndef SCENE
+$(eval $(call settings,$(OUT)/gallery-$(RUN_NAME),$$(SHEET)))
+
+ifeq ($(and $(SCENE),$(CHECKED)),)
 # A cloud depends on its scene, its environment and the format's version; programs are order-only, so a rebuild keeps
 # clouds. What else changes a cloud (samples, seed) is in its name.
 define cloud
-$(OUT)/$(1)/$(RUN_NAME).cloud: data/scenes/$(1).glb $(wildcard $(ENVIRONMENT_$(1))) $(OUT)/$(1)/$(RUN_NAME).settings \
-  crates/formats/cloud-version | $(SAMPLE)
+$(call settings,$(OUT)/$(1)/$(RUN_NAME),$$(ENVIRONMENT_$(1)),data/scenes/$(1).glb $(wildcard $(ENVIRONMENT_$(1))))
+$(OUT)/$(1)/$(RUN_NAME).cloud: data/scenes/$(1).glb $(OUT)/$(1)/$(RUN_NAME).settings crates/formats/cloud-version | $(SAMPLE)
 	$$(SUBMIT) $$(SAMPLE) --threads $$(THREADS) --seed $$(SEED) --samples $$(SAMPLES) $(call environment_of,$(1)) --quiet $$< -o $$@
 endef
 SCENES := $(patsubst data/scenes/%.glb,%,$(wildcard data/scenes/*.glb))
-$(foreach s,$(SCENES),$(eval $(call settings,$(OUT)/$(s)/$(RUN_NAME).settings,$(ENVIRONMENT_$(s)))))
 $(foreach s,$(SCENES),$(eval $(call cloud,$(s))))
 
-folder_of = $(OUT)/$(word 1,$(subst :, ,$(1)))/$(RUN_NAME)/$(word 2,$(subst :, ,$(1)))-$(MODEL)
-$(foreach g,$(GALLERY),$(eval $(call settings,$(call folder_of,$(g))/settings,\
-$(SPP) $(MEDIA_$(word 2,$(subst :, ,$(g)))) $(EXPOSURE_$(word 1,$(subst :, ,$(g)))))))
-
-# $(1) scene, $(2) medium, $(3) view
+# $(1) scene, $(2) medium, $(3) view, $(4) picture without its ending
 define picture
-$(OUT)/$(1)/$(RUN_NAME)/$(2)-$(MODEL)/$(3).exr: $(OUT)/$(1)/$(RUN_NAME).cloud $(call files_of,$(2)) data/views/$(1)/$(3).json \
-  $(OUT)/$(1)/$(RUN_NAME)/$(2)-$(MODEL)/settings | $(GATHER)
+$(call settings,$(4),--spp $$(SPP) --exposure $$(EXPOSURE_$(1)) $(call medium_options,$(2)),$(call files_of,$(2)) data/views/$(1)/$(3).json)
+$(4).exr: $(OUT)/$(1)/$(RUN_NAME).cloud $(OUT)/$(1)/$(RUN_NAME).settings $(4).settings $(call unless_there,$(4).png) | $(GATHER)
 	$$(SUBMIT) $$(GATHER) --threads $$(THREADS) --seed $$(SEED) --spp $$(SPP) --bssrdf $$(MODEL) $(call medium_options,$(2)) \
 	  $(call environment_of,$(1)) --view data/views/$(1)/$(3).json --preview $$(basename $$@).png \
 	  --exposure $$(or $$(EXPOSURE_$(1)),0) --quiet $$< data/scenes/$(1).glb -o $$@
 endef
-$(foreach g,$(GALLERY),$(foreach v,$(notdir $(basename $(wildcard data/views/$(word 1,$(subst :, ,$(g)))/*.json))),\
-$(eval $(call picture,$(word 1,$(subst :, ,$(g))),$(word 2,$(subst :, ,$(g))),$(v)))))
+$(foreach g,$(GALLERY),$(foreach p,$(call pictures_of,$(word 1,$(subst :, ,$(g))),$(word 2,$(subst :, ,$(g)))),\
+$(eval $(call picture,$(word 1,$(subst :, ,$(g))),$(word 2,$(subst :, ,$(g))),$(notdir $(basename $(p))),$(basename $(p))))))
 
 else
 # A user's own file: make SCENE=path.glb MEDIUM=marble [SAMPLES=4M], one image for each of its cameras, or for each of
@@ -124,17 +164,19 @@ else
 MEDIUM ?= marble
 OWN := $(OUT)/$(notdir $(basename $(SCENE)))/$(RUN_NAME)
 OWN_IMAGES := $(OWN)/$(or $(notdir $(basename $(MEDIUM))),own)-$(MODEL)
-$(eval $(call settings,$(OWN).settings,$(ENVIRONMENT) $(TRANSLUCENT)))
-$(eval $(call settings,$(OWN_IMAGES)/settings,$(SPP) $(EXPOSURE)))
+$(eval $(call settings,$(OWN),$$(strip $$(ENVIRONMENT) $$(TRANSLUCENT)),$(SCENE) $(wildcard $(ENVIRONMENT))))
 
 ifdef VIEWS
 VIEW_FILES := $(foreach v,$(VIEWS),$(or $(wildcard $(v)),$(error no view at $(v))))
 VIEW_NAMES := $(basename $(notdir $(VIEW_FILES)))
+$(foreach v,$(VIEW_FILES),$(call check_name,VIEWS,$(v)))
 $(if $(filter-out %.json,$(VIEW_FILES)),$(error VIEWS: not a .json file: $(filter-out %.json,$(VIEW_FILES))))
 $(if $(filter-out $(words $(sort $(VIEW_NAMES))),$(words $(VIEW_NAMES))),$(error VIEWS: two files of one name: $(VIEW_FILES)))
-# Of a list of views NAME.json the images are NAME.VIEW.exr, and NAME.views is written when all are there.
+# Of a list of views NAME.json the images are NAME.VIEW.exr, and NAME.views is written when all are there: their names.
 LISTS := $(shell awk 'FNR == 1 { text = "" } length(text) < 9 { text = text $$0; gsub(/[ \t\r]/, "", text); \
   if (text ~ /^(\[|{"views":)/ && !(FILENAME in seen)) { seen[FILENAME]; print FILENAME } }' $(VIEWS))
+$(foreach l,$(basename $(notdir $(LISTS))),$(if $(filter $(l).%,$(VIEW_NAMES)),$(error VIEWS: an image of the list $(l).json could \
+  have the name of that of $(firstword $(filter $(l).%,$(VIEW_NAMES))).json; rename one of them)))
 picture_of = $(OWN_IMAGES)/$(notdir $(basename $(1))).$(if $(filter $(1),$(LISTS)),views,exr)
 OWN_PICTURES := $(foreach v,$(VIEW_FILES),$(call picture_of,$(v)))
 else
@@ -146,23 +188,37 @@ endif
 own: $(OWN_PICTURES)
 	@echo "The pictures are in $(OWN_IMAGES)/: one .png and one OpenEXR image for each view."
 
-$(OWN).cameras: $(SCENE) | $(GATHER)
-	@mkdir -p $(@D)
+$(OWN).cameras: $(SCENE) $(OWN).settings | $(GATHER)
 	@$(GATHER) --list-cameras --quiet '$<' > $@.list
 	@sed -e 1d -e 's/ .*//' -e 's/^/CAMERAS += /' $@.list > $@
 	@rm $@.list
 	@test -s $@ || { echo "$<: it has no camera; give VIEWS='path/*.json'" >&2; exit 2; }
 
-$(OWN).cloud: $(SCENE) $(wildcard $(ENVIRONMENT)) $(OWN).settings crates/formats/cloud-version | $(SAMPLE)
-	$(SUBMIT) $(SAMPLE) --threads $(THREADS) --seed $(SEED) --samples $(SAMPLES) $(foreach t,$(TRANSLUCENT),--translucent $(t)) \
+$(OWN).cloud: $(SCENE) $(OWN).settings crates/formats/cloud-version | $(SAMPLE)
+	$(SUBMIT) $(SAMPLE) --threads $(THREADS) --seed $(SEED) --samples $(SAMPLES) $(foreach t,$(TRANSLUCENT),--translucent $(call quoted,$(t))) \
 	  $(if $(ENVIRONMENT),--environment $(ENVIRONMENT)) '$<' -o $@
 
-# $(1) image, or what says that all images of a list are there; $(2) the file of its view if it has one, $(3) option that says the view
+# Of a list: its images with their numbers in the file system, which are new of those that were written.
+images_of_list = cd $(@D) && stat -c '%i %n' $(basename $(@F)).*.exr 2>/dev/null
+lost_of_list = $(shell cd $(dir $(1)) 2>/dev/null && while IFS= read -r image; do [ -e "$$image" ] && [ -e "$${image%.exr}.png" ] || \
+  echo .FORCE; done 2>/dev/null < $(notdir $(1)))
+define list_before
+@$(images_of_list) > $(@F).before || true
+endef
+define list_after
+@made=$$($(images_of_list) | grep -vxFf $(@F).before | sed 's/^[0-9]* //'); printf '%s\n' "$$made" > $@ && rm $@.before
+endef
+
+# $(1) image, or what says that all images of a list are there; $(2) the file of its view if it has one, $(3) option that
+# says the view. A medium may be one of the built-in ones, which are those of data/media.
 define own_picture
-$(1): $(OWN).cloud $(wildcard $(MEDIUM)) $(2) $(OWN_IMAGES)/settings | $(GATHER)
+$(call settings,$(basename $(1)),--spp $$(SPP) --exposure $$(EXPOSURE) --medium $$(MEDIUM) $(3),$(wildcard $(MEDIUM) data/media/$(MEDIUM).json) $(2))
+$(1): $(OWN).cloud $(OWN).settings $(basename $(1)).settings $(if $(filter %.views,$(1)),$(call lost_of_list,$(1)),$(call \
+  unless_there,$(basename $(1)).png)) | $(GATHER)
+	$(if $(filter %.views,$(1)),$$(list_before))
 	$$(SUBMIT) $(GATHER) --threads $$(THREADS) --seed $$(SEED) --spp $$(SPP) --bssrdf $$(MODEL) $$(if $$(MEDIUM),--medium $$(MEDIUM)) $(3) \
 	  $$(if $$(ENVIRONMENT),--environment $$(ENVIRONMENT)) --preview $$(basename $$@).png --exposure $$(or $$(EXPOSURE),0) $$< '$$(SCENE)' -o $$(basename $$@).exr
-	$(if $(filter %.views,$(1)),@touch $$@)
+	$(if $(filter %.views,$(1)),$$(list_after))
 endef
 $(foreach c,$(CAMERAS),$(eval $(call own_picture,$(OWN_IMAGES)/camera$(c).exr,,--camera $(c))))
 $(foreach v,$(VIEW_FILES),$(eval $(call own_picture,$(call picture_of,$(v)),$(v),--view $(v))))
@@ -200,6 +256,8 @@ REFERENCE_SEED  := 1
 REFERENCE_COUNT := 64
 GOLDEN := tests/golden
 
+$(call check_names,GOLDEN CHECK_SEED CHECK_COUNT CHECK_SIZE)
+$(if $(GOLDEN),,$(error GOLDEN is empty; leave it away for tests/golden))
 CHECK_SEEDS  := $(shell seq $(CHECK_SEED) $$(($(CHECK_SEED) + $(CHECK_COUNT) - 1)))
 CHECK_SCENES := $(foreach g,$(GALLERY),$(firstword $(subst :, ,$(g))))
 # $(1) scene
@@ -214,10 +272,12 @@ check_gather  = --spp $(call check_setting,$(1),SPP) --width $(CHECK_SIZE) --hei
 # Here the programs are what is tested, so all is made again when they change; sample-surface would keep a cloud that is
 # there.
 define check_rules
-$(call check_folder,$(1))/%.cloud: data/scenes/$(1).glb $(wildcard $(ENVIRONMENT_$(1))) crates/formats/cloud-version $(SAMPLE)
+$(call settings,$(call check_folder,$(1))/cloud,$(call check_sample,$(1)),data/scenes/$(1).glb $(wildcard $(ENVIRONMENT_$(1))))
+$(call settings,$(call check_folder,$(1))/image,$(call check_gather,$(1),$(2)),$(call files_of,$(2)) $(call check_view,$(1)))
+$(call check_folder,$(1))/%.cloud: data/scenes/$(1).glb $(call check_folder,$(1))/cloud.settings crates/formats/cloud-version $(SAMPLE)
 	@mkdir -p $$(@D) && rm -f $$@
 	$$(SUBMIT) $$(SAMPLE) --threads $$(THREADS) --seed $$* $(call check_sample,$(1)) --quiet $$< -o $$@
-$(call check_folder,$(1))/%.exr: $(call check_folder,$(1))/%.cloud $(call files_of,$(2)) $(call check_view,$(1)) $(GATHER)
+$(call check_folder,$(1))/%.exr: $(call check_folder,$(1))/%.cloud $(call check_folder,$(1))/image.settings $(GATHER)
 	@mkdir -p $$(@D)
 	$$(SUBMIT) $$(GATHER) --threads $$(THREADS) --seed $$* $(call check_gather,$(1),$(2)) --quiet $$< data/scenes/$(1).glb -o $$@
 CHECK_IMAGES += $(foreach s,$(CHECK_SEEDS),$(call check_folder,$(1))/$(s).exr)
@@ -226,7 +286,7 @@ $(foreach g,$(GALLERY),$(eval $(call check_rules,$(word 1,$(subst :, ,$(g))),$(w
 
 ## check: small images with new clouds against tests/golden, by statistics (docs/check.md; CHECK_SEED=N for other seeds)
 check: build
-	@$(MAKE) --no-print-directory --silent check-images
+	@$(MAKE) --no-print-directory --silent check-images OUT='$(OUT)'
 	@code=0; for scene in $(foreach s,$(CHECK_SCENES),$(s)=$(call check_folder,$(s))); do \
 	  $(COMPARE) --replicates --family $(words $(CHECK_SCENES)) --quiet --json "$${scene#*=}.json" $(GOLDEN)/"$${scene%%=*}" "$${scene#*=}" || code=1; \
 	done; exit $$code
@@ -236,14 +296,16 @@ check-images: $(CHECK_IMAGES)
 
 ## references: tests/golden again, from other seeds than those of `make check`; see docs/check.md for when
 references: build
-	@$(MAKE) --no-print-directory --silent check-images CHECK_SEED=$(REFERENCE_SEED) CHECK_COUNT=$(REFERENCE_COUNT)
-	@$(MAKE) --no-print-directory golden CHECK_SEED=$(REFERENCE_SEED) CHECK_COUNT=$(REFERENCE_COUNT)
+	@$(MAKE) --no-print-directory --silent check-images OUT='$(OUT)' CHECK_SEED=$(REFERENCE_SEED) CHECK_COUNT=$(REFERENCE_COUNT)
+	@$(MAKE) --no-print-directory golden OUT='$(OUT)' GOLDEN='$(GOLDEN)' CHECK_SEED=$(REFERENCE_SEED) CHECK_COUNT=$(REFERENCE_COUNT) \
+	  REFERENCE_SEED=$(REFERENCE_SEED) REFERENCE_COUNT=$(REFERENCE_COUNT)
 
 golden: $(foreach s,$(CHECK_SCENES),golden-$(s))
 
-# The figures, the mean image, and the commands that made them.
+# The figures, the mean image, and the commands that made them; never from the few images of `make check`.
 define golden
 golden-$(1):
+	@test '$(CHECK_SEED) $(CHECK_COUNT)' = '$(REFERENCE_SEED) $(REFERENCE_COUNT)' || { echo '$$@: use make references' >&2; exit 2; }
 	$(COMPARE) --summarise $(call check_folder,$(1)) $(GOLDEN)/$(1)
 	@printf '%s\n' 'for s in $$$$(seq $(firstword $(CHECK_SEEDS)) $(lastword $(CHECK_SEEDS))); do' \
 	  '  sample-surface --seed $$$$s $(call check_sample,$(1)) data/scenes/$(1).glb -o $$$$s.cloud' \
@@ -255,7 +317,7 @@ $(foreach g,$(GALLERY),$(eval $(call golden,$(word 1,$(subst :, ,$(g))),$(word 2
 ## check-alarms: `make check` under RUNS=200 new seeds, none of which may fail (an hour)
 RUNS ?= 200
 check-alarms: build
-	tests/check/alarms.sh $(RUNS)
+	OUT='$(OUT)' tests/check/alarms.sh $(RUNS)
 
 ## check-power: errors planted one by one into a copy of the tree, each of which `make check` must find (many minutes)
 check-power:
@@ -268,11 +330,15 @@ slow: build
 	$(CARGO) test --release --package gather --features slow --test programs -- --nocapture mutations faults
 
 # Outside the workspace, with a nightly compiler. What is new goes to OUT, not into the corpus.
-TARGET  ?= cloud
+# TARGET of the environment is mostly a compiler's.
+TARGET  := cloud
+TARGETS := $(basename $(notdir $(wildcard fuzz/targets/*.rs)))
 SECONDS ?= 3600
+$(call check_names,TARGET)
 
 ## fuzz: look for bytes that break TARGET=cloud, gltf, image, limits, medium or view, for SECONDS=3600 (fuzz/README.md)
 fuzz:
+	$(if $(filter $(TARGET),$(TARGETS)),,$(error TARGET=$(TARGET): it is one of $(TARGETS)))
 	@mkdir -p $(OUT)/fuzz/$(TARGET)/found
 	$(CARGO) +nightly fuzz run --fuzz-dir fuzz $(TARGET) $(OUT)/fuzz/$(TARGET)/found fuzz/corpus/$(TARGET) -- \
 	  -artifact_prefix=$(abspath $(OUT))/fuzz/$(TARGET)/ -max_total_time=$(SECONDS) \
@@ -316,13 +382,37 @@ lint:
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --workspace --all-targets --quiet -- -D warnings
 
+# Removes, by the settings in OUT that begin with their own names, what was made with them; then folders that are empty.
+# Nothing else in OUT was made here, whatever it is called, and no link in it is followed. $(1) images or all
+define remove
+@out=$(call quoted,$(OUT)); case $$out in /*) ;; *) out=./$$out; esac; [ -d "$$out" ] || exit 0; \
+(cd "$$out" && find . -maxdepth 4 -type f -name '*.settings' -exec sh -c ' \
+  for file; do \
+    name=$${file#./} name=$${name%.settings}; \
+    [ "$$(head -n 1 "$$file")" = "made by make: $$name" ] || continue; \
+    case $$name in */*) folder=$${name%/*} ;; *) folder=. ;; esac; \
+    rm -f "$$name.exr" "$$name.png"; \
+    [ ! -f "$$name.views" ] || while IFS= read -r image; do \
+      case $$image in */*) ;; *.exr) rm -f "$$folder/$$image" "$$folder/$${image%.exr}.png"; esac; done < "$$name.views"; \
+    case $$name in check/*/image) rm -f "$$folder"/[0-9]*.exr; esac; \
+    if [ $(1) = all ]; then \
+      case $$name in check/*/cloud) rm -f "$$folder"/[0-9]*.cloud "$$folder.json"; esac; \
+      rm -f "$$folder/.$${name##*/}".*.tmp "$$name.cloud" "$$name.views" "$$name.views.before" "$$name.cameras" "$$name.cameras.list" "$$file"; \
+    fi; \
+    while [ "$$folder" != . ] && rmdir "$$folder" 2>/dev/null; do \
+      case $$folder in */*) folder=$${folder%/*} ;; *) folder=. ;; esac; done; \
+  done' sh {} +); \
+rmdir "$$out" 2>/dev/null || [ -z "$$(ls -A "$$out")" ] || [ $(1) = images ] || \
+  printf '%s\n' $(call quoted,$(OUT) stays: it holds what this Makefile did not make)
+endef
+
 ## clean-images: remove images, keep clouds
 clean-images:
-	find $(OUT) \( -name '*.exr' -o -name '*.png' \) -delete
+	$(call remove,images)
 
-## clean: remove all that was rendered
+## clean: remove all that was rendered, and nothing else
 clean:
-	rm -rf $(OUT)
+	$(call remove,all)
 
 ## help: this list
 help:

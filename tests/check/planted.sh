@@ -39,8 +39,14 @@ planted=(
   'diffusion-coefficient-1-percent|crates/bssrdf/src/medium.rs|1.0 / \(3.0 \* self.reduced_extinction|1.01 / (3.0 * self.reduced_extinction'
 )
 
-# The tree as it is, not as it was committed last. All files are new: cargo goes by their times.
-rm -rf "$work/tree" && mkdir "$work/tree"
+# The tree as it is, not as it was committed last. All files are new: cargo goes by their times. The copy of the last run
+# is removed, which has the mark; a folder of somebody else's is not.
+mark=$work/tree/.planted
+if [ -e "$work/tree" ] && [ ! -e "$mark" ]; then
+    echo "$work/tree: this script did not make it; give another folder as WORK" >&2
+    exit 2
+fi
+rm -rf "$work/tree" && mkdir "$work/tree" && touch "$mark"
 git ls-files -z --cached --others --exclude-standard | tar -c --null -T - | tar -x -m -C "$work/tree"
 ln -s "$CARGO_TARGET_DIR" "$work/tree/target"
 

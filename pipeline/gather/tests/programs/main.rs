@@ -5,6 +5,8 @@ mod crops;
 mod environment;
 mod faults;
 mod hostile;
+#[cfg(unix)]
+mod make;
 mod mutations;
 mod opaque;
 mod orbit;

@@ -1,0 +1,138 @@
+//! Pictures are of the files that were named, as these are now.
+
+use super::{IMAGES, Tree, medium, sky, view};
+use crate::support::data;
+use serde_json::json;
+use std::{fs, os::unix::fs::PermissionsExt};
+
+/// Of two files of one name the last must count, also if it is the older one. Seen to fail where targets depended on
+/// files by their times: each of these left the picture of the other file.
+#[test]
+fn a_picture_is_of_the_file_that_was_named() {
+    let tree = Tree::new();
+    tree.scene("a/thing.gltf", 1.0);
+    let other = tree.scene("b/thing.gltf", 2.0);
+    tree.write("a/s.json", view(0.5));
+    let start = ["SCENE=a/thing.gltf", "VIEWS=a/s.json", "MEDIUM=marble"];
+    tree.make(&start);
+    let image = format!("{IMAGES}/s.exr");
+    tree.remakes(&image, &["SCENE=b/thing.gltf", "VIEWS=a/s.json", "MEDIUM=marble"], || {
+        tree.write_old("b/thing.gltf", &other);
+    });
+    tree.remakes(&image, &["SCENE=b/thing.gltf", "VIEWS=b/s.json", "MEDIUM=marble"], || {
+        tree.write_old("b/s.json", view(0.6));
+    });
+}
+
+/// The same of media and environments, and of one file that an older one takes the place of.
+#[test]
+fn a_picture_is_of_the_medium_and_the_environment_that_were_named() {
+    let tree = Tree::new();
+    tree.scene("thing.gltf", 1.0);
+    tree.write("s.json", view(0.5));
+    tree.write("a/m.json", medium(1.0));
+    tree.write("sky.exr", sky(0.1));
+    let image = "out/thing/k500-s0/m-directional-dipole/s.exr";
+    tree.make(&["SCENE=thing.gltf", "VIEWS=s.json", "MEDIUM=a/m.json", "ENVIRONMENT=sky.exr"]);
+    let arguments = ["SCENE=thing.gltf", "VIEWS=s.json", "MEDIUM=b/m.json", "ENVIRONMENT=sky.exr"];
+    tree.remakes(image, &arguments, || tree.write_old("b/m.json", medium(2.0)));
+    tree.remakes(image, &arguments, || tree.write_old("sky.exr", sky(0.7)));
+    // Of the size and time of the last.
+    tree.remakes(image, &arguments, || tree.write_old("b/m.json", medium(3.0)));
+}
+
+/// What a .gltf names beside it. Seen to fail where a picture depended on the .gltf alone.
+#[test]
+fn a_picture_is_of_what_the_scene_names() {
+    let tree = Tree::new();
+    tree.scene("a/thing.gltf", 1.0);
+    let arguments = ["SCENE=a/thing.gltf", "MEDIUM=marble", "VIEWS=s.json"];
+    tree.write("s.json", view(0.5));
+    tree.make(&arguments);
+    let mesh = fs::read(tree.path("a/thing of  parts.bin")).expect("reads");
+    // Positions are the first 36888 bytes: all of them times two.
+    let larger: Vec<u8> = mesh[..36888]
+        .as_chunks::<4>()
+        .0
+        .iter()
+        .flat_map(|x| (2.0 * f32::from_le_bytes(*x)).to_le_bytes())
+        .chain(mesh[36888..].iter().copied())
+        .collect();
+    tree.remakes(&format!("{IMAGES}/s.exr"), &arguments, || tree.write_old("a/thing of  parts.bin", larger));
+    tree.write("a/card.png", "another");
+    assert_eq!(tree.make(&arguments).made(), ["sample-surface", "gather"], "a texture changed");
+    fs::remove_file(tree.path("a/card.png")).expect("removes");
+    assert_eq!(tree.make(&arguments).made(), ["sample-surface", "gather"], "a texture is gone");
+    assert!(tree.make(&arguments).made().is_empty());
+}
+
+/// Seen to fail where the OpenEXR image stood for its .png, and a list of views for its images.
+#[test]
+fn what_was_removed_is_made_again() {
+    let tree = Tree::new();
+    tree.scene("thing.gltf", 1.0);
+    tree.write("s.json", view(0.5));
+    let [mut near, mut far] =
+        [0.4, 0.5].map(|height| serde_json::from_str::<serde_json::Value>(&view(height)).expect("JSON"));
+    (near["name"], far["name"]) = ("near".into(), "far".into());
+    tree.write("list.json", json!([near, far]).to_string());
+    let arguments = ["SCENE=thing.gltf", "VIEWS=s.json list.json"];
+    tree.make(&arguments);
+    assert_eq!(tree.bytes(&format!("{IMAGES}/list.views")), b"list.far.exr\nlist.near.exr\n");
+    for lost in ["s.png", "list.near.exr", "list.far.png", "list.views"] {
+        fs::remove_file(tree.path(IMAGES).join(lost)).expect("removes");
+        assert_eq!(tree.make(&arguments).made(), ["gather"], "{lost}");
+        assert!(tree.path(IMAGES).join(lost).exists(), "{lost}");
+        assert!(tree.make(&arguments).made().is_empty(), "{lost}");
+    }
+}
+
+/// The cameras are those of the scene that was named, not of its younger namesake.
+#[test]
+fn cameras_are_of_the_scene_that_was_named() {
+    let tree = Tree::new();
+    tree.scene("a/thing.gltf", 1.0);
+    let mut other: serde_json::Value = serde_json::from_slice(&tree.scene("b/thing.gltf", 1.0)).expect("JSON");
+    other["nodes"][0]["camera"] = 0.into();
+    tree.write_old("b/thing.gltf", other.to_string());
+    for (scene, cameras) in [("a", "CAMERAS += 0\n"), ("b", "CAMERAS += 0\nCAMERAS += 1\n")] {
+        tree.make(&[&format!("SCENE={scene}/thing.gltf"), "out/thing/k500-s0.cameras"]);
+        assert_eq!(String::from_utf8_lossy(&tree.bytes("out/thing/k500-s0.cameras")), cameras);
+    }
+}
+
+/// The gallery and the images of `make check`, of one scene. Seen to fail where the .png stood for nothing, where an older
+/// picture in the place of the environment changed nothing, and where the sheet of one model stayed for another.
+#[test]
+fn the_gallery_is_of_what_it_was_made_from() {
+    let tree = Tree::new();
+    let slab = fs::read(data("scenes/slab.glb")).expect("reads");
+    tree.write("data/scenes/thing.glb", slab);
+    tree.write("data/views/thing/s.json", view(0.5));
+    tree.write("data/media/m.json", medium(1.0));
+    tree.write("sky.exr", sky(0.1));
+    tree.write("target/release/contact-sheet", "#!/bin/sh\nfor sheet; do :; done\necho \"$@\" > \"$sheet\"\n");
+    let executable = fs::Permissions::from_mode(0o755);
+    fs::set_permissions(tree.path("target/release/contact-sheet"), executable).expect("sets a mode");
+    let before = tree.files();
+    let made = |arguments: &[&str], programs: &[&str]| {
+        let all = [&["GALLERY=thing:m", "ENVIRONMENT_thing=sky.exr"], arguments].concat();
+        assert_eq!(tree.make(&all).made(), programs, "{arguments:?}");
+        assert!(tree.make(&all).made().is_empty(), "{arguments:?}");
+    };
+    made(&[], &["sample-surface", "gather", "contact-sheet"]);
+    fs::remove_file(tree.path("out/thing/k500-s0/m-directional-dipole/s.png")).expect("removes");
+    made(&[], &["gather", "contact-sheet"]);
+    tree.write_old("sky.exr", sky(0.7));
+    made(&[], &["sample-surface", "gather", "contact-sheet"]);
+    made(&["MODEL=standard-dipole"], &["gather", "contact-sheet"]);
+    made(&[], &["contact-sheet"]);
+
+    let check = ["check-images", "CHECK_COUNT=1", "CHECK_SAMPLES=500", "CHECK_SPP=1", "CHECK_SIZE=8"];
+    made(&check, &["sample-surface", "gather"]);
+    made(&[&check[..], &["ENVIRONMENT_thing=1,1,1"]].concat(), &["sample-surface", "gather"]);
+    tree.write_old("data/media/m.json", medium(2.0));
+    made(&[&check[..], &["ENVIRONMENT_thing=1,1,1"]].concat(), &["gather"]);
+    tree.make(&["clean", "GALLERY=thing:m"]);
+    assert_eq!(tree.files(), before);
+}
