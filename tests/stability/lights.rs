@@ -113,10 +113,10 @@ fn area_light_on_the_surface() {
     }
 }
 
-/// A cone without a soft edge, `cos_inner = cos_outer`: its falloff has a width all the same.
+/// A cone without a soft edge, whose angles are the same: all light on one side of it, none on the other.
 #[test]
 fn spot_without_a_soft_edge() {
-    let spot = Spot { axis: DVec3::NEG_Z, cos_inner: 0.8, cos_outer: 0.8 };
+    let spot = Spot::new(DVec3::NEG_Z, 0.8f64.acos(), 0.8f64.acos());
     let light = |x: f64| PointLight {
         position: DVec3::new(x, 0.0, 1.0),
         intensity: DVec3::ONE,
@@ -125,6 +125,8 @@ fn spot_without_a_soft_edge() {
     };
     let lit = light(0.0).illuminate(&middle(), [0.5; 2]).expect("on the axis");
     assert!((lit.irradiance - DVec3::ONE).length() < 1e-12);
-    assert!(light(0.75).illuminate(&middle(), [0.5; 2]).is_none(), "on the edge, where the falloff is 0");
+    let within = light(0.7499).illuminate(&middle(), [0.5; 2]).expect("within the edge");
+    assert!((within.irradiance.x * (1.0f64 + 0.7499 * 0.7499).powf(1.5) - 1.0).abs() < 1e-12);
+    assert!(light(0.7501).illuminate(&middle(), [0.5; 2]).is_none(), "beyond the edge");
     assert!(light(1.0).illuminate(&middle(), [0.5; 2]).is_none());
 }

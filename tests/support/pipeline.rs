@@ -64,6 +64,7 @@ pub fn sampled_with(world: &World, sampling: &Sampling, normals: NormalKind) -> 
             normals: if normals == NormalKind::Geometric { "geometric" } else { "shading" }.into(),
             metres_per_unit: 1.0,
             light_unit: "radiometric".into(),
+            emission_unit: "radiometric".into(),
             environment: "0,0,0".into(),
         },
     };

@@ -63,6 +63,7 @@ fn facts() -> Meta {
         normals: "geometric".into(),
         metres_per_unit: 1.0,
         light_unit: "radiometric".into(),
+        emission_unit: "radiometric".into(),
         environment: "0,0,0".into(),
     };
     let material = SampledMaterial { name: "test".into(), index: 0, halves: [Group::default(); 2], area_m2: 1.0 };

@@ -27,9 +27,12 @@ pub struct SceneArgs {
     /// Size of one unit of SCENE, m
     #[arg(long, value_name = "M", default_value_t = 1.0, value_parser = parse_positive)]
     pub metres_per_unit: f64,
-    /// Take the file's light numbers as W, or as lm and divide them by 683 lm/W
+    /// Take the numbers of the file's lights as W, or as lm and divide them by 683 lm/W
     #[arg(long, value_name = "UNIT", default_value = "radiometric")]
     pub light_unit: LightUnit,
+    /// The same of its emitting materials [default: that of --light-unit]
+    #[arg(long, value_name = "UNIT")]
+    pub emission_unit: Option<LightUnit>,
     /// Refuse a mesh whose translucent surfaces are open, flipped, inside out or there twice, instead of a warning
     #[arg(long)]
     pub strict: bool,
@@ -60,11 +63,12 @@ impl SceneArgs {
 
     /// Reads the scene and the environment that it is given; prints the import's warnings.
     pub fn import(&self, path: &Path, common: &Common) -> Result<(Scene, Environment), Failure> {
-        let light_unit = match self.light_unit {
-            LightUnit::Radiometric => scene::LightUnit::Radiometric,
-            LightUnit::Photometric => scene::LightUnit::Photometric,
+        let options = ImportOptions {
+            metres_per_unit: self.metres_per_unit,
+            light_unit: self.light_unit.of_scene(),
+            emission_unit: self.emission_unit().of_scene(),
         };
-        let mut scene = Scene::import(path, &ImportOptions { metres_per_unit: self.metres_per_unit, light_unit })?;
+        let mut scene = Scene::import(path, &options)?;
         scene.warnings.iter().for_each(|w| common.warn(format_args!("{}: {w}", path.display())));
         let source = self.environment.as_ref().unwrap_or(&EnvironmentSource::Constant(DVec3::ZERO));
         let environment = source.read(self.environment_scale, self.environment_rotation)?;
@@ -94,6 +98,11 @@ impl SceneArgs {
         Ok(())
     }
 
+    /// What the numbers of emitting materials are.
+    pub fn emission_unit(&self) -> LightUnit {
+        self.emission_unit.unwrap_or(self.light_unit)
+    }
+
     pub fn normal_kind(&self) -> NormalKind {
         match self.normals {
             Normals::Shading => NormalKind::Shading,
@@ -112,6 +121,13 @@ impl Normals {
 }
 
 impl LightUnit {
+    fn of_scene(self) -> scene::LightUnit {
+        match self {
+            LightUnit::Radiometric => scene::LightUnit::Radiometric,
+            LightUnit::Photometric => scene::LightUnit::Photometric,
+        }
+    }
+
     pub fn name(self) -> &'static str {
         match self {
             LightUnit::Radiometric => "radiometric",

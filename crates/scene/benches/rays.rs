@@ -23,7 +23,11 @@ struct Ray {
 static SCENE: LazyLock<Scene> = LazyLock::new(|| {
     let default = || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../data/scenes/figure.glb");
     let path = std::env::var_os("SCENE").map_or_else(default, PathBuf::from);
-    let options = ImportOptions { metres_per_unit: 1.0, light_unit: LightUnit::Radiometric };
+    let options = ImportOptions {
+        metres_per_unit: 1.0,
+        light_unit: LightUnit::Radiometric,
+        emission_unit: LightUnit::Radiometric,
+    };
     Scene::import(&path, &options).expect("the scene can be read")
 });
 

@@ -2,6 +2,7 @@
 
 use crate::{Scene, texture::Texture, volume::Volume};
 use glam::{DVec3, DVec4};
+use std::{collections::BTreeMap, sync::Arc};
 
 /// What a surface looks like to light, apart from any medium below it.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,12 +41,21 @@ impl Scene {
 
     /// Tells `put` all that colours and holes depend on: they light and shadow what is sampled.
     pub(crate) fn note_colors(&self, put: &mut impl FnMut(&[u8])) {
+        // A picture of many materials is noted once, and then by its number.
+        let mut numbers = BTreeMap::new();
         for material in &self.materials {
             let cutoff = material.cutoff.map_or(f64::INFINITY, f64::from);
             material.base_color.to_array().iter().chain([&cutoff]).for_each(|x| put(&x.to_le_bytes()));
             let Some(texture) = &material.base_texture else { continue };
             let [along, down] = texture.wrap.map(|w| w as u8);
-            put(&[1, along, down, u8::from(texture.nearest)]);
+            let next = numbers.len() as u64;
+            let number = *numbers.entry(Arc::as_ptr(&texture.picture)).or_insert(next);
+            let known = number < next;
+            put(&[1 + u8::from(known), along, down, u8::from(texture.nearest)]);
+            if known {
+                put(&number.to_le_bytes());
+                continue;
+            }
             put(&(texture.picture.width as u64).to_le_bytes());
             put(&(texture.picture.texels.len() as u64).to_le_bytes());
             put(texture.picture.texels.as_flattened());

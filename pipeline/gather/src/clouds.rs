@@ -52,6 +52,7 @@ fn difference(one: &Meta, two: &Meta) -> Option<&'static str> {
     let differences = [
         (a.metres_per_unit != b.metres_per_unit, "--metres-per-unit"),
         (a.light_unit != b.light_unit, "--light-unit"),
+        (a.emission_unit != b.emission_unit, "--emission-unit"),
         (one.geometry != two.geometry, "their meshes or materials differ"),
         (names(one) != names(two), "their translucent materials differ"),
         (one.lights != two.lights, "their lights differ"),

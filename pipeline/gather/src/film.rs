@@ -140,14 +140,13 @@ impl Pixel {
         self.variance
     }
 
-    /// All numbers that reach the file, in the order of [`channel_names`].
-    fn values(&self) -> [f32; 28] {
+    /// All numbers that reach the file, in the order of [`channel_names`]; the position is relative to `origin`, m.
+    fn values(&self, origin: DVec3) -> [f32; 28] {
         let mut values = [0.0; 28];
-        let vectors = [
-            &[self.beauty()],
-            &self.layers[..],
-            &[self.variance.max(DVec3::ZERO), self.guide.normal, self.guide.position],
-        ];
+        // Where nothing was met it is 0, whatever it is relative to.
+        let position = if self.guide.normal == DVec3::ZERO { DVec3::ZERO } else { self.guide.position - origin };
+        let vectors =
+            [&[self.beauty()], &self.layers[..], &[self.variance.max(DVec3::ZERO), self.guide.normal, position]];
         let numbers = vectors.concat().into_iter().flat_map(|v| v.to_array()).chain([self.guide.depth]);
         values.iter_mut().zip(numbers).for_each(|(value, x)| *value = x as f32);
         values
@@ -155,7 +154,7 @@ impl Pixel {
 
     /// True if every number can go into a file.
     pub fn is_finite(&self) -> bool {
-        self.values().iter().all(|x| x.is_finite())
+        self.values(DVec3::ZERO).iter().all(|x| x.is_finite())
     }
 }
 
@@ -171,19 +170,25 @@ fn channel_names() -> Vec<String> {
     names
 }
 
-/// The pixels of a part of an image of this size, in its place there, without attributes.
-pub fn part(pixels: &[Pixel], part: Crop, size: [usize; 2]) -> Image {
+/// The pixels of a part of an image of this size, in its place there, without attributes. Positions are relative to
+/// `origin`, m.
+pub fn part(pixels: &[Pixel], part: Crop, size: [usize; 2], origin: DVec3) -> Image {
     let whole = Window { position: [0, 0], size };
     let display = (part.pixels() < size[0] * size[1]).then_some(whole);
-    Image { window: [part.x as i32, part.y as i32], display, ..image(pixels, part.width, part.height) }
+    Image { window: [part.x as i32, part.y as i32], display, ..about(pixels, part.width, part.height, origin) }
 }
 
 /// The pixels as an image without attributes.
 pub fn image(pixels: &[Pixel], width: usize, height: usize) -> Image {
+    about(pixels, width, height, DVec3::ZERO)
+}
+
+/// The same with positions relative to `origin`, m.
+fn about(pixels: &[Pixel], width: usize, height: usize, origin: DVec3) -> Image {
     let mut channels: Vec<Channel> =
         channel_names().into_iter().map(|name| Channel { name, samples: Vec::with_capacity(pixels.len()) }).collect();
     for pixel in pixels {
-        channels.iter_mut().zip(pixel.values()).for_each(|(channel, x)| channel.samples.push(x));
+        channels.iter_mut().zip(pixel.values(origin)).for_each(|(channel, x)| channel.samples.push(x));
     }
     Image { width, height, channels, ..Image::default() }
 }
@@ -210,6 +215,17 @@ pub fn covers(paths_per_pixel: u32, second_half: u64) -> &'static str {
 mod tests {
     use super::*;
 
+    /// Positions are relative to what they should be, and 0 where nothing is met. Seen to catch: minus the origin there.
+    #[test]
+    fn positions_relative_to_an_origin() {
+        let met = Guide { normal: DVec3::Y, position: DVec3::new(1e6 + 0.25, 2.0, 3.0), depth: 1.0 };
+        let pixels = [met, Guide::default()].map(|guide| PixelSum::default().pixel(None, guide));
+        let crop = Crop { x: 0, y: 0, width: 2, height: 1 };
+        let image = part(&pixels, crop, [2, 1], DVec3::new(1e6, 0.0, 1.0));
+        let plane = |name: &str| &image.channels.iter().find(|c| c.name == name).expect("a channel").samples;
+        assert_eq!(["P.X", "P.Y", "P.Z"].map(plane), [&[0.25, 0.0], &[2.0, 0.0], &[2.0, 0.0]]);
+    }
+
     #[test]
     fn mean_and_variance_of_four_paths() {
         let mut sum = PixelSum::default();
@@ -233,7 +249,7 @@ mod tests {
 
     #[test]
     fn channels_and_values_go_together() {
-        assert_eq!(channel_names().len(), Pixel::default().values().len());
+        assert_eq!(channel_names().len(), Pixel::default().values(DVec3::ZERO).len());
         let guide = Guide { depth: 7.0, ..Guide::default() };
         let image = image(&[Pixel { guide, ..Pixel::default() }], 1, 1);
         assert_eq!(image.channel("Z"), Some(&[7.0][..]));

@@ -109,10 +109,13 @@ impl CloudFiles {
         let (meta, cloud_path) = (self.clouds[0].meta(), &self.paths[0]);
         let (here, there) = (arguments.scene_args.metres_per_unit, meta.options.metres_per_unit);
         let unit = arguments.scene_args.light_unit.name();
+        let emission_unit = arguments.scene_args.emission_unit().name();
         let differs = if here != there {
             format!("--metres-per-unit is {here}, the cloud's {there}")
         } else if unit != meta.options.light_unit {
             format!("--light-unit is {unit}, the cloud's {}", meta.options.light_unit)
+        } else if emission_unit != meta.options.emission_unit {
+            format!("--emission-unit is {emission_unit}, the cloud's {}", meta.options.emission_unit)
         } else if scene.geometry_digest() != meta.geometry {
             "its mesh or materials differ".into()
         } else if meta

@@ -177,7 +177,8 @@ fn write_image(
     path: &Path,
 ) -> Result<(), Failure> {
     let (settings, part) = (facts.settings, facts.settings.part());
-    let mut image = film::part(&rendered.pixels, part, [settings.width, settings.height]);
+    let origin = facts.clouds[0].meta().exchange_origin_m().map(f64::from).into();
+    let mut image = film::part(&rendered.pixels, part, [settings.width, settings.height], origin);
     image.attributes = facts.attributes(arguments);
     let threads = NonZeroUsize::new(arguments.common.thread_count()).unwrap_or(NonZeroUsize::MIN);
     let bytes = image.encode_with(threads)?;

@@ -68,6 +68,8 @@ impl Facts<'_> {
         }
         put("pcsss/metresPerUnit", Attribute::Double(first.options.metres_per_unit));
         put("pcsss/lightUnit", Attribute::Text(first.options.light_unit.clone()));
+        put("pcsss/emissionUnit", Attribute::Text(first.options.emission_unit.clone()));
+        put("pcsss/originM", Attribute::Vector(first.exchange_origin_m()));
         put("pcsss/seed", Attribute::Text(self.settings.seed.to_string()));
         put("pcsss/bssrdf", text(self.settings.model.name()));
         put("pcsss/estimator", Attribute::Text(estimator_name(self.settings.estimator)));

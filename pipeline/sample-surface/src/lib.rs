@@ -104,15 +104,20 @@ impl Plan {
         hasher.update(&settings.samples.to_le_bytes());
         let options = serde_json::json!({ "options": &settings.options, "materials": &materials });
         hasher.update(options.to_string().as_bytes());
-        let health = scene.health(|material| materials.contains(&material));
+        let health = scene.health(|material| materials.binary_search(&material).is_ok());
         Ok(Plan { materials, shares, unmarked, geometry, health, content: *hasher.finalize().as_bytes() })
     }
 }
 
 impl Plan {
+    /// Whether a material's surfaces are sampled.
+    pub fn samples(&self, material: u16) -> bool {
+        self.materials.binary_search(&material).is_ok()
+    }
+
     /// The triangles to choose from.
     pub fn choice(&self, scene: &Scene, settings: &Settings) -> TriangleChoice {
-        TriangleChoice::with_shares(&scene.mesh, settings.choice, |m| self.materials.contains(&m), &self.shares)
+        TriangleChoice::with_shares(&scene.mesh, settings.choice, |m| self.samples(m), &self.shares)
     }
 
     /// Makes the cloud's identity depend on what its number of samples is chosen by.
@@ -207,7 +212,7 @@ pub fn sample(
     let lights = LightTree::new(&scene.lights);
     // Independent samples that follow each other lie anywhere.
     let together = if settings.pattern == Pattern::Stratified || lights.is_flat() { TOGETHER } else { 1 };
-    let bounce = Bounce::new(scene, |m| plan.materials.contains(&m));
+    let bounce = Bounce::new(scene, |m| plan.samples(m));
     let surface = LitSurface { mesh: &scene.mesh, rays, lights, normals: settings.normals, bounce };
     let portion = |chunk: u64| {
         let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(settings.samples);
@@ -272,6 +277,7 @@ fn join(
 ) -> Sampled {
     let mut content = Content::default();
     let mut materials = Vec::new();
+    let areas = area_of_materials(scene);
     for (slot, index) in plan.materials.iter().enumerate() {
         let halves = [0, 1].map(|half| {
             let mut records = Vec::with_capacity(portions.iter().map(|p| p.groups[slot][half].len()).sum());
@@ -279,12 +285,11 @@ fn join(
             portions.iter_mut().for_each(|p| records.extend(std::mem::take(&mut p.groups[slot][half])));
             add_group(&mut content, &records)
         });
-        let triangles = scene.mesh.triangles.iter().enumerate().filter(|(_, t)| t.material == *index);
         materials.push(SampledMaterial {
             name: scene.materials[*index as usize].name.clone(),
             index: *index,
             halves,
-            area_m2: triangles.map(|(k, _)| scene.mesh.area(k)).sum(),
+            area_m2: areas[usize::from(*index)],
         });
     }
     let total = |f: fn(&Portion) -> u64| portions.iter().map(f).sum::<u64>();
@@ -310,6 +315,15 @@ fn join(
         materials,
     };
     Sampled { content, meta }
+}
+
+/// m², by the index of the material; in one pass, since there may be as many materials as triangles.
+fn area_of_materials(scene: &Scene) -> Vec<f64> {
+    let mut areas = vec![0.0; scene.materials.len()];
+    for (k, triangle) in scene.mesh.triangles.iter().enumerate() {
+        areas[usize::from(triangle.material)] += scene.mesh.area(k);
+    }
+    areas
 }
 
 fn add_group(content: &mut Content, records: &[Record]) -> Group {

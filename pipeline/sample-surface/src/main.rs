@@ -142,7 +142,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(goal) = &goal {
         plan.depends_on(goal);
     }
-    let sampled = |material| plan.materials.contains(&material);
+    let sampled = |material| plan.samples(material);
     arguments.scene_args.check_mesh(&mut scene, sampled, plan.health, &arguments.scene, common)?;
     seconds.add("import", start);
     if plan.unmarked {
@@ -216,6 +216,7 @@ fn settings(arguments: &Arguments, environment: &Environment) -> Settings {
             normals: scene.normals.name().into(),
             metres_per_unit: scene.metres_per_unit,
             light_unit: scene.light_unit.name().into(),
+            emission_unit: scene.emission_unit().name().into(),
             environment: environment.identity(),
         },
     }
@@ -254,7 +255,7 @@ struct Work<'a> {
 impl Work<'_> {
     fn sample_and_write(&self, mut output: Output, seconds: &mut Seconds) -> Result<(), Failure> {
         let start = Instant::now();
-        let rays = Rays::of_scene(self.scene, |m| self.plan.materials.contains(&m));
+        let rays = Rays::of_scene(self.scene, |m| self.plan.samples(m));
         seconds.add("ray_tree", start);
         let start = Instant::now();
         let sampled = self.sample(&rays).map_err(|e| named(&self.arguments.scene, &e))?;

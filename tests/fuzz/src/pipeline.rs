@@ -54,6 +54,7 @@ fn sampling(choice: Choice, pattern: Pattern, normals: NormalKind) -> Settings {
             normals: if normals == NormalKind::Shading { "shading" } else { "geometric" }.into(),
             metres_per_unit: 1.0,
             light_unit: "radiometric".into(),
+            emission_unit: "radiometric".into(),
             environment: "0,0,0".into(),
         },
     }

@@ -46,6 +46,17 @@ impl Meta {
         [self.samples_drawn.div_ceil(2), self.samples_drawn / 2]
     }
 
+    /// What positions in float32 are relative to in files for other programs (`P` of an image, `x y z` of a PLY), m. It is
+    /// 0, and they are world positions, unless their rounding would exceed 1e-5 of the scene's diagonal; then it is the
+    /// scene's centre, itself as float32 has it: what that is off by is 32 diagonals at most, since scenes farther from
+    /// the origin for their size are refused, and then is the rounding still 2e-6 of the diagonal.
+    pub fn exchange_origin_m(&self) -> [f32; 3] {
+        const WORST: f64 = 1e-5;
+        let farthest = self.origin_m.iter().fold(0.0, |most: f64, x| most.max(x.abs())) + 0.5 * self.diagonal_m;
+        let rounding = 0.5 * f64::from(f32::EPSILON) * farthest;
+        if rounding > WORST * self.diagonal_m { self.origin_m.map(|x| x as f32) } else { [0.0; 3] }
+    }
+
     /// True if no fact is NaN or infinite.
     pub(super) fn is_finite(&self) -> bool {
         let single = [self.surface_area_m2, self.diagonal_m, self.options.metres_per_unit];
@@ -69,8 +80,10 @@ pub struct Options {
     /// `shading` or `geometric`.
     pub normals: String,
     pub metres_per_unit: f64,
-    /// `radiometric` or `photometric`.
+    /// `radiometric` or `photometric`: the numbers of lights.
     pub light_unit: String,
+    /// The same of emitting materials.
+    pub emission_unit: String,
     /// Light from all around: its radiance, or the identity of a map.
     pub environment: String,
 }

@@ -13,6 +13,7 @@ fn meta(count: u64) -> Meta {
         normals: "shading".into(),
         metres_per_unit: 1.0,
         light_unit: "radiometric".into(),
+        emission_unit: "radiometric".into(),
         environment: "0,0,0".into(),
     };
     Meta {
@@ -30,6 +31,21 @@ fn meta(count: u64) -> Meta {
         origin_m: [0.0, 1.0, 2.0],
         materials: vec![SampledMaterial { name: "Wax".into(), index: 0, halves: halves(count), area_m2: 0.5 }],
     }
+}
+
+/// Seen to catch: a limit in metres; the rounding of the centre without half of the object.
+#[test]
+fn what_positions_for_others_are_relative_to() {
+    let about = |scale: f64, x: f64| {
+        let origin_m = [0.1, x, 0.3].map(|x| scale * x);
+        Meta { diagonal_m: scale, origin_m, ..meta(1) }.exchange_origin_m()
+    };
+    for scale in [1e-9, 1.0, 1e12] {
+        // Half a step of float32 is 1e-5 of the diagonal at 167.8 diagonals; the scene reaches half of one farther.
+        assert_eq!(about(scale, 167.2), [0.0; 3]);
+        assert_eq!(about(scale, -167.5)[1], (-167.5 * scale) as f32);
+    }
+    assert_eq!(about(1.0, 1e6), [0.1f32, 1e6, 0.3]);
 }
 
 fn halves(count: u64) -> [Group; 2] {

@@ -113,13 +113,13 @@ impl<'a> Column<'a> {
                 let offset = accessor.byte_offset.map_or(0, |o| o.0);
                 Run { view, offset, count, size, unit }.elements(document)
             }
-            None if accessor.sparse.is_some() => zeros(count, size, document.longest()),
+            None if accessor.sparse.is_some() => zeros(count, size, document.longest),
             None => {
                 Err("the accessor has no bufferView (compressed geometry? export again without compression)".into())
             }
         };
         let elements = elements.map_err(fault)?;
-        let changes = accessor.sparse.as_ref().map(|s| Changes::new(document, s, size, unit)).transpose();
+        let changes = accessor.sparse.as_ref().map(|s| Changes::new(document, s, count, size, unit)).transpose();
         let changes = changes.map_err(|e| fault(format!("sparse: {e}")))?;
         Ok(Column { field, number, elements, changes })
     }
@@ -136,9 +136,8 @@ impl<'a> Column<'a> {
             std::array::from_fn(|_| numbers.next().unwrap_or(1.0))
         })?;
         match list.iter().enumerate().find(|(_, v)| !v.iter().all(|x| x.is_finite())) {
-            Some((k, v)) => {
-                Err(format!("{}: element {k} is {v:?}, not finite; repair the mesh and export again", self.field))
-            }
+            // What it is stays untold, here and below: a link can make a buffer of any file.
+            Some((k, _)) => Err(format!("{}: element {k} is not finite; repair the mesh and export again", self.field)),
             None => Ok(list),
         }
     }
@@ -147,8 +146,8 @@ impl<'a> Column<'a> {
     pub fn read_indices(&self, vertices: usize) -> Result<Vec<u32>, Fault> {
         let indices = self.read(Number::unsigned)?;
         match indices.iter().enumerate().find(|(_, i)| **i as usize >= vertices) {
-            Some((k, i)) => {
-                Err(format!("{}: index {i} at {k} is out of range, there are {vertices} vertices", self.field))
+            Some((k, _)) => {
+                Err(format!("{}: the index at {k} is out of range, there are {vertices} vertices", self.field))
             }
             None => Ok(indices),
         }
@@ -157,9 +156,9 @@ impl<'a> Column<'a> {
     fn read<T>(&self, decode: impl Fn(&[u8]) -> T) -> Result<Vec<T>, Fault> {
         let mut list: Vec<T> = self.elements.iter().map(&decode).collect();
         let Some(changes) = &self.changes else { return Ok(list) };
-        for (place, value) in changes.places.iter().zip(changes.values.iter()) {
-            let k = Number::unsigned(place) as usize;
-            let slot = list.get_mut(k).ok_or_else(|| format!("{}: sparse index {k} is out of range", self.field))?;
+        for (at, (place, value)) in changes.places.iter().zip(changes.values.iter()).enumerate() {
+            let slot = list.get_mut(Number::unsigned(place) as usize);
+            let slot = slot.ok_or_else(|| format!("{}: the sparse index at {at} is out of range", self.field))?;
             *slot = decode(value);
         }
         Ok(list)
@@ -167,8 +166,12 @@ impl<'a> Column<'a> {
 }
 
 impl<'a> Changes<'a> {
-    fn new(document: &'a Document, sparse: &Sparse, size: usize, unit: usize) -> Result<Self, Fault> {
+    /// Of an accessor of `all` elements: each changes once at most, so that a file cannot make few of them long to read.
+    fn new(document: &'a Document, sparse: &Sparse, all: u64, size: usize, unit: usize) -> Result<Self, Fault> {
         let count = sparse.count.0;
+        if count > all {
+            return Err(format!("count {count} exceeds the {all} elements of the accessor"));
+        }
         let (indices, values) = (&sparse.indices, &sparse.values);
         let index_size = match &indices.component_type {
             Checked::Valid(c) => Number::of_index(c.0).map(Number::size),

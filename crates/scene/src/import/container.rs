@@ -9,7 +9,7 @@ use super::{
 use crate::SceneError;
 use gltf::json::{self, Index, buffer::View};
 use serde::Deserialize;
-use std::{cell::RefCell, ops::Range, path::Path, rc::Rc};
+use std::{cell::RefCell, collections::BTreeMap, ops::Range, path::Path, rc::Rc};
 
 /// A parsed file with its buffers; nothing in it is checked yet.
 pub(super) struct Document {
@@ -18,6 +18,8 @@ pub(super) struct Document {
     pub root: json::Root,
     /// As the file has them: the gltf crate rounds them to float32. One for each node.
     pub transforms: Vec<NodeTransform>,
+    /// Bytes of the file or of its longest buffer.
+    pub longest: usize,
     bytes: Vec<u8>,
     buffers: Vec<Buffer>,
 }
@@ -28,6 +30,15 @@ enum Buffer {
     Chunk(Range<usize>),
     /// Read or decoded; buffers that name the same file share it.
     Loaded(Rc<Vec<u8>>, usize),
+}
+
+impl Buffer {
+    fn len(&self) -> usize {
+        match self {
+            Buffer::Chunk(range) => range.len(),
+            Buffer::Loaded(_, length) => *length,
+        }
+    }
 }
 
 #[derive(Deserialize)]
@@ -56,7 +67,9 @@ impl Document {
         for (k, buffer) in root.buffers.iter().enumerate() {
             buffers.push(locate(k, buffer, chunk.clone(), &mut files)?);
         }
-        Ok(Document { files: RefCell::new(files), root, transforms: transforms.nodes, bytes, buffers })
+        let longest = buffers.iter().map(Buffer::len).fold(bytes.len(), usize::max);
+        let files = RefCell::new(files);
+        Ok(Document { files, root, transforms: transforms.nodes, longest, bytes, buffers })
     }
 
     /// The bytes of a buffer, as many as its `byteLength` says.
@@ -67,10 +80,14 @@ impl Document {
         }
     }
 
-    /// Bytes of the file or of its longest buffer.
-    pub fn longest(&self) -> usize {
-        let lengths = (0..self.buffers.len()).filter_map(|k| self.buffer(k)).map(<[u8]>::len);
-        lengths.fold(self.bytes.len(), usize::max)
+    /// Bytes of all buffers; what several share counts once.
+    pub fn buffer_bytes(&self) -> u64 {
+        let mut longest_at: BTreeMap<*const u8, usize> = BTreeMap::new();
+        for data in (0..self.buffers.len()).filter_map(|k| self.buffer(k)) {
+            let known = longest_at.entry(data.as_ptr()).or_default();
+            *known = data.len().max(*known);
+        }
+        longest_at.values().map(|length| *length as u64).sum()
     }
 
     /// The bytes of a buffer view.

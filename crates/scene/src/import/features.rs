@@ -48,14 +48,17 @@ pub(super) fn check(root: &json::Root) -> Result<Vec<String>, Fault> {
 /// Refuses poses that are not in the mesh itself: skins, morph targets, animations of anything above a mesh.
 pub(super) fn check_nodes(root: &json::Root, nodes: &[Placed], warnings: &mut Vec<String>) -> Result<(), Fault> {
     const BAKE: &str = "apply the pose to the mesh and export again";
+    // Once for each mesh, however often it is placed.
+    let morphs = |p: &json::mesh::Primitive| p.targets.as_ref().is_some_and(|t| !t.is_empty());
+    let morphs: Vec<bool> = root.meshes.iter().map(|mesh| mesh.primitives.iter().any(morphs)).collect();
     for placed in nodes {
-        let Some(mesh) = placed.node.mesh.as_ref().and_then(|m| root.meshes.get(m.value())) else {
+        let Some(morphs) = placed.node.mesh.as_ref().and_then(|m| morphs.get(m.value())) else {
             continue;
         };
         if placed.node.skin.is_some() {
             return Err(format!("node `{}`: skinned meshes are not supported; {BAKE}", placed.name));
         }
-        if mesh.primitives.iter().any(|p| p.targets.as_ref().is_some_and(|t| !t.is_empty())) {
+        if *morphs {
             return Err(format!("node `{}`: morph targets are not supported; {BAKE}", placed.name));
         }
     }

@@ -29,7 +29,7 @@ pub(crate) fn read(path: &Path) -> io::Result<Vec<u8>> {
 /// Resolves URIs relative to a scene, and keeps account of what was read.
 pub(super) struct Files {
     folder: PathBuf,
-    /// Many buffers may name one file: it is read once, as long as one of them has it.
+    /// By their places. Many buffers may name one file: it is read once, as long as one of them has it.
     known: HashMap<PathBuf, Weak<Vec<u8>>>,
     /// Paths of all that was read, the scene's own first.
     read: Vec<PathBuf>,
@@ -46,21 +46,28 @@ impl Files {
         &self.read
     }
 
+    /// The path that a URI means, and where its file is when all links are followed: a link to the folder that it lies in
+    /// gives one file any number of paths.
+    pub fn place(&self, uri: &str) -> Result<(PathBuf, PathBuf), Fault> {
+        let path = self.folder.join(relative_path(uri)?);
+        let place = path.canonicalize().unwrap_or_else(|_| path.clone());
+        Ok((path, place))
+    }
+
     /// The bytes of a data URI, or of a file in the scene's folder or below.
     pub fn resolve(&mut self, uri: &str) -> Result<Rc<Vec<u8>>, Fault> {
         if let Some(data) = uri.strip_prefix("data:") {
             let encoded = data.split_once(";base64,").ok_or("a data URI without `;base64,` is not read")?.1;
             return BASE64.decode(encoded).map(Rc::new).map_err(|e| format!("the data URI is not base64: {e}"));
         }
-        let relative = relative_path(uri)?;
-        if let Some(data) = self.known.get(&relative).and_then(Weak::upgrade) {
+        let (path, place) = self.place(uri)?;
+        if let Some(data) = self.known.get(&place).and_then(Weak::upgrade) {
             return Ok(data);
         }
-        let path = self.folder.join(&relative);
         let data = read(&path).map(Rc::new).map_err(|e| {
             format!("{}: {e}; a .gltf needs the files it names beside it, a .glb has them inside", path.display())
         })?;
-        if self.known.insert(relative, Rc::downgrade(&data)).is_none() {
+        if self.known.insert(place, Rc::downgrade(&data)).is_none() {
             self.read.push(path);
         }
         Ok(data)

@@ -54,10 +54,11 @@ impl Lights {
                 self.list.push(Box::new(DirectionalLight { direction: -axis, irradiance: power }));
             }
             Checked::Valid(kind) => {
-                let spot = if kind == Type::Spot { Some(spot_of(light, place.axis()?)?) } else { None };
+                let cone = if kind == Type::Spot { Some((place.axis()?, angles_of(light)?)) } else { None };
+                let spot = cone.map(|(axis, [inner, outer])| Spot::new(axis, inner, outer));
                 let range = range_of(light, metres_per_unit)?;
                 self.note(2, &[place.position.to_array(), power.to_array()].concat());
-                self.note(2, &spot.map_or(vec![], |s| vec![s.axis.x, s.axis.y, s.axis.z, s.cos_inner, s.cos_outer]));
+                self.note(2, &cone.map_or(vec![], |(axis, angles)| [&axis.to_array()[..], &angles].concat()));
                 self.note(2, &[range.unwrap_or(f64::INFINITY)]);
                 self.list.push(Box::new(PointLight { position: place.position, intensity: power, spot, range }));
             }
@@ -120,14 +121,14 @@ fn power_of(light: &Punctual, options: &ImportOptions) -> Result<DVec3, Fault> {
     Ok(power * options.light_unit.watts())
 }
 
-/// A sharp cone (inner = outer) is beyond the letter of glTF, but its falloff has a width for it.
-fn spot_of(light: &Punctual, axis: DVec3) -> Result<Spot, Fault> {
+/// Inner and outer angle of a spot, rad. A hard edge (inner = outer) is beyond the letter of glTF, but writers have it.
+fn angles_of(light: &Punctual) -> Result<[f64; 2], Fault> {
     let cone = light.spot.as_ref().ok_or("a spot light without its `spot` object")?;
     let (inner, outer) = (f64::from(cone.inner_cone_angle), f64::from(cone.outer_cone_angle));
     if !(inner >= 0.0 && inner <= outer && outer > 0.0 && outer <= FRAC_PI_2 + 1e-6) {
         return Err(format!("spot: innerConeAngle {inner}, outerConeAngle {outer} must be 0 <= inner < outer <= pi/2"));
     }
-    Ok(Spot { axis, cos_inner: inner.cos(), cos_outer: outer.cos() })
+    Ok([inner, outer])
 }
 
 fn range_of(light: &Punctual, metres_per_unit: f64) -> Result<Option<f64>, Fault> {

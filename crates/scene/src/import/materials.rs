@@ -73,7 +73,7 @@ fn material(
         (masked && emission != DVec3::ZERO, "alphaMode MASK is not used: the surface emits"),
     ];
     warnings.extend(unused.iter().filter(|u| u.0).map(|(_, what)| format!("material `{name}`: {what}")));
-    let emission = emission * options.light_unit.watts();
+    let emission = emission * options.emission_unit.watts();
     let note = |what| warnings.push(format!("material `{name}`: {what}"));
     let medium = volumes::read(m, options.metres_per_unit, note)?;
     Ok(Material {

@@ -31,10 +31,14 @@ use std::path::Path;
 pub struct ImportOptions {
     /// Size of one unit of the file, m.
     pub metres_per_unit: f64,
+    /// Of directional, point and spot lights.
     pub light_unit: LightUnit,
+    /// Of emitting materials.
+    pub emission_unit: LightUnit,
 }
 
-/// What the light numbers of a file mean.
+/// What the light numbers of a file mean. Those of lights and of emitting materials need not mean the same: Blender
+/// multiplies the first by 683 lm/W and writes the second as they are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LightUnit {
     /// W/m², W/sr, W/(m² sr).

@@ -29,7 +29,8 @@ pub(super) struct Part<'a> {
 }
 
 impl<'a> MeshParts<'a> {
-    /// Checks the primitives of a mesh; `warnings` tells which make no triangles.
+    /// Checks the primitives of a mesh; `warnings` tells which make no triangles. Each of them keeps the mesh's name for
+    /// messages, so a long name is cut.
     pub fn new(
         document: &'a Document,
         mesh: &json::Mesh,
@@ -37,6 +38,7 @@ impl<'a> MeshParts<'a> {
         warnings: &mut Vec<String>,
     ) -> Result<Self, Fault> {
         let mut parts = MeshParts::default();
+        let name = short(name);
         for (k, primitive) in mesh.primitives.iter().enumerate() {
             let name = format!("mesh `{name}`, primitive {k}");
             let Checked::Valid(mode) = primitive.mode else {
@@ -56,6 +58,15 @@ impl<'a> MeshParts<'a> {
             parts.list.push(part);
         }
         Ok(parts)
+    }
+}
+
+/// The start of a name, as long as names are.
+fn short(name: &str) -> String {
+    const LONGEST: usize = 200;
+    match name.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}...", &name[..end]),
+        None => name.to_owned(),
     }
 }
 

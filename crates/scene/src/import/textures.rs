@@ -9,22 +9,42 @@ use gltf::json::{
     validation::Checked,
 };
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
-use std::{collections::BTreeMap, hint::black_box, io::Cursor, sync::Arc};
+use std::{
+    borrow::Cow,
+    collections::{BTreeMap, btree_map::Entry},
+    hint::black_box,
+    io::Cursor,
+    path::PathBuf,
+    sync::Arc,
+};
 
 /// Most texels of one picture, and of all: a small file can claim to be a large picture.
 const MAX_TEXELS: u64 = 1 << 26;
 const MAX_TEXELS_OF_ALL: u64 = 1 << 28;
 
-/// Reads textures; each picture once, however many use it.
+/// Reads textures; each picture once, however many textures and images name it.
 pub(super) struct Textures<'a> {
     document: &'a Document,
-    known: BTreeMap<usize, Arc<Picture>>,
+    known: BTreeMap<Source, Arc<Picture>>,
     texels_left: u64,
+    /// Bytes of buffers that pictures may still be made of.
+    bytes_left: u64,
+}
+
+/// Where a picture comes from.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+enum Source {
+    File(PathBuf),
+    /// Bytes of a buffer: where they start, and how many.
+    View(usize, usize),
+    /// The image with this index has it in its URI.
+    Own(usize),
 }
 
 impl<'a> Textures<'a> {
     pub fn new(document: &'a Document) -> Self {
-        Textures { document, known: BTreeMap::new(), texels_left: MAX_TEXELS_OF_ALL }
+        let bytes_left = document.buffer_bytes();
+        Textures { document, known: BTreeMap::new(), texels_left: MAX_TEXELS_OF_ALL, bytes_left }
     }
 
     pub fn read(&mut self, info: &Info) -> Result<Texture, Fault> {
@@ -36,11 +56,7 @@ impl<'a> Textures<'a> {
         let sampler = texture.sampler.as_ref().map(|s| get(&root.samplers, s, "texture.sampler")).transpose()?;
         let image = get(&root.images, &texture.source, "texture.source")?;
         let index = texture.source.value();
-        let picture = match self.known.get(&index) {
-            Some(picture) => picture.clone(),
-            None => Arc::new(self.picture(image).map_err(|e| format!("{}: {e}", name_of(index, image)))?),
-        };
-        self.known.insert(index, picture.clone());
+        let picture = self.picture(index, image).map_err(|e| format!("{}: {e}", name_of(index, image)))?;
         let wrap = |mode: fn(&Sampler) -> Checked<WrappingMode>| match sampler.map(mode) {
             None | Some(Checked::Valid(WrappingMode::Repeat)) => Ok(Wrap::Repeat),
             Some(Checked::Valid(WrappingMode::MirroredRepeat)) => Ok(Wrap::Mirror),
@@ -52,14 +68,36 @@ impl<'a> Textures<'a> {
         Ok(Texture { picture, wrap, nearest })
     }
 
-    fn picture(&mut self, image: &json::Image) -> Result<Picture, Fault> {
-        let picture = match (&image.uri, &image.buffer_view) {
-            (Some(uri), _) => decode(&self.document.files.borrow_mut().resolve(uri)?, self.texels_left)?,
-            (None, Some(view)) => decode(self.document.view(view)?, self.texels_left)?,
+    fn picture(&mut self, index: usize, image: &json::Image) -> Result<Arc<Picture>, Fault> {
+        let source = match (&image.uri, &image.buffer_view) {
+            (Some(uri), _) if uri.starts_with("data:") => Source::Own(index),
+            (Some(uri), _) => Source::File(self.document.files.borrow().place(uri)?.1),
+            (None, Some(view)) => {
+                let bytes = self.document.view(view)?;
+                Source::View(bytes.as_ptr() as usize, bytes.len())
+            }
             (None, None) => return Err("it has neither uri nor bufferView".into()),
         };
+        let place = match self.known.entry(source) {
+            Entry::Occupied(known) => return Ok(known.get().clone()),
+            Entry::Vacant(place) => place,
+        };
+        let picture = match (&image.uri, &image.buffer_view) {
+            (None, Some(view)) => {
+                let bytes = self.document.view(view)?;
+                // Pictures that do not overlap never have more: a short file could name one picture many times, each
+                // time a byte longer.
+                let left = self.bytes_left.checked_sub(bytes.len() as u64);
+                self.bytes_left = left.ok_or("the bufferViews of the images overlap; export them apart")?;
+                decode(bytes, self.texels_left)?
+            }
+            (uri, _) => {
+                let bytes = self.document.files.borrow_mut().resolve(uri.as_deref().unwrap_or_default())?;
+                decode(&bytes, self.texels_left)?
+            }
+        };
         self.texels_left -= picture.texels.len() as u64;
-        Ok(picture)
+        Ok(place.insert(Arc::new(picture)).clone())
     }
 }
 
@@ -71,11 +109,39 @@ fn name_of(index: usize, image: &json::Image) -> String {
     }
 }
 
-/// Decodes a picture of no more texels than there is room for.
+/// A PNG without the chunks that hold compressed text or a profile: nobody looks at them, and unpacked they may be a
+/// thousand times as long.
+fn without_packed_chunks(bytes: &[u8]) -> Cow<'_, [u8]> {
+    const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
+    const PACKED: [&[u8]; 3] = [b"iCCP", b"zTXt", b"iTXt"];
+    let mut kept = Cow::Borrowed(bytes);
+    let Some(mut rest) = bytes.strip_prefix(SIGNATURE) else { return kept };
+    // Length, name, as many bytes and a checksum; what is shorter is left for the decoder to refuse.
+    while let Some((size, after)) = rest.split_first_chunk::<4>() {
+        let length = (u32::from_be_bytes(*size) as usize).saturating_add(12);
+        let Some((chunk, next)) = rest.split_at_checked(length) else { break };
+        let place = bytes.len() - rest.len();
+        let packed = PACKED.iter().any(|name| after.starts_with(name));
+        match &mut kept {
+            Cow::Borrowed(_) if packed => kept = Cow::Owned(bytes[..place].to_vec()),
+            Cow::Owned(kept) if !packed => kept.extend(chunk),
+            _ => {}
+        }
+        rest = next;
+    }
+    if let Cow::Owned(kept) = &mut kept {
+        kept.extend(rest);
+    }
+    kept
+}
+
+/// Decodes a picture of no more texels than there is room for. Messages do not repeat the decoder's, which show bytes: a
+/// link can make a picture of any file.
 fn decode(bytes: &[u8], room: u64) -> Result<Picture, Fault> {
     const WAY_OUT: &str = "export it as PNG or JPEG";
-    let fault = |e: image::ImageError| format!("{e}; {WAY_OUT} again");
-    let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
+    let fault = |_| format!("a damaged PNG or JPEG picture, or of a kind that is not read; {WAY_OUT} again");
+    let bytes = without_packed_chunks(bytes);
+    let reader = ImageReader::new(Cursor::new(&*bytes)).with_guessed_format().map_err(|e| e.to_string())?;
     if !matches!(reader.format(), Some(ImageFormat::Png | ImageFormat::Jpeg)) {
         return Err(format!("neither a PNG nor a JPEG picture; {WAY_OUT}"));
     }
@@ -118,5 +184,32 @@ impl Coordinates {
     /// Coordinates in the picture.
     pub fn place(&self, [u, v]: [f32; 2]) -> [f32; 2] {
         (self.linear * DVec2::new(f64::from(u), f64::from(v)) + self.offset).as_vec2().to_array()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Seen to catch: the chunk after one that is left out lost; lengths without the twelve bytes around the content; a
+    /// length beyond the end taken for that of the file.
+    #[test]
+    fn packed_chunks_of_a_png_are_left_out() {
+        let chunk = |name: &str, content: &[u8]| {
+            [&(content.len() as u32).to_be_bytes(), name.as_bytes(), content, b"crc!"].concat()
+        };
+        let signature = b"\x89PNG\r\n\x1a\n".to_vec();
+        let [header, data, end] = [chunk("IHDR", b"size"), chunk("IDAT", b"iCCP zTXt"), chunk("IEND", b"")];
+        let plain = [&signature[..], &header, &data, &end].concat();
+        assert!(matches!(without_packed_chunks(&plain), Cow::Borrowed(bytes) if bytes == plain));
+        for packed in [chunk("iCCP", b"bomb"), chunk("zTXt", b""), chunk("iTXt", &[0; 99])] {
+            let bytes = [&signature[..], &header, &packed, &data, &packed, &packed, &end].concat();
+            assert_eq!(&*without_packed_chunks(&bytes), plain);
+            let cut = [&signature[..], &header, &packed, &data[..7]].concat();
+            assert_eq!(&*without_packed_chunks(&cut), [&signature[..], &header, &data[..7]].concat());
+        }
+        let endless = [&signature[..], &u32::MAX.to_be_bytes(), b"iCCP"].concat();
+        assert_eq!(&*without_packed_chunks(&endless), endless);
+        assert_eq!(&*without_packed_chunks(b"\xff\xd8\xff"), b"\xff\xd8\xff");
     }
 }

@@ -4,13 +4,43 @@ use super::{Extent, Illumination, Light, strength};
 use crate::mesh::SurfacePoint;
 use glam::DVec3;
 
-/// The cone of a spot light.
+/// The cone of a spot light. Of small angles the cosines are equal in float64: instead of them it holds what one lacks,
+/// `1 - cos x = 2 sin²(x/2)`, which keeps its digits.
 #[derive(Clone, Copy, Debug)]
 pub struct Spot {
     /// Unit direction the cone opens to.
-    pub axis: DVec3,
-    pub cos_inner: f64,
-    pub cos_outer: f64,
+    axis: DVec3,
+    /// Largest angle from the axis that gets light, rad.
+    outer: f64,
+    /// `1 - cos` of the angle up to which the intensity is whole, and of the largest.
+    versines: [f64; 2],
+    /// What these differ by.
+    width: f64,
+}
+
+impl Spot {
+    /// A cone about a unit vector, whole up to the angle `inner` and dark from `outer` on, rad, `inner <= outer`. Where both
+    /// are the same, the edge is hard.
+    pub fn new(axis: DVec3, inner: f64, outer: f64) -> Spot {
+        let versine = |angle: f64| 2.0 * (0.5 * angle).sin().powi(2);
+        // cos a - cos b, without a difference of numbers that are nearly equal.
+        let width = 2.0 * (0.5 * (outer + inner)).sin() * (0.5 * (outer - inner)).sin();
+        Spot { axis, outer, versines: [versine(inner), versine(outer)], width }
+    }
+
+    /// Share of the intensity that leaves towards a point in direction `-direction` (KHR_lights_punctual).
+    fn attenuation(&self, direction: DVec3) -> f64 {
+        // 1 - cos of the angle from the axis: half the square of its chord.
+        let versine = 0.5 * (self.axis + direction).length_squared();
+        let [inner, outer] = self.versines;
+        if versine <= inner {
+            1.0
+        } else if versine < outer {
+            ((outer - versine) / self.width).min(1.0).powi(2)
+        } else {
+            0.0
+        }
+    }
 }
 
 /// A point or spot light (KHR_lights_punctual): `E = I (n·ω)/d²`.
@@ -28,11 +58,7 @@ pub struct PointLight {
 impl PointLight {
     /// Share of the intensity that leaves towards a point at `distance` in direction `-direction`.
     fn attenuation(&self, direction: DVec3, distance: f64) -> f64 {
-        let cone = self.spot.map_or(1.0, |spot| {
-            let cosine = spot.axis.dot(-direction);
-            let width = (spot.cos_inner - spot.cos_outer).max(0.001);
-            ((cosine - spot.cos_outer) / width).clamp(0.0, 1.0).powi(2)
-        });
+        let cone = self.spot.map_or(1.0, |spot| spot.attenuation(direction));
         let window = self.range.map_or(1.0, |range| (1.0 - (distance / range).powi(4)).clamp(0.0, 1.0));
         cone * window
     }
@@ -48,7 +74,7 @@ impl Light for PointLight {
 
     fn extent(&self) -> Option<Extent> {
         let point = Extent::point(self.position, strength(self.intensity));
-        let cone = self.spot.map_or((point.axis, point.reach), |spot| (spot.axis, spot.cos_outer.acos()));
+        let cone = self.spot.map_or((point.axis, point.reach), |spot| (spot.axis, spot.outer));
         Some(Extent { axis: cone.0, reach: cone.1, range: self.range.unwrap_or(f64::INFINITY), ..point })
     }
 

@@ -106,6 +106,55 @@ fn one_file_is_read_once() {
     assert!(start.elapsed().as_secs() < 5, "16 GiB would take longer");
 }
 
+/// A scene's folder may be made of links. What they lead to is read like a file that lies there, and shows in no message.
+/// Seen to catch: the decoder's words, with bytes of the file; a number out of range, or one beside one that is no number.
+#[cfg(unix)]
+#[test]
+fn links_are_followed_and_messages_do_not_show_what_is_there() {
+    let (outer, folder) = (Folder::new(), Folder::new());
+    let link = |name: &str, content: &[u8]| {
+        let path = outer.write(name, content);
+        std::os::unix::fs::symlink(path, folder.path().join(name)).expect("a link");
+    };
+    link("mesh.bin", &tetrahedron().binary);
+    let scene = import_in(&folder, "mesh.bin").expect("links are followed");
+    assert_eq!(scene.files[1], folder.path().join("mesh.bin"));
+    let mut asset = with_picture(&[], textured(json!({})), json!({}));
+    let starts: [(&str, &[u8]); 3] =
+        [("a.png", b"\x89PNG\r\n\x1a\n\0\0\0\x04"), ("b.jpg", b"\xff\xd8\xff"), ("c.txt", b"")];
+    for (name, start) in starts {
+        link(name, &[start, b"root:x:0:0:root:/root:/bin/bash"].concat());
+        asset.set("/images/0", json!({ "uri": name }));
+        let path = folder.write("picture.glb", &asset.glb());
+        let message = Scene::import(&path, &OPTIONS).err().expect("no picture").to_string();
+        let (_, said) = message.split_once(&format!("`{name}`: ")).expect("the image's name");
+        let known = [
+            "a damaged PNG or JPEG picture, or of a kind that is not read; export it as PNG or JPEG again",
+            "neither a PNG nor a JPEG picture; export it as PNG or JPEG",
+        ];
+        assert!(known.contains(&said), "{said}");
+    }
+    // A link to where it lies gives a file any number of paths; it is read once.
+    std::os::unix::fs::symlink(".", folder.path().join("d")).expect("a link");
+    let uris = ["mesh.bin", "d/mesh.bin", "d/d/mesh.bin"];
+    let buffers = uris.map(|uri| json!({ "uri": uri, "byteLength": tetrahedron().binary.len() }));
+    let path = folder.write("round.gltf", &gltf(json!(buffers)));
+    assert_eq!(Scene::import(&path, &OPTIONS).expect("a good file").files.len(), 2);
+    let good = tetrahedron();
+    let secret = 7654321.0f32;
+    let numbers: [(usize, Vec<u8>, &str); 2] = [
+        (0, [secret.to_le_bytes(), f32::NAN.to_le_bytes()].concat(), "POSITION: element 0 is not finite"),
+        (96, 54321u16.to_le_bytes().to_vec(), "indices: the index at 0 is out of range"),
+    ];
+    for (k, (at, bytes, words)) in numbers.into_iter().enumerate() {
+        let mut binary = good.binary.clone();
+        binary[at..at + bytes.len()].copy_from_slice(&bytes);
+        link(&format!("{k}.bin"), &binary);
+        let message = import_in(&folder, &format!("{k}.bin")).err().expect("a bad number");
+        assert!(message.contains(words) && !message.contains("54321"), "{message}");
+    }
+}
+
 /// Programs refuse to write over what they read: each file is there, once, by the path that it was opened by. Seen to
 /// catch: the pictures left out, which had a record of their own; a file there again for the second that names it.
 #[test]

@@ -101,11 +101,23 @@ fn photometric_numbers_are_divided_by_683() {
         assert_eq!(at(with(LightUnit::Radiometric)), DVec3::splat(683.0));
         assert!(at(with(LightUnit::Photometric)).distance(DVec3::ONE) < 1e-12);
     }
-    let mut glowing = tetrahedron();
-    glowing.set("/materials/0/emissiveFactor", json!([1, 0.5, 0]));
-    let scene = glowing.import_with(&ImportOptions { light_unit: LightUnit::Photometric, ..OPTIONS });
-    let emission = scene.expect("a good file").materials[0].emission;
-    assert!((emission * 683.0).distance(DVec3::new(1.0, 0.5, 0.0)) < 1e-12);
+}
+
+/// Blender's lamps are in candela and its emission is in W: each has a unit of its own. Seen to catch: emission in the
+/// unit of the lights.
+#[test]
+fn emission_has_a_unit_of_its_own() {
+    let mut asset = lit(json!({ "type": "point", "intensity": 683 }), json!({}));
+    asset.set("/materials/0/emissiveFactor", json!([1, 0.5, 0]));
+    let (watts, lumens) = (LightUnit::Radiometric, LightUnit::Photometric);
+    for (light_unit, emission_unit) in [(watts, watts), (watts, lumens), (lumens, watts), (lumens, lumens)] {
+        let scene = asset.import_with(&ImportOptions { light_unit, emission_unit, ..OPTIONS }).expect("a good file");
+        let light = scene.lights[0].illuminate(&facing(&scene, DVec3::NEG_Z, DVec3::Z), [0.5; 2]).expect("lit");
+        let factor = |unit| if unit == watts { 1.0 } else { 1.0 / 683.0 };
+        assert!(light.irradiance.distance(DVec3::splat(683.0 * factor(light_unit))) < 1e-10);
+        let emission = scene.materials[0].emission;
+        assert!(emission.distance(DVec3::new(1.0, 0.5, 0.0) * factor(emission_unit)) < 1e-12, "{emission}");
+    }
 }
 
 #[test]
@@ -142,6 +154,7 @@ fn an_emissive_texture_is_left_out_with_a_warning() {
     assert_eq!(about.count(), 1, "{:?}", scene.warnings);
 }
 
+/// Seen to catch: the cosines of a spot's angles, which are 1 for both of the narrow ones.
 #[test]
 fn the_light_digest_tells_lights_apart() {
     let digest = |light: Value| import(&lit(light, json!({}))).light_digest;
@@ -153,6 +166,8 @@ fn the_light_digest_tells_lights_apart() {
         digest(json!({ "type": "directional", "intensity": 1 })),
         digest(spot(0.5)),
         digest(spot(0.6)),
+        digest(spot(1e-9)),
+        digest(spot(2e-9)),
     ];
     for (k, one) in all.iter().enumerate() {
         assert!(!all[..k].contains(one), "{k}");

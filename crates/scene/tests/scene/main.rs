@@ -12,6 +12,7 @@ mod import_lights;
 mod import_quantised;
 mod import_textures;
 mod import_volumes;
+mod import_work;
 mod lights;
 mod many_lights;
 mod meshes;

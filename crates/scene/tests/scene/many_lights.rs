@@ -37,7 +37,7 @@ fn lamps(count: u64, distances: [f64; 2]) -> Vec<Box<dyn Light>> {
         let item = random(1_000_000 + k);
         let distance = distances[0] + (distances[1] - distances[0]) * item.uniform(4);
         let intensity = DVec3::splat(10f64.powf(2.0 * item.uniform(5)));
-        let spot = Spot { axis: direction(item, 2), cos_inner: 0.9, cos_outer: 0.3 };
+        let spot = Spot::new(direction(item, 2), 0.9f64.acos(), 0.3f64.acos());
         PointLight {
             position: direction(item, 0) * distance,
             intensity,

@@ -41,6 +41,80 @@ fn light_units() {
     bench.refuses(&wrong, &["--light-unit is radiometric"]);
 }
 
+/// Emission has a unit of its own, by default that of the lights; clouds of other units are refused. Seen to catch: the
+/// lights' unit for both; the cloud's options without it.
+#[test]
+fn emission_units() {
+    let bench = Bench::new();
+    let slab = bench.slab("slab.gltf", |root| {
+        root["materials"][0]["emissiveFactor"] = json!([1, 1, 1]);
+        root["extensions"]["KHR_lights_punctual"]["lights"][0]["intensity"] = json!(683);
+    });
+    let most = |units: &[&str]| {
+        sample(&bench, &slab, units);
+        gather(&bench, &slab, &[&["--medium", "marble"], units].concat());
+        let image = bench.image("user.exr");
+        let emitted = &image.channels.iter().find(|c| c.name == "emission.R").expect("a channel").samples;
+        emitted.iter().fold(0.0f32, |most, x| most.max(*x))
+    };
+    let near = |found: f32, expected: f32| assert!((found / expected - 1.0).abs() < 1e-5, "{found} {expected}");
+    let lumens = most(&["--light-unit", "photometric"]);
+    assert_eq!(text_attribute(&bench, "pcsss/emissionUnit"), "photometric");
+    // Some of it stays below the interface.
+    near(most(&["--light-unit", "photometric", "--emission-unit", "radiometric"]), 683.0 * lumens);
+    assert_eq!(text_attribute(&bench, "pcsss/emissionUnit"), "radiometric");
+    let wrong = ["user.cloud", &slab, "--medium", "marble", "--light-unit", "photometric", "-o", "wrong.exr"];
+    bench.refuses(&wrong, &["--emission-unit is photometric, the cloud's radiometric"]);
+}
+
+/// Positions in float32 have 3 values where an object of 0.2 m is 1000 km away, and so many as there are elsewhere if
+/// they are relative to what the header says. Where the object is at home, they are positions in the world.
+/// Seen to catch: world positions everywhere; the origin forgotten, or taken twice.
+#[test]
+fn positions_far_from_the_origin() {
+    const FAR: f64 = 1e6;
+    let at = |shift: f64| {
+        let bench = Bench::new();
+        let scene = bench.slab("far.gltf", |root| {
+            for node in root["nodes"].as_array_mut().expect("a list") {
+                let x = node["translation"][0].as_f64().unwrap_or(0.0);
+                let [y, z] = [1, 2].map(|k| node["translation"][k].as_f64().unwrap_or(0.0));
+                node["translation"] = json!([x + shift, y, z]);
+            }
+        });
+        sample(&bench, &scene, &["--ply", "far.ply"]);
+        let size = ["--width", "24", "--height", "24", "--spp", "1", "--quiet", "-o", "user.exr"];
+        bench.says("gather", &[&["user.cloud", &scene, "--medium", "marble"], &size[..]].concat());
+        let image = bench.image("user.exr");
+        let Some(Attribute::Vector(origin)) = image.attributes.get("pcsss/originM") else { panic!("no origin") };
+        let plane = |name: &str| image.channels.iter().find(|c| c.name == name).expect("a channel").samples.clone();
+        let hit = plane("Z").into_iter().zip(plane("P.X")).filter(|(z, _)| *z > 0.0).map(|(_, x)| x).collect();
+        (*origin, hit, std::fs::read(bench.path("far.ply")).expect("reads"))
+    };
+    let x_of_ply = |bytes: &[u8]| -> (String, Vec<f32>) {
+        let end = bytes.windows(11).position(|w| w == b"end_header\n").expect("a header") + 11;
+        let rows = bytes[end..].chunks_exact(48);
+        let x = rows.map(|row| f32::from_le_bytes([row[0], row[1], row[2], row[3]])).collect();
+        (String::from_utf8_lossy(&bytes[..end]).into_owned(), x)
+    };
+    let (origin, near, ply): ([f32; 3], Vec<f32>, Vec<u8>) = at(0.0);
+    assert_eq!(origin, [0.0; 3]);
+    let (header, near_points) = x_of_ply(&ply);
+    assert!(!header.contains("comment") && header.contains("property float x\n"), "{header}");
+    let (origin, far, ply) = at(FAR);
+    assert!((f64::from(origin[0]) - FAR).abs() < 1.0, "{origin:?}");
+    let (header, far_points) = x_of_ply(&ply);
+    let [x, y, z] = origin;
+    assert!(header.contains(&format!("comment x y z are relative to originM {x} {y} {z}\n")), "{header}");
+    for (near, far) in [(near, far), (near_points, far_points)] {
+        assert!(near.len() == far.len() && near.len() > 200, "{} {}", near.len(), far.len());
+        for (near, far) in near.iter().zip(&far) {
+            let far = f64::from(*far) + f64::from(origin[0]) - FAR;
+            assert!((far - f64::from(*near)).abs() < 1e-6, "{far} {near}");
+        }
+    }
+}
+
 /// Red, green and blue lights are white together, on nested and scaled nodes. `import_lights` has cones and ranges.
 #[test]
 fn light_colour_and_cone() {
