@@ -220,7 +220,7 @@ $(1): $(OWN).cloud $(OWN).settings $(basename $(1)).settings $(if $(filter %.vie
 	  $$(if $$(ENVIRONMENT),--environment $$(ENVIRONMENT)) --preview $$(basename $$@).png --exposure $$(or $$(EXPOSURE),0) $$< '$$(SCENE)' -o $$(basename $$@).exr
 	$(if $(filter %.views,$(1)),$$(list_after))
 endef
-$(foreach c,$(CAMERAS),$(eval $(call own_picture,$(OWN_IMAGES)/camera$(c).exr,,--camera $(c))))
+$(foreach c,$(CAMERAS),$(eval $(call own_picture,$(OWN_IMAGES)/camera$(c).exr,,--camera index:$(c))))
 $(foreach v,$(VIEW_FILES),$(eval $(call own_picture,$(call picture_of,$(v)),$(v),--view $(v))))
 endif
 

@@ -35,7 +35,14 @@ fn setting(radius: f64) -> Setting {
 
 fn sphere_world() -> Result<World, Box<dyn Error>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/scenes/sphere.glb");
-    let scene = Scene::import(&path, &ImportOptions { metres_per_unit: 1.0, light_unit: LightUnit::Radiometric, emission_unit: LightUnit::Radiometric })?;
+    let scene = Scene::import(
+        &path,
+        &ImportOptions {
+            metres_per_unit: 1.0,
+            light_unit: LightUnit::Radiometric,
+            emission_unit: LightUnit::Radiometric,
+        },
+    )?;
     let rays = Rays::new(&scene.mesh);
     Ok(World { scene, rays })
 }

@@ -84,7 +84,11 @@ impl Folder {
     /// Imports a document together with the binary that lies there.
     pub fn import(&self, document: &str) -> Result<Scene, SceneError> {
         self.put("scene.gltf", document.as_bytes());
-        let options = ImportOptions { metres_per_unit: 1.0, light_unit: LightUnit::Radiometric, emission_unit: LightUnit::Radiometric };
+        let options = ImportOptions {
+            metres_per_unit: 1.0,
+            light_unit: LightUnit::Radiometric,
+            emission_unit: LightUnit::Radiometric,
+        };
         Scene::import(&self.path("scene.gltf"), &options)
     }
 }

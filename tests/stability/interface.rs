@@ -1,7 +1,7 @@
 //! The interface: equal indices, total reflection, the ends of the fits, grazing light and view.
 
 use crate::evaluate::{assert_close, assert_is, bare, gather, onto_plane, out_of_plane};
-use bssrdf::{ETA_MAX, ETA_MIN, Incident, Medium, Model, Separation, fresnel};
+use bssrdf::{ETA_MAX, ETA_MIN, Incident, Medium, Separation, fresnel};
 use formats::cloud::Sample;
 use gather::samples::{Exit, LitSamples};
 use glam::{DVec3, Vec3};
@@ -37,28 +37,30 @@ fn equal_indices() {
     }
 }
 
-/// η = 1 + 10⁻⁷ bends and reflects next to nothing; `S_bare` differs by the jump of the fit of `C_φ(1/η)` between its two
-/// branches, 0.41 %, which the standard dipole does not have.
+/// η = 1 ± 10⁻⁷ bends and reflects next to nothing, and `S_bare` is that of equal indices.
+///
+/// Seen to fail with the published fits, whose branches do not meet at 1: by 0.41 % on either side of it, and those of the
+/// directional and the better dipole.
 #[test]
 fn indices_that_differ_by_a_ten_millionth() {
-    let near = 1.0 + 1e-7;
-    let entry = fresnel::enter(DVec3::Z, DVec3::new(0.6, 0.0, 0.8), near).expect("light from above enters");
-    assert!((entry.transmittance - 1.0).abs() < 1e-12);
-    assert!((entry.direction - DVec3::new(-0.6, 0.0, -0.8)).length() < 1e-6);
-    let jump = fresnel::c_phi(1.0) / fresnel::c_phi(1.0 / near);
-    assert!((jump - 0.99587).abs() < 1e-5, "{jump}");
-    for (same, near) in bare(&medium(1.0), &separation()).iter().zip(bare(&medium(near), &separation())) {
-        let jump = if same.model == Model::StandardDipole { 1.0 } else { jump };
-        assert_is(same.model.name(), near.exact, same.exact * jump, 1e-6);
-        assert_is(same.model.name(), near.fast, same.fast * jump, 2e-6);
+    for near in [1.0 + 1e-7, 1.0 - 1e-7] {
+        let entry = fresnel::enter(DVec3::Z, DVec3::new(0.6, 0.0, 0.8), near).expect("light from above enters");
+        assert!((entry.transmittance - 1.0).abs() < 1e-12);
+        assert!((entry.direction - DVec3::new(-0.6, 0.0, -0.8)).length() < 1e-6);
+        for (same, near) in bare(&medium(1.0), &separation()).iter().zip(bare(&medium(near), &separation())) {
+            assert_is(same.model.name(), near.exact, same.exact, 2e-6);
+            assert_is(same.model.name(), near.fast, same.fast, 3e-6);
+        }
     }
 }
 
-/// From one end of the fits to the other; only at η = 1 do they jump.
+/// From one end of the fits to the other, and in small steps through η = 1.
 #[test]
 fn no_jump_in_the_index() {
     let ends = [ETA_MIN + 1e-6, ETA_MAX - 1e-6];
-    for eta in (1..=42).map(|k| 0.4 + 0.05 * f64::from(k)).filter(|eta| (eta - 1.0).abs() > 0.01).chain(ends) {
+    let beside = (-50..=50).map(|k| 1.0 + 0.001 * f64::from(k));
+    let beside = beside.chain([1.0f64.next_down(), 1.0 - 1e-7, 1.0f64.next_up()]);
+    for eta in (1..=42).map(|k| 0.4 + 0.05 * f64::from(k)).chain(beside).chain(ends) {
         let values = bare(&medium(eta), &separation());
         assert_close(&values, 1e-5);
         for (value, near) in values.iter().zip(bare(&medium(eta + 1e-7), &separation())) {

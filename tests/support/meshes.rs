@@ -58,7 +58,11 @@ pub fn world(parts: &[Part], lights: &[Light], environment: DVec3) -> World {
 
 /// A scene in a file of its own, in metres, under a constant environment.
 pub fn scene_file(path: &Path, environment: DVec3) -> World {
-    let options = ImportOptions { metres_per_unit: 1.0, light_unit: LightUnit::Radiometric, emission_unit: LightUnit::Radiometric };
+    let options = ImportOptions {
+        metres_per_unit: 1.0,
+        light_unit: LightUnit::Radiometric,
+        emission_unit: LightUnit::Radiometric,
+    };
     let mut scene = Scene::import(path, &options).expect("the file is valid glTF");
     scene.add_environment(environment);
     let rays = Rays::new(&scene.mesh);
@@ -77,7 +81,8 @@ pub fn imported(document: &Value, binary: &[u8], metres_per_unit: f64, environme
     let path = folder.path().join("scene.gltf");
     fs::write(&path, document.to_string()).expect("the temporary folder is writable");
     fs::write(folder.path().join("scene.bin"), binary).expect("the temporary folder is writable");
-    let options = ImportOptions { metres_per_unit, light_unit: LightUnit::Radiometric, emission_unit: LightUnit::Radiometric };
+    let options =
+        ImportOptions { metres_per_unit, light_unit: LightUnit::Radiometric, emission_unit: LightUnit::Radiometric };
     let mut scene = Scene::import(&path, &options).expect("the file is valid glTF");
     scene.add_environment(environment);
     let rays = Rays::new(&scene.mesh);

@@ -1,34 +1,128 @@
-//! Counts as people write them.
+//! Counts as people write them: read, and printed so that they can be read again.
 
-/// Parses `250k`, `1M`, `1e6` or `1000000`.
+/// What a suffix stands for, as a power of ten; the largest first.
+const SUFFIXES: [(char, u32); 4] = [('T', 12), ('G', 9), ('M', 6), ('k', 3)];
+
+/// Digits of a printed count.
+const DIGITS: u32 = 3;
+
+/// Digits of a printed count that is only an estimate.
+const FEW_DIGITS: u32 = 2;
+
+/// Parses `250k`, `1M`, `2.3M`, `1e6` or `1000000`, exactly.
 pub fn parse_count(text: &str) -> Result<u64, String> {
-    let expected = "expected a whole number such as 250k, 1M or 1e6";
-    let (digits, factor) = match text.char_indices().last() {
-        Some((at, 'k' | 'K')) => (&text[..at], 1e3),
-        Some((at, 'M')) => (&text[..at], 1e6),
-        Some((at, 'G')) => (&text[..at], 1e9),
-        _ => (text, 1.0),
+    exact(text).ok_or_else(|| "expected a whole number such as 250k, 2.3M or 1e6".into())
+}
+
+/// The whole number that a decimal fraction with a suffix is, if it is one.
+fn exact(text: &str) -> Option<u64> {
+    let of = |(letter, power): &(char, u32)| {
+        let digits = text.strip_suffix(*letter).or_else(|| text.strip_suffix('K').filter(|_| *letter == 'k'))?;
+        Some((digits, i64::from(*power)))
     };
-    if factor == 1.0
-        && let Ok(count) = text.parse::<u64>()
-    {
-        return Ok(count);
+    let (number, power) = SUFFIXES.iter().find_map(of).unwrap_or((text, 0));
+    let (decimal, exponent) = match number.split_once(['e', 'E']) {
+        Some((decimal, exponent)) => (decimal, i64::from(exponent.parse::<i32>().ok()?)),
+        None => (number, 0),
+    };
+    let decimal = decimal.strip_prefix('+').unwrap_or(decimal);
+    let (whole, fraction) = decimal.split_once('.').unwrap_or((decimal, ""));
+    let digits = [whole, fraction].concat();
+    if digits.is_empty() || !digits.bytes().all(|b| b.is_ascii_digit()) {
+        return None;
     }
-    let value = digits.parse::<f64>().map_err(|_| expected)? * factor;
-    if value >= 0.0 && value < 2f64.powi(53) && value.fract() == 0.0 { Ok(value as u64) } else { Err(expected.into()) }
+    let shift = power + exponent - i64::try_from(fraction.len()).ok()?;
+    let surplus = usize::try_from(-shift).unwrap_or(0).min(digits.len());
+    let (kept, cut) = digits.split_at(digits.len() - surplus);
+    if cut.bytes().any(|b| b != b'0') {
+        return None;
+    }
+    let kept = if kept.is_empty() { 0 } else { kept.parse::<u64>().ok()? };
+    kept.checked_mul(10u64.checked_pow(u32::try_from(shift.max(0)).ok()?)?)
+}
+
+/// A count for people: `9999`, `16.4k`, `2.35M`. It has all its digits below ten thousand, three from there on.
+pub fn count(n: u64) -> String {
+    if n < 10_000 && !n.is_multiple_of(1000) { n.to_string() } else { with_suffix(rounded(n, DIGITS, false)) }
+}
+
+/// A count that is recommended, of two digits: rounded up, so that it is not too small.
+pub fn count_up(n: f64) -> String {
+    with_suffix(rounded(n.ceil() as u64, FEW_DIGITS, true))
+}
+
+/// `n` with so many digits, and zeros.
+fn rounded(n: u64, digits: u32, up: bool) -> u64 {
+    let unit = 10u64.pow((n.checked_ilog10().unwrap_or(0) + 1).saturating_sub(digits));
+    let half = u64::from(unit > 1 && n % unit >= unit / 2);
+    let whole = if up { n.div_ceil(unit) } else { n / unit + half };
+    whole.saturating_mul(unit)
+}
+
+/// `n` with the largest suffix that it has once, without zeros at its end.
+fn with_suffix(n: u64) -> String {
+    let Some((letter, power)) = SUFFIXES.iter().find(|(_, power)| n >= 10u64.pow(*power)) else {
+        return n.to_string();
+    };
+    let unit = 10u64.pow(*power);
+    let fraction = format!("{:0width$}", n % unit, width = *power as usize);
+    match fraction.trim_end_matches('0') {
+        "" => format!("{}{letter}", n / unit),
+        fraction => format!("{}.{fraction}{letter}", n / unit),
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::parse_count;
+    use super::*;
 
+    /// Seen to fail with `2.3M`, which is 2299999.9999999995 in float64.
     #[test]
     fn counts_are_read_as_people_write_them() {
-        for (text, count) in [("250k", 250_000), ("1M", 1_000_000), ("1e6", 1_000_000), ("7", 7), ("0.5k", 500)] {
+        let exact = [("250k", 250_000), ("1M", 1_000_000), ("1e6", 1_000_000), ("7", 7), ("0.5k", 500), ("1K", 1000)];
+        let fractions = [("2.3M", 2_300_000), ("1.001k", 1001), ("0.0000010M", 1), ("1.5e3", 1500), ("15e-1k", 1500)];
+        let large = [("9007199254740993", 9_007_199_254_740_993), ("18T", 18_000_000_000_000), ("0e9", 0)];
+        for (text, count) in exact.into_iter().chain(fractions).chain(large) {
             assert_eq!(parse_count(text), Ok(count), "{text}");
         }
-        for text in ["", "k", "-1", "1.5", "1e99", "nan", "inf", "1Q", "0x10"] {
+        for text in ["", "k", ".", "-1", "1.5", "1e99", "nan", "inf", "1Q", "0x10", "1.0001k", "1e-1", "1e99999999999"]
+        {
             assert!(parse_count(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn counts_are_printed_as_people_write_them() {
+        for (n, text) in [
+            (0, "0"),
+            (999, "999"),
+            (1000, "1k"),
+            (1234, "1234"),
+            (16_384, "16.4k"),
+            (99_950, "100k"),
+            (1_000_000, "1M"),
+            (2_345_678, "2.35M"),
+            (1_004_999, "1M"),
+            (3_400_000_000, "3.4G"),
+            (u64::MAX, "18400000T"),
+        ] {
+            assert_eq!(count(n), text);
+        }
+        for (n, text) in
+            [(0.2, "1"), (99.5, "100"), (2_300_000.0, "2.3M"), (2_300_001.0, "2.4M"), (991e6, "1G"), (12_345.0, "13k")]
+        {
+            assert_eq!(count_up(n), text);
+        }
+    }
+
+    /// What is printed is read again: to three digits, and what is recommended to as much as is needed.
+    #[test]
+    fn what_is_printed_is_read() {
+        let numbers = (0..20_000).chain((0..60).map(|k| 3u64.pow(40) >> k)).chain([u64::MAX, 10u64.pow(19)]);
+        for n in numbers {
+            let [near, enough] = [count(n), count_up(n as f64)].map(|text| parse_count(&text).expect("a count"));
+            assert!(near.abs_diff(n) <= n / 200, "{n}: {near}");
+            assert!(n > 1 << 60 || (enough >= n && enough <= n + n / 9), "{n}: {enough}");
         }
     }
 }

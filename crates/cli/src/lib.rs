@@ -6,6 +6,7 @@ mod failure;
 mod files;
 mod medium;
 mod memory;
+mod named;
 mod printable;
 mod progress;
 mod rgb;
@@ -14,17 +15,18 @@ mod tables;
 mod threads;
 mod truncated;
 
-pub use count::parse_count;
+pub use count::{count, count_up, parse_count};
 pub use environment::EnvironmentSource;
 pub use failure::{Failure, run};
 pub use files::{Files, file_name, is_same_file};
 pub use medium::{ReadMediumError, is_file, read_medium, scene_medium};
 pub use memory::{Need, available_memory_bytes, peak_memory_bytes, require_memory};
+pub use named::{Thing, Unclear, the_one, word_for};
 pub use printable::printable;
 pub use progress::Progress;
 pub use rgb::parse_rgb;
 pub use scene_args::{LightUnit, Normals, SceneArgs};
-pub use tables::{camera_table, material_table};
+pub use tables::{camera_names, camera_table, material_table};
 
 use clap::{Args, ValueEnum};
 use std::io::{self, ErrorKind, Write};

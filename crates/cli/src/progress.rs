@@ -1,6 +1,6 @@
 //! Long work shows a bar on a terminal and two lines elsewhere.
 
-use crate::{Common, ProgressStyle};
+use crate::{Common, ProgressStyle, count};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle as Template};
 use std::{
     io::{IsTerminal, stderr},
@@ -22,14 +22,14 @@ impl Progress {
         let drawn = shown && common.progress == ProgressStyle::Auto && stderr().is_terminal();
         let target = if drawn { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         let bar = ProgressBar::with_draw_target(Some(total), target);
-        if let Ok(template) = Template::with_template("{msg} [{wide_bar}] {percent}% of {len} {prefix}, {eta} left") {
+        if let Ok(template) = Template::with_template("{msg} [{wide_bar}] {percent}% of {prefix}, {eta} left") {
             bar.set_style(template.progress_chars("=> "));
         }
         bar.set_message(name);
-        bar.set_prefix(unit.to_owned());
+        bar.set_prefix(format!("{} {unit}", count(total)));
         let plain = shown && !drawn;
         if plain {
-            common.say(format_args!("{name}: {total} {unit}"));
+            common.say(format_args!("{name}: {} {unit}", count(total)));
         }
         Progress { bar, plain, name, start: Instant::now() }
     }

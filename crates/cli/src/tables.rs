@@ -1,6 +1,6 @@
 //! Lists that the programs print.
 
-use crate::{Failure, printable, scene_medium};
+use crate::{Failure, Thing, printable, scene_medium};
 use bssrdf::Medium;
 use scene::{Camera, Projection, Scene};
 
@@ -31,7 +31,7 @@ impl Table {
 
 /// The cameras of a scene: what `--camera` may name, and how they look.
 pub fn camera_table(scene: &Scene) -> String {
-    let mut table = Table::new(&["index", "name", "kind", "field of view", "aspect", "position, m"]);
+    let mut table = Table::new(&["index", "name", "kind", "field of view", "aspect", "position, m", "node"]);
     for (index, camera) in scene.cameras.iter().enumerate() {
         let (kind, view) = match camera.projection {
             Projection::Perspective { .. } => {
@@ -40,11 +40,21 @@ pub fn camera_table(scene: &Scene) -> String {
             Projection::Orthographic { half_height } => ("orthographic", format!("height {:.4e} m", 2.0 * half_height)),
         };
         let aspect = camera.aspect.map_or("any".into(), |a| format!("{a:.3}"));
-        let Camera { name, position, .. } = camera;
-        let position = position.to_array().map(|x| format!("{x:.4}")).join(" ");
-        table.0.push(vec![index.to_string(), name.clone(), kind.into(), view, aspect, position]);
+        let Camera { name, node, .. } = camera;
+        table.0.push(vec![index.to_string(), name.clone(), kind.into(), view, aspect, position(camera), node.clone()]);
     }
     table.text()
+}
+
+fn position(camera: &Camera) -> String {
+    camera.position.to_array().map(|x| format!("{x:.4}")).join(" ")
+}
+
+/// The cameras of a scene as a word may mean them: by their own name or their node's.
+pub fn camera_names(scene: &Scene) -> Vec<Thing<'_>> {
+    let place = |camera: &Camera| format!(" of node `{}` at {} m", camera.node, position(camera));
+    let cameras = scene.cameras.iter().enumerate();
+    cameras.map(|(index, c)| Thing { index, names: vec![&c.name, &c.node], place: place(c) }).collect()
 }
 
 /// The materials of a scene: what `--translucent` and `--medium` may name, how they are taken if nobody says so, how

@@ -19,7 +19,7 @@ pub struct Arguments {
     #[arg(short, long, value_name = "IMAGE.exr", value_parser = file_name(),
         required_unless_present_any = ["list_cameras", "list_materials", "list_media"])]
     pub output: Option<PathBuf>,
-    /// Camera of SCENE by name or index [default: the first]
+    /// Camera of SCENE by its name, its node's, or its index; index:N where a name may be taken for it [default: the first]
     #[arg(long, value_name = "NAME|INDEX")]
     pub camera: Option<String>,
     /// Camera in a file of its own; beats --camera. A list of them makes as many images: IMAGE.NAME.exr of the view's
@@ -40,8 +40,8 @@ pub struct Arguments {
     /// are those of the whole image
     #[arg(long, value_name = "X,Y,W,H", value_parser = parse_crop, conflicts_with = "target_error")]
     pub crop: Option<Crop>,
-    /// Medium, by built-in name or from a file; of one material, or of all (repeatable) [default: what SCENE's
-    /// materials say]
+    /// Medium, by built-in name or from a file; of one material, by name or index:N, or of all (repeatable) [default: what
+    /// SCENE's materials say]
     #[arg(long, value_name = "[MATERIAL=]NAME|FILE.json")]
     pub medium: Vec<String>,
     /// How light scatters from point to point

@@ -2,7 +2,7 @@
 
 use crate::arguments::{Arguments, EstimatorName, FilterName, ModelName, RuleName};
 use bssrdf::Model;
-use cli::Failure;
+use cli::{Failure, Unclear, camera_names, the_one, word_for};
 use gather::{
     Crop, Filter, Settings,
     estimator::{Estimator, Rule},
@@ -42,6 +42,8 @@ pub struct Chosen {
     pub camera: Camera,
     /// World, m.
     pub target: DVec3,
+    /// The argument that chose it.
+    pub argument: String,
     width: Option<u32>,
     height: Option<u32>,
 }
@@ -51,7 +53,7 @@ pub type List = Vec<(Option<String>, Chosen)>;
 
 /// One camera or a list of them.
 pub enum Cameras {
-    One(Chosen),
+    One(Box<Chosen>),
     List(List),
 }
 
@@ -63,14 +65,15 @@ pub fn cameras(
     middle: impl Fn() -> DVec3,
 ) -> Result<Cameras, Failure> {
     let Some(path) = &arguments.view else {
-        return own_camera(arguments, scene, scene_path, middle).map(Cameras::One);
+        return own_camera(arguments, scene, scene_path, middle).map(|own| Cameras::One(Box::new(own)));
     };
     let chosen = |view: View, camera: Camera| {
         let target = DVec3::from_array(view.target);
-        (view.name, Chosen { camera, target, width: view.width, height: view.height })
+        let argument = "--view".to_owned();
+        (view.name, Chosen { camera, target, argument, width: view.width, height: view.height })
     };
     match View::read(path)? {
-        ViewFile::One(one) => Ok(Cameras::One(chosen(one.0, one.1).1)),
+        ViewFile::One(one) => Ok(Cameras::One(Box::new(chosen(one.0, one.1).1))),
         ViewFile::List(_) if arguments.orbit.is_some() => {
             Err(Failure::usage(format!("--orbit: {} is a list of views; give one of both", path.display())))
         }
@@ -85,25 +88,23 @@ fn own_camera(
     scene_path: &Path,
     middle: impl Fn() -> DVec3,
 ) -> Result<Chosen, Failure> {
-    let cameras = &scene.cameras;
-    let names = || cameras.iter().map(|c| format!("`{}`", c.name)).collect::<Vec<_>>().join(", ");
-    if cameras.is_empty() {
+    if scene.cameras.is_empty() {
         let message = format!("{}: no camera; give one with --view FILE.json", scene_path.display());
         return Err(Failure::usage(message));
     }
-    let found = match &arguments.camera {
-        None => cameras.first(),
-        Some(wanted) => cameras
-            .iter()
-            .find(|c| c.name == *wanted)
-            .or_else(|| cameras.iter().find(|c| c.node == *wanted))
-            .or_else(|| wanted.parse::<usize>().ok().and_then(|index| cameras.get(index))),
-    };
-    let camera = found.cloned().ok_or_else(|| {
-        let wanted = arguments.camera.as_deref().unwrap_or_default();
-        Failure::usage(format!("--camera: {} has no `{wanted}`; it has {}", scene_path.display(), names()))
+    let names = camera_names(scene);
+    let index = arguments.camera.as_deref().map_or(Ok(0), |word| the_one(word, &names, true));
+    let index = index.map_err(|unclear| {
+        let (path, wanted) = (scene_path.display(), arguments.camera.as_deref().unwrap_or_default());
+        Failure::usage(match unclear {
+            Unclear::Unknown { known } => format!("--camera: {path} has no `{wanted}`; it has {known}"),
+            Unclear::Several { choices } => {
+                format!("--camera: `{wanted}` may be more than one camera of {path}: give one of {choices}")
+            }
+        })
     })?;
-    Ok(Chosen { camera, target: middle(), width: None, height: None })
+    let argument = format!("--camera {}", word_for(index, &names, true));
+    Ok(Chosen { camera: scene.cameras[index].clone(), target: middle(), argument, width: None, height: None })
 }
 
 /// Most pixels of an image.

@@ -4,6 +4,10 @@
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Counts {
     pub paths: u64,
+    /// Paths the first translucent surface of which they met from its outside.
+    pub from_outside: u64,
+    /// The same from within: the camera stands inside a medium, or looks into an open mesh.
+    pub from_inside: u64,
     pub rays: u64,
     pub shadow_rays: u64,
     pub gathers: u64,
@@ -27,6 +31,8 @@ pub struct Counts {
 impl Counts {
     pub fn add(&mut self, other: &Counts) {
         self.paths += other.paths;
+        self.from_outside += other.from_outside;
+        self.from_inside += other.from_inside;
         self.rays += other.rays;
         self.shadow_rays += other.shadow_rays;
         self.gathers += other.gathers;

@@ -193,6 +193,11 @@ fn about(pixels: &[Pixel], width: usize, height: usize, origin: DVec3) -> Image 
     Image { width, height, channels, ..Image::default() }
 }
 
+/// Pixels whose beauty is below zero in some channel of the file.
+pub fn negative_count(pixels: &[Pixel]) -> usize {
+    pixels.iter().filter(|p| p.beauty().to_array().iter().any(|x| (*x as f32) < 0.0)).count()
+}
+
 /// The relative standard error of the image: the root mean square of the pixels' standard errors over the root mean
 /// square of their values, all channels; none for a black image.
 pub fn relative_error(pixels: &[Pixel]) -> Option<f64> {

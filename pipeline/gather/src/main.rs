@@ -3,6 +3,7 @@
 mod arguments;
 mod choices;
 mod inputs;
+mod outlook;
 mod report;
 mod rounds;
 mod shots;
@@ -11,7 +12,7 @@ use arguments::Arguments;
 use bssrdf::{Medium, Model, built_in, built_in_names};
 use choices::{cameras, estimator, settings};
 use clap::Parser;
-use cli::{Failure, Need, camera_table, material_table};
+use cli::{Failure, Need, camera_table, count, material_table};
 use formats::{
     atomic::{self, Output},
     cloud::Cloud,
@@ -82,6 +83,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             clouds,
             media: &media,
             camera: &shot.camera,
+            camera_argument: &shot.argument,
             turned_degrees: shot.degrees,
             warnings: &scene.warnings,
             health,
@@ -97,6 +99,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             atomic::write(&shot.file(path), &facts.statistics(&rendered, seconds, common.thread_count()))?;
         }
         finish(arguments, &facts, &rendered).map_err(|e| shot.failure(e))?;
+        if let Some(warning) = outlook::warning(&rendered.counts, settings) {
+            common.warn(shot.line(&warning));
+        }
         (start, seconds, unverified) = (Instant::now(), Seconds::default(), false);
     }
     Ok(())
@@ -139,7 +144,8 @@ fn show_scale(arguments: &Arguments, scene: &Scene, clouds: &[Cloud], media: &[M
         let object = media::Object {
             material: &material.name,
             diagonal: (high - low).length(),
-            spacing: (material.area_m2 / clouds::count(clouds, slot).max(1) as f64).sqrt(),
+            spacing: (material.area_m2 / clouds::count(clouds, slot) as f64).sqrt(),
+            drawn: clouds::drawn(clouds),
             rounding: 0.5 * f64::from(f32::EPSILON) * extent,
         };
         let scale = media::scale(&object, medium, model.of(medium).transport());
@@ -197,16 +203,16 @@ fn finish(arguments: &Arguments, facts: &Facts, rendered: &Rendered) -> Result<(
         let places: Vec<String> = rendered.non_finite.iter().map(|p| format!("{:?}", facts.pixel(*p))).collect();
         return Err(Failure::numerical(format!(
             "{} pixels are not finite, no image was written; the first are {}",
-            rendered.non_finite_count,
+            count(rendered.non_finite_count),
             places.join(" ")
         )));
     }
     let counts = &rendered.counts;
     let error = film::relative_error(&rendered.pixels).map_or("unknown".into(), |e| format!("{:.2} %", 100.0 * e));
     arguments.common.say(format_args!(
-        "{} gathers, {:.3e} BSSRDF evaluations; relative error {error} ({})",
-        counts.gathers,
-        counts.evaluations as f64,
+        "{} gathers, {} BSSRDF evaluations; relative error {error} ({})",
+        count(counts.gathers),
+        count(counts.evaluations),
         facts.covers()
     ));
     let share = |n: u64| 100.0 * n as f64 / counts.paths as f64;

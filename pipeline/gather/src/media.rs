@@ -1,7 +1,7 @@
 //! Which medium fills which material.
 
 use bssrdf::Medium;
-use cli::{ReadMediumError, read_medium, scene_medium};
+use cli::{ReadMediumError, Thing, Unclear, count_up, read_medium, scene_medium, the_one, word_for};
 use formats::cloud::SampledMaterial;
 use scene::Material;
 
@@ -14,6 +14,8 @@ pub enum AssignError {
     MissingFor(String),
     #[error("--medium: the cloud has no material `{name}`; it has {known}")]
     UnknownMaterial { name: String, known: String },
+    #[error("--medium: `{name}` may be more than one material of the cloud: give one of {choices}")]
+    SeveralMaterials { name: String, choices: String },
     #[error("--medium: given twice for the same material: `{0}` and `{1}`")]
     Twice(String, String),
     #[error("--medium: {0}")]
@@ -29,45 +31,54 @@ pub fn assign(
     sampled: &[SampledMaterial],
     materials: &[Material],
 ) -> Result<Vec<Medium>, AssignError> {
+    let names = material_names(sampled);
     let mut for_all: Option<&str> = None;
     let mut for_one: Vec<Option<&str>> = vec![None; sampled.len()];
     for argument in arguments {
-        let (slots, medium): (Vec<&mut Option<&str>>, &str) = match split(argument, sampled) {
+        let (slot, medium) = match split(argument, &names) {
             Some((name, medium)) => {
-                let named = sampled.iter().zip(&mut for_one).filter(|(m, _)| m.name == name);
-                (named.map(|(_, slot)| slot).collect(), medium)
+                let index = the_one(name, &names, false).map_err(|unclear| unclear_material(name, unclear))?;
+                let own = for_one.iter_mut().zip(sampled).find(|(_, m)| usize::from(m.index) == index);
+                (own.map_or(&mut for_all, |(slot, _)| slot), medium)
             }
-            None => (vec![&mut for_all], argument),
+            None => (&mut for_all, argument.as_str()),
         };
-        if slots.is_empty() {
-            let name = argument.split('=').next().unwrap_or_default().to_owned();
-            let known = sampled.iter().map(|m| format!("`{}`", m.name)).collect::<Vec<_>>().join(", ");
-            return Err(AssignError::UnknownMaterial { name, known });
-        }
-        for slot in slots {
-            if let Some(before) = slot.replace(medium) {
-                return Err(AssignError::Twice(before.into(), medium.into()));
-            }
+        if let Some(before) = slot.replace(medium) {
+            return Err(AssignError::Twice(before.into(), medium.into()));
         }
     }
-    let missing = |name: &str| match arguments {
+    let missing = |m: &SampledMaterial| match arguments {
         [] if sampled.len() == 1 => AssignError::Missing,
-        _ => AssignError::MissingFor(name.to_owned()),
+        _ => AssignError::MissingFor(word_for(usize::from(m.index), &names, false)),
     };
     let chosen = for_one.iter().zip(sampled).map(|(one, m)| {
         if let Some(name) = one.or(for_all) {
             return Ok(read_medium(name)?);
         }
         let own = materials.get(usize::from(m.index)).map(scene_medium).transpose().map_err(AssignError::Scene)?;
-        own.flatten().ok_or_else(|| missing(&m.name))
+        own.flatten().ok_or_else(|| missing(m))
     });
     chosen.collect()
 }
 
+/// The sampled materials as a word may mean them.
+fn material_names(sampled: &[SampledMaterial]) -> Vec<Thing<'_>> {
+    let place = |m: &SampledMaterial| format!(", {:.4e} m2", m.area_m2);
+    sampled.iter().map(|m| Thing { index: m.index.into(), names: vec![&m.name], place: place(m) }).collect()
+}
+
+fn unclear_material(name: &str, unclear: Unclear) -> AssignError {
+    let name = name.to_owned();
+    match unclear {
+        Unclear::Unknown { known } => AssignError::UnknownMaterial { name, known },
+        Unclear::Several { choices } => AssignError::SeveralMaterials { name, choices },
+    }
+}
+
 /// Splits `MATERIAL=MEDIUM`; the name of a material may hold an equals sign, and the longest that fits is meant.
-fn split<'a>(argument: &'a str, sampled: &[SampledMaterial]) -> Option<(&'a str, &'a str)> {
+fn split<'a>(argument: &'a str, names: &[Thing]) -> Option<(&'a str, &'a str)> {
     let at = |(k, _): (usize, &str)| Some((argument.get(..k)?, argument.get(k + 1..)?));
-    let known = |name: &str| sampled.iter().any(|m| m.name == name);
+    let known = |name: &str| !matches!(the_one(name, names, false), Err(Unclear::Unknown { .. }));
     let splits: Vec<_> = argument.match_indices('=').filter_map(at).collect();
     splits.iter().rev().find(|(name, _)| known(name)).or(splits.first()).copied()
 }
@@ -84,15 +95,20 @@ pub struct Object<'a> {
     pub material: &'a str,
     /// Of the box around it.
     pub diagonal: f64,
-    /// Mean distance of its samples.
+    /// Mean distance of its samples that carry light; infinite if none does.
     pub spacing: f64,
+    /// Samples of the cloud, with those of other surfaces and without light.
+    pub drawn: u64,
     /// What float32 rounds its positions by, at most.
     pub rounding: f64,
 }
 
+/// Samples farther apart than this many times the way that light goes are seen as grain.
+const SPARSE: f64 = 3.0;
+
 /// Compares a medium with the object that it fills; `transport` is `σ_tr`, 1/m.
 pub fn scale(object: &Object, medium: &Medium, transport: [f64; 3]) -> Scale {
-    let Object { material, diagonal, spacing, rounding } = *object;
+    let Object { material, diagonal, spacing, drawn, rounding } = *object;
     let path = medium.mean_free_path();
     let diffuse = transport.map(|s| 1.0 / s);
     let three = |v: [f64; 3]| v.map(length).join(" ");
@@ -121,12 +137,14 @@ pub fn scale(object: &Object, medium: &Medium, transport: [f64; 3]) -> Scale {
             length(reduced),
             length(diagonal)
         ));
-    } else if spacing > 3.0 * reduced {
+    } else if spacing == f64::INFINITY {
+        warnings.push(format!("`{material}`: no sample of it carries light: it will show no scattered light"));
+    } else if spacing > SPARSE * reduced {
         warnings.push(format!(
-            "`{material}`: samples lie {} apart, light scatters within {}: expect grain; about {:.1e} samples would do",
+            "`{material}`: samples lie {} apart, light scatters within {}: expect grain; a cloud of about {} samples would do",
             length(spacing),
             length(reduced),
-            (spacing / reduced).powi(2)
+            count_up(drawn as f64 * (spacing / reduced).powi(2))
         ));
     }
     if rounding > 0.01 * reduced {

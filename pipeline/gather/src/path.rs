@@ -196,6 +196,10 @@ impl<M: LaneModel> Renderer<'_, M> {
         let point = self.scene.mesh.point(hit.triangle, hit.weights, self.normals);
         let front = walker.direction.dot(point.geometric_normal) < 0.0;
         let body = self.bodies[point.material as usize].as_ref();
+        if body.is_some() && walker.from.is_none() && walker.inside.is_none() {
+            worker.counts.from_outside += u64::from(front);
+            worker.counts.from_inside += u64::from(!front);
+        }
         if !self.attenuate(walker, &point, front, hit.distance) {
             return false;
         }

@@ -16,6 +16,8 @@ pub struct Facts<'a> {
     pub clouds: &'a [Cloud],
     pub media: &'a [Medium],
     pub camera: &'a Camera,
+    /// The argument that chose it.
+    pub camera_argument: &'a str,
     /// How far an orbit has turned it.
     pub turned_degrees: f64,
     /// What was left out of the scene or looks wrong.
@@ -87,10 +89,7 @@ impl Facts<'_> {
     /// The arguments that change values, in one order; not where files lie, nor threads, nor of what part of the image.
     fn arguments(&self, arguments: &Arguments) -> String {
         let s = self.settings;
-        let camera = match &arguments.view {
-            Some(_) => "--view".to_owned(),
-            None => format!("--camera {}", self.camera.name),
-        };
+        let camera = self.camera_argument;
         let turned = match self.turned_degrees {
             0.0 => String::new(),
             degrees => format!(" turned by {degrees} degrees"),
@@ -124,6 +123,8 @@ impl Facts<'_> {
             "nodes_visited": counts.nodes,
             "rays": counts.rays,
             "shadow_rays": counts.shadow_rays,
+            "paths_from_outside": counts.from_outside,
+            "paths_from_inside": counts.from_inside,
             "paths_cut_by_depth": counts.cut_by_depth,
             "paths_escaped_inside": counts.escaped_inside,
             "nested_surfaces_passed": counts.nested,
@@ -132,6 +133,7 @@ impl Facts<'_> {
             "edge_rays": counts.edge_rays,
             "estimated_relative_error": film::relative_error(&rendered.pixels),
             "estimated_relative_error_covers": self.covers(),
+            "negative_pixels": film::negative_count(&rendered.pixels),
             "mesh": self.health.counts().into_iter().collect::<BTreeMap<_, _>>(),
             "non_finite": rendered.non_finite_count,
             "non_finite_pixels": rendered.non_finite.iter().map(|p| self.pixel(*p)).collect::<Vec<_>>(),

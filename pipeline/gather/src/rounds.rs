@@ -1,6 +1,6 @@
 //! How many paths: as many as asked for, or as an error takes.
 
-use cli::{Common, Progress};
+use cli::{Common, Progress, count, count_up};
 use gather::{Input, Rendered, Settings, clouds, estimator::Estimator, render, start};
 
 pub fn render_all(input: &Input, settings: &Settings, common: &Common) -> Rendered {
@@ -18,7 +18,7 @@ pub fn render_to(target: f64, input: &Input, settings: &Settings, common: &Commo
     let pixels = settings.part().pixels() as u64;
     let (mut done, mut before) = (0, f64::INFINITY);
     loop {
-        let progress = Progress::start(common, "gathering", pixels, &format!("pixels, paths {} to {paths}", done + 1));
+        let progress = Progress::start(common, "gathering", pixels, &steps(done + 1, paths));
         session.pass(paths - done, &|n| progress.add(n));
         progress.finish();
         let errors = session.errors();
@@ -36,21 +36,29 @@ pub fn render_to(target: f64, input: &Input, settings: &Settings, common: &Commo
             let needed = drawn * (cloud_error / (CLOUD_LIMITS * target)).powf(4.0 / 3.0);
             let percent = 100.0 * cloud_error;
             let way_out = if input.clouds.len() == 1 {
-                format!("sample it again with --samples {needed:.1e}")
+                format!("sample it again with --samples {}", count_up(needed))
             } else {
-                format!("about {needed:.1e} samples in all would do; add shards")
+                format!("about {} samples in all would do; add shards", count_up(needed))
             };
             common.warn(format_args!("the cloud alone has an error of {percent:.2} %: {way_out}"));
             break;
         }
         if paths >= most {
-            common.warn(format_args!("--target-error is not met with {most} paths a pixel; --spp allows more"));
+            common.warn(format_args!(
+                "--target-error is not met with {} paths a pixel; --spp allows more",
+                count(u64::from(most))
+            ));
             break;
         }
         done = paths;
         paths = (2 * paths).min(most);
     }
     session.finish()
+}
+
+/// What a pass adds to: paths of these numbers.
+fn steps(first: u32, last: u32) -> String {
+    format!("pixels, paths {} to {}", count(u64::from(first)), count(u64::from(last)))
 }
 
 /// What remains of an error that was `before` with half the paths and is `now`, if the variance of paths falls as their

@@ -19,6 +19,8 @@ pub struct Shot {
     pub settings: Settings,
     /// By how much an orbit has turned the camera.
     pub degrees: f64,
+    /// What chose the camera.
+    pub argument: String,
     /// What its files have before their ending; none if there is one image only.
     tag: Option<String>,
 }
@@ -36,7 +38,7 @@ pub fn shots(
                 let degrees = 360.0 * f64::from(index) / f64::from(count);
                 let camera = turned(&chosen.camera, chosen.target, degrees);
                 let tag = arguments.orbit.map(|_| format!("{index:04}"));
-                Shot { camera, settings: settings.clone(), degrees, tag }
+                Shot { camera, settings: settings.clone(), degrees, argument: chosen.argument.clone(), tag }
             };
             Ok((0..count).map(shot).collect())
         }
@@ -44,7 +46,8 @@ pub fn shots(
             let shot = |(index, (name, chosen)): (usize, &(Option<String>, Chosen))| {
                 let tag = name.clone().unwrap_or_else(|| format!("{index:04}"));
                 let settings = settings(chosen).map_err(|e| e.within(place(&tag)))?;
-                Ok(Shot { camera: chosen.camera.clone(), settings, degrees: 0.0, tag: Some(tag) })
+                let (camera, argument) = (chosen.camera.clone(), chosen.argument.clone());
+                Ok(Shot { camera, settings, degrees: 0.0, argument, tag: Some(tag) })
             };
             list.iter().enumerate().map(shot).collect()
         }
@@ -69,6 +72,11 @@ impl Shot {
             Some(tag) => failure.within(place(tag)),
             None => failure,
         }
+    }
+
+    /// A line about this image, which says which it is if there are several.
+    pub fn line(&self, line: &str) -> String {
+        self.tag.as_ref().map_or_else(|| line.to_owned(), |tag| format!("{}: {line}", place(tag)))
     }
 
     /// `NAME.exr` as `NAME.0007.exr`.

@@ -17,10 +17,11 @@ pub use enough::{Goal, relative_error, sample_enough};
 pub use pattern::{Numbers, Pattern, Place};
 pub use sample::{Drawn, LitSurface, draw};
 
+use cli::{Thing, Unclear, count, count_up, the_one};
 use formats::cloud::{Content, Group, Meta, Options, Record, SampledMaterial, version};
 use rayon::prelude::*;
 use scene::{Health, NormalKind, Rays, Scene, light::LightTree, random};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Samples that one task draws.
 const CHUNK: u64 = 1 << 14;
@@ -57,6 +58,8 @@ impl Settings {
 pub enum SampleError {
     #[error("--translucent: no surface has a material called `{name}`; there are {known}")]
     UnknownMaterial { name: String, known: String },
+    #[error("{option}: `{name}` may be more than one material: give one of {choices}")]
+    SeveralMaterials { option: &'static str, name: String, choices: String },
     #[error("--share: no sampled surface has a material called `{name}`; there are {known}")]
     UnknownShare { name: String, known: String },
     #[error("--share: `{name}` has two; give one")]
@@ -67,9 +70,9 @@ pub enum SampleError {
     NoLight,
     #[error("no surface to sample: all of them emit; name one with --translucent")]
     NoSurface,
-    #[error("{samples} samples have an error of {error:.2e}; the target needs about {next}, there is room for {most}")]
+    #[error("{} samples have an error of {error:.2e}; the target needs about {}, there is room for {}", count(*samples), count_up(*next as f64), count(*most))]
     TooMany { samples: u64, error: f64, next: u64, most: u64 },
-    #[error("{count} samples have a flux that is no finite number: are light intensities or sizes absurd?")]
+    #[error("{} samples have a flux that is no finite number: are light intensities or sizes absurd?", cli::count(*count))]
     NotFinite { count: u64 },
 }
 
@@ -134,22 +137,43 @@ fn translucent_materials(scene: &Scene, names: &[String]) -> Result<(Vec<u16>, b
     let select = |accept: &dyn Fn(&scene::Material) -> bool| -> Vec<u16> {
         (0..used.len()).filter(|k| used[*k] && accept(&scene.materials[*k])).map(|k| k as u16).collect()
     };
-    let names_in_use = || -> String {
-        let all = select(&|_| true);
-        all.iter().map(|k| format!("`{}`", scene.materials[*k as usize].name)).collect::<Vec<_>>().join(", ")
-    };
-    for name in names {
-        if select(&|m| m.name == *name).is_empty() {
-            return Err(SampleError::UnknownMaterial { name: name.clone(), known: names_in_use() });
-        }
-    }
     if !names.is_empty() {
-        return Ok((select(&|m| names.contains(&m.name)), false));
+        let things = things(scene, &select(&|_| true));
+        let unknown = |name, known| SampleError::UnknownMaterial { name, known };
+        let named = names.iter().map(|name| material(name, &things, "--translucent", unknown));
+        let named: BTreeSet<u16> = named.collect::<Result<_, _>>()?;
+        return Ok((named.into_iter().collect(), false));
     }
     match scene.translucent() {
         (none, _) if none.is_empty() => Err(SampleError::NoSurface),
         some => Ok(some),
     }
+}
+
+/// Materials as a word may mean them.
+fn things<'a>(scene: &'a Scene, materials: &[u16]) -> Vec<Thing<'a>> {
+    let mut areas = vec![0.0; scene.materials.len()];
+    let triangles = scene.mesh.triangles.iter().enumerate();
+    triangles.for_each(|(k, t)| areas[usize::from(t.material)] += scene.mesh.area(k));
+    let thing = |index: usize| {
+        let place = format!(", {:.4e} m2", areas[index]);
+        Thing { index, names: vec![&scene.materials[index].name], place }
+    };
+    materials.iter().map(|m| thing(usize::from(*m))).collect()
+}
+
+/// The material that a word of an option means, if it can mean no other.
+fn material(
+    word: &str,
+    things: &[Thing],
+    option: &'static str,
+    unknown: impl Fn(String, String) -> SampleError,
+) -> Result<u16, SampleError> {
+    let index = the_one(word, things, false).map_err(|unclear| match unclear {
+        Unclear::Unknown { known } => unknown(word.to_owned(), known),
+        Unclear::Several { choices } => SampleError::SeveralMaterials { option, name: word.to_owned(), choices },
+    })?;
+    Ok(index as u16)
 }
 
 /// The named shares by material; every sampled material must be left something.
@@ -158,17 +182,15 @@ fn share_of_materials(
     materials: &[u16],
     named: &[(String, f64)],
 ) -> Result<Vec<(u16, f64)>, SampleError> {
-    let name_of = |m: &u16| &scene.materials[*m as usize].name;
-    let mut shares = Vec::new();
+    let things = things(scene, materials);
+    let mut shares: Vec<(u16, f64)> = Vec::new();
     for (name, share) in named {
-        let Some(material) = materials.iter().find(|m| name_of(m) == name) else {
-            let known = materials.iter().map(|m| format!("`{}`", name_of(m))).collect::<Vec<_>>().join(", ");
-            return Err(SampleError::UnknownShare { name: name.clone(), known });
-        };
-        if shares.iter().any(|(m, _)| m == material) {
+        let unknown = |name, known| SampleError::UnknownShare { name, known };
+        let material = material(name, &things, "--share", unknown)?;
+        if shares.iter().any(|(m, _)| *m == material) {
             return Err(SampleError::TwoShares { name: name.clone() });
         }
-        shares.push((*material, *share));
+        shares.push((material, *share));
     }
     let sum: f64 = shares.iter().map(|(_, share)| share).sum();
     let wanted = if shares.len() < materials.len() {

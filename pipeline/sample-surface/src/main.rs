@@ -2,7 +2,8 @@
 
 use clap::Parser;
 use cli::{
-    Common, Failure, Files, Need, Progress, SceneArgs, file_name, is_file, material_table, parse_count, read_medium,
+    Common, Failure, Files, Need, Progress, SceneArgs, count, file_name, is_file, material_table, parse_count,
+    read_medium,
 };
 use formats::{
     atomic::{self, Output},
@@ -42,7 +43,7 @@ struct Arguments {
     /// Relative error of the light that leaves the surface, of --for-medium
     #[arg(long, value_name = "X", requires = "for_medium", value_parser = parse_error)]
     target_error: Option<f64>,
-    /// Material whose surfaces are sampled (repeatable) [default: those the file marks as volumes; if there is none,
+    /// Material whose surfaces are sampled, by name or index:N of --list-materials (repeatable) [default: those the file marks as volumes; if there is none,
     /// all that do not emit]
     #[arg(long, value_name = "NAME")]
     translucent: Vec<String>,
@@ -195,7 +196,7 @@ fn check_memory(arguments: &Arguments) -> Result<(), Failure> {
         held: samples.saturating_mul(BYTES_PER_SAMPLE).saturating_add(scene),
         mapped: samples.saturating_mul(BYTES_PER_STORED_SAMPLE),
     };
-    cli::require_memory(&format!("--samples: a cloud of {samples} samples"), need, "draw fewer")
+    cli::require_memory(&format!("--samples: a cloud of {} samples", count(samples)), need, "draw fewer")
 }
 
 fn settings(arguments: &Arguments, environment: &Environment) -> Settings {
@@ -272,7 +273,8 @@ impl Work<'_> {
         if let Some(goal) = self.goal {
             let tell = |samples, error: f64| {
                 common.say(format_args!(
-                    "{samples} samples: relative error {:.2} % in {}",
+                    "{} samples: relative error {:.2} % in {}",
+                    count(samples),
                     100.0 * error,
                     goal.medium.name
                 ));
@@ -339,8 +341,8 @@ fn report(cloud: &Cloud, common: &Common) {
         .collect();
     common.say(format_args!(
         "{} of {} samples carry light ({}); area {:.4e} m2, mean flux {:.4e} {:.4e} {:.4e} W",
-        cloud.len(),
-        meta.samples_drawn,
+        count(cloud.len()),
+        count(meta.samples_drawn),
         if dropped.is_empty() { "none dropped".into() } else { dropped.join(", ") },
         meta.surface_area_m2,
         meta.mean_flux_w[0],

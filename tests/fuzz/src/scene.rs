@@ -6,7 +6,8 @@ use scene::{
     light::{LightTree, all_light_at},
 };
 
-const OPTIONS: ImportOptions = ImportOptions { metres_per_unit: 1.0, light_unit: LightUnit::Radiometric, emission_unit: LightUnit::Radiometric };
+const OPTIONS: ImportOptions =
+    ImportOptions { metres_per_unit: 1.0, light_unit: LightUnit::Radiometric, emission_unit: LightUnit::Radiometric };
 
 /// Larger scenes are read and no more.
 const MAX_TRIANGLES: usize = 1 << 12;

@@ -8,8 +8,10 @@ mod hostile;
 #[cfg(unix)]
 mod make;
 mod mutations;
+mod names;
 mod opaque;
 mod orbit;
+mod outlook;
 mod outputs;
 mod pipeline;
 mod shards;

@@ -99,8 +99,14 @@ fn outputs_are_files_of_their_own() {
     bench.write("view.json", VIEWS[0]);
     let own = ["a.cloud", &scene, "--medium", "skin1", "--spp", "1", "--view", "view.json", "-o"];
     bench.refuses(&[&own[..], &["./a.cloud"]].concat(), &["a.cloud", "--output would replace CLOUD"]);
-    bench.refuses(&[&own[..], &["x.exr", "--stats", "view.json"]].concat(), &["view.json", "--stats would replace --view"]);
-    bench.refuses(&[&own[..], &["x.exr", "--preview", "x.exr"]].concat(), &["x.exr", "--preview would replace --output"]);
+    bench.refuses(
+        &[&own[..], &["x.exr", "--stats", "view.json"]].concat(),
+        &["view.json", "--stats would replace --view"],
+    );
+    bench.refuses(
+        &[&own[..], &["x.exr", "--preview", "x.exr"]].concat(),
+        &["x.exr", "--preview would replace --output"],
+    );
     assert!(fs::read(bench.path("a.cloud")).expect("reads") == cloud);
     bench.succeed(
         "gather",
