@@ -9,9 +9,12 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 mod decode;
+mod dimensions;
 mod encode;
 mod header;
 mod parallel;
+
+pub use dimensions::Dimensions;
 
 /// Most samples of an image (pixels times channels), both ways: 8 GiB as float32.
 const MAX_SAMPLES: u64 = 1 << 31;
@@ -35,6 +38,13 @@ pub enum Attribute {
     Chromaticities([f32; 8]),
     /// A list of UTF-8 texts, as of arguments (`stringvector`).
     Texts(Vec<String>),
+    /// Any other type, as it lies in the file: `envmap`, `v2f`.
+    Other {
+        /// Name of the type.
+        kind: String,
+        /// The bytes of the value, little-endian.
+        value: Vec<u8>,
+    },
 }
 
 /// One plane of samples.
@@ -55,7 +65,8 @@ pub struct Image {
     pub height: usize,
     /// In order of name when read; in any order when written.
     pub channels: Vec<Channel>,
-    /// Facts about the image, by name. Those that describe the layout of the file are not among them.
+    /// Facts about the image, by name. Those that describe the layout of the file are not among them, nor are
+    /// `pixelAspectRatio`, `screenWindowCenter` and `screenWindowWidth` with their usual values 1, (0, 0) and 1.
     pub attributes: BTreeMap<String, Attribute>,
     /// Column and row of the top left pixel in the data window.
     pub window: [i32; 2],
@@ -139,10 +150,16 @@ impl Image {
     /// Reads a flat OpenEXR file: half, float or uint samples, scan lines or tiles (of mip maps the largest),
     /// one part or several of the same data window; no, RLE, ZIP, PIZ or PXR24 compression.
     ///
-    /// Channels of several parts get the name of their part as layer. Attributes of kinds that [`Attribute`]
-    /// does not know are left out. A uint that float32 does not hold (not all beyond 2^24 are held) is refused.
+    /// Channels of several parts get the name of their part as layer; an attribute about which parts disagree is also there
+    /// as that of the later one, `view of part 2`. A uint that float32 does not hold (not all
+    /// beyond 2^24 are held) is refused.
     pub fn decode(bytes: &[u8]) -> Result<Image, ImageError> {
-        decode::decode(bytes, NonZeroUsize::MIN)
+        Image::decode_with(bytes, NonZeroUsize::MIN)
+    }
+
+    /// As [`Image::decode`], with the same result for any number of threads.
+    pub fn decode_with(bytes: &[u8], threads: NonZeroUsize) -> Result<Image, ImageError> {
+        decode::decode(bytes, threads)
     }
 
     /// Reads an OpenEXR file as [`Image::decode`] does; errors name the file.

@@ -1,17 +1,18 @@
 //! `--accept`: the test image becomes the reference, and a log beside it tells when, why, and what changed.
 
-use std::fs;
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use cli::Failure;
+use cli::{Failure, printable};
 use compare::{ChannelReport, Judgement, LayerReport, Report};
-use formats::Error;
 use formats::atomic::Output;
+use formats::{Error, ImageError};
 use serde::Serialize;
 
 use crate::arguments::Arguments;
+use crate::inputs::{Source, bytes};
+use crate::lock::{Lock, PATIENCE};
 
 /// Changes only when a key of the log changes its meaning or goes.
 const SCHEMA: u32 = 1;
@@ -57,11 +58,22 @@ pub(crate) fn check(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Copies the test image over the reference, if they differ, and says what was done.
+/// Keeps others from accepting an image as the same reference, from before it is read until it is replaced.
+pub(crate) fn lock(arguments: &Arguments) -> Result<Option<Lock>, Failure> {
+    let take = || Lock::take(&arguments.reference, PATIENCE, |line| arguments.common.say(line));
+    arguments.accept.then(take).transpose()
+}
+
+/// Writes the test image that was judged over the reference that it was judged by, if they differ, and says what was done.
 ///
 /// Both files are complete before the first takes its place, and the log does so first: a line too many can be seen, a
 /// reference that changed without one cannot.
-pub(crate) fn accept(arguments: &Arguments, report: &Report, verdict: &str) -> Result<String, Failure> {
+pub(crate) fn accept(
+    arguments: &Arguments,
+    [old, new]: [&Source; 2],
+    report: &Report,
+    verdict: &str,
+) -> Result<String, Failure> {
     let Arguments { reference, test, .. } = arguments;
     let found = report.nonfinite.test;
     if found > 0 && !report.nonfinite.allowed {
@@ -70,17 +82,24 @@ pub(crate) fn accept(arguments: &Arguments, report: &Report, verdict: &str) -> R
             "{test}: not accepted: {found} samples are not finite; repair it, or let them with --allow-nonfinite"
         )));
     }
-    let (old, new) = (read(reference)?, read(test)?);
-    if old == new {
-        return Ok(format!("UNCHANGED {} has the same bytes already\n", reference.display()));
+    let shown = |path: &Path| printable(&path.display().to_string()).into_owned();
+    if old.bytes == new.bytes {
+        return Ok(format!("UNCHANGED {} has the same bytes already\n", shown(reference)));
     }
-    let line = serde_json::to_string(&entry(arguments, report, verdict, &old, &new)?)?;
+    let line = serde_json::to_string(&entry(arguments, report, verdict, &old.bytes, &new.bytes)?)?;
     let log = arguments.log();
     let before = if log.exists() { read(&log)? } else { Vec::new() };
     let outputs =
-        [prepare(&log, &[&before, end_of_line(&before), line.as_bytes(), b"\n"])?, prepare(reference, &[&new])?];
+        [prepare(&log, &[&before, end_of_line(&before), line.as_bytes(), b"\n"])?, prepare(reference, &[&new.bytes])?];
+    // A program that knows nothing of the lock may have replaced it meanwhile.
+    if read(reference)? != old.bytes {
+        let reference = reference.display();
+        return Err(Failure::usage(format!(
+            "{reference}: changed while it was compared; nothing was accepted, run again"
+        )));
+    }
     outputs.into_iter().try_for_each(Output::commit)?;
-    Ok(format!("ACCEPTED {} as {}, logged in {}\n", test.display(), reference.display(), log.display()))
+    Ok(format!("ACCEPTED {} as {}, logged in {}\n", shown(test), shown(reference), shown(&log)))
 }
 
 /// What a last line without an end lacks.
@@ -94,12 +113,8 @@ fn prepare(path: &Path, texts: &[&[u8]]) -> Result<Output, Error> {
     Ok(output)
 }
 
-fn read(path: &Path) -> Result<Vec<u8>, Error> {
-    let fail = |source| Error::read(path, source);
-    if !fs::metadata(path).map_err(fail)?.is_file() {
-        return Err(fail(io::Error::other("not a regular file")));
-    }
-    fs::read(path).map_err(fail)
+fn read(path: &Path) -> Result<Vec<u8>, ImageError> {
+    bytes(path).map_err(|source| ImageError::File { path: path.to_owned(), source: Box::new(source) })
 }
 
 fn entry<'a>(
@@ -146,5 +161,58 @@ fn now() -> Result<u64, Failure> {
             Failure::usage("SOURCE_DATE_EPOCH: not a whole number of seconds since 1970; correct or unset it")
         }),
         None => Ok(SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::num::NonZeroUsize;
+
+    use clap::Parser;
+    use compare::{Settings, compare};
+    use formats::image::{Channel, Image};
+
+    use super::*;
+
+    fn grey(value: f32) -> Vec<u8> {
+        let channel = |name: &str| Channel { name: name.to_owned(), samples: vec![value; 12] };
+        Image { width: 4, height: 3, channels: ["R", "G", "B"].map(channel).into(), ..Image::default() }
+            .encode()
+            .unwrap()
+    }
+
+    /// Reads and judges both files, changes one, and accepts.
+    fn after(change: &str, value: f32) -> (Result<String, Failure>, Vec<u8>, bool) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        fs::write(path("reference.exr"), grey(1.0)).unwrap();
+        fs::write(path("test.exr"), grey(1.5)).unwrap();
+        let [reference, test] = ["reference.exr", "test.exr"].map(|name| path(name).display().to_string());
+        let arguments = Arguments::parse_from(["compare", &reference, &test, "--accept", "--reason", "brighter"]);
+        let sources =
+            [&arguments.reference, &arguments.test].map(|p| Source::read(p, NonZeroUsize::MIN, true).unwrap());
+        let [old, new] = sources.each_ref();
+        let report = compare(&old.image, &new.image, &Settings::default()).unwrap();
+        fs::write(path(change), grey(value)).unwrap();
+        let done = accept(&arguments, [old, new], &report, "PASS");
+        (done, fs::read(path("reference.exr")).unwrap(), path("reference.exr.log").exists())
+    }
+
+    /// Caught: TEST read a second time, by which an image that nobody judged, all NaN, became the reference.
+    #[test]
+    fn what_was_judged_is_installed() {
+        let (done, reference, logged) = after("test.exr", f32::NAN);
+        assert!(done.unwrap().starts_with("ACCEPTED "));
+        assert!(reference == grey(1.5) && logged);
+    }
+
+    /// Caught: a reference that another program wrote meanwhile was replaced without ever having been compared.
+    #[test]
+    fn what_was_judged_is_replaced() {
+        let (done, reference, logged) = after("reference.exr", 7.0);
+        let message = done.unwrap_err().message;
+        assert!(message.contains("reference.exr: changed while it was compared"), "{message}");
+        assert!(reference == grey(7.0) && !logged);
     }
 }

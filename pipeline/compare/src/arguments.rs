@@ -12,7 +12,7 @@ use crate::noise_mode::NoiseArguments;
 /// Compare two OpenEXR images.
 ///
 /// Prints metrics per layer, then one line with the verdict. Exit code: 0 passed, 1 the images differ beyond a
-/// gate or hold values that are not finite, 2 could not judge.
+/// gate or hold values that are not finite, 2 could not judge, 3 a difference for --diff-exr is beyond float32.
 #[derive(Debug, Parser)]
 #[command(version)]
 pub(crate) struct Arguments {
@@ -46,7 +46,8 @@ pub(crate) struct Arguments {
     /// JSON file of gates, each with its reason, that hold besides those of the command line (docs/compare.md)
     #[arg(long, value_name = "FILE", value_parser = cli::file_name())]
     pub(crate) limits: Option<PathBuf>,
-    /// Layer that gates of the command line and --heatmap look at (beauty is R, G and B), or `all` [default: beauty]
+    /// Layer that gates of the command line and --heatmap look at, or `all` [default: beauty (the channels without a layer
+    /// that are the picture), for gates also its alpha]
     #[arg(long, value_name = "NAME")]
     pub(crate) layer: Option<String>,
     /// Let NaN and infinity pass; gates on their channel still fail

@@ -4,7 +4,7 @@
 
 use serde::Serialize;
 
-use crate::layer::{BEAUTY, Layer};
+use crate::layer::{ALPHA, BEAUTY, Layer};
 use crate::metric::{Metrics, bitwise_differences, pixels_beyond};
 use crate::{Choice, Limit, Mismatch, Report, Settings};
 
@@ -141,8 +141,7 @@ pub(crate) fn judge(layers: &[Layer<'_>], report: &Report, settings: &Settings) 
         judgements.push(Judgement { gate, layer, channel: None, value, limit, threshold: None, ok, reason: None });
     }
     for (gate, choice, reason) in asked(settings) {
-        let looks_at = looks_at(gate, choice);
-        let chosen = layers.iter().filter(|layer| looks_at.is_none_or(|name| layer.name == name));
+        let chosen = layers.iter().filter(|layer| sees(gate, choice, &layer.name));
         judgements.extend(chosen.map(|layer| Judgement { reason: reason.cloned(), ..gate.judge(layer, report) }));
     }
     judgements
@@ -174,6 +173,27 @@ pub(crate) fn looks_at(gate: Gate, choice: &Choice) -> Option<&str> {
     }
 }
 
+/// Whether a gate looks at a layer. One that looks at the picture without being told a layer looks at its alpha too.
+fn sees(gate: Gate, choice: &Choice, layer: &str) -> bool {
+    let whole_picture = *choice == Choice::Default && !gate.is_flip();
+    looks_at(gate, choice).is_none_or(|name| layer == name) || whole_picture && ALPHA.contains(&layer)
+}
+
+/// Names of the layers that differ and that no gate looks at; without any gate, those that the verdict does not speak of.
+pub(crate) fn unjudged_layers(layers: &[Layer<'_>], report: &Report, settings: &Settings) -> Vec<String> {
+    let any_gate = asked(settings).next().is_some();
+    let is_judged = |name: &String| match any_gate {
+        true => asked(settings).any(|(gate, choice, _)| sees(gate, choice, name)),
+        false => report.judged.contains(name),
+    };
+    let differs = |layer: &Layer<'_>| {
+        let measured = report.layers.iter().find(|measured| measured.name == layer.name);
+        // Equal NaNs have an error that is no number; the two zeroes have none.
+        measured.is_none_or(|measured| measured.metrics.max.error != 0.0) && bitwise_differences(&layer.samples()) > 0
+    };
+    layers.iter().filter(|layer| !is_judged(&layer.name) && differs(layer)).map(|layer| layer.name.clone()).collect()
+}
+
 /// A gate without a layer to look at would always pass.
 pub(crate) fn check_choice(layers: &[Layer<'_>], settings: &Settings) -> Result<(), Mismatch> {
     let asked = asked(settings).filter_map(|(gate, choice, _)| looks_at(gate, choice));
@@ -184,7 +204,7 @@ pub(crate) fn check_choice(layers: &[Layer<'_>], settings: &Settings) -> Result<
     }
 }
 
-/// Names of the layers that the verdict speaks of: all, if there is no beauty layer.
+/// Names of the layers that the verdict speaks of: the picture with its alpha, or all if there is no beauty layer.
 pub(crate) fn judged_layers(layers: &[Layer<'_>], choice: &Choice) -> Vec<String> {
     let wanted = match choice {
         Choice::Default => Some(BEAUTY),
@@ -192,5 +212,7 @@ pub(crate) fn judged_layers(layers: &[Layer<'_>], choice: &Choice) -> Vec<String
         Choice::Named(name) => Some(name.as_str()),
     };
     let wanted = wanted.filter(|name| layers.iter().any(|layer| layer.name == *name));
-    layers.iter().map(|layer| layer.name.clone()).filter(|name| wanted.is_none_or(|wanted| name == wanted)).collect()
+    let is_alpha = |name: &String| *choice == Choice::Default && ALPHA.contains(&name.as_str());
+    let chosen = |name: &String| wanted.is_none_or(|wanted| name == wanted) || is_alpha(name);
+    layers.iter().map(|layer| layer.name.clone()).filter(chosen).collect()
 }

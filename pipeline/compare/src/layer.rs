@@ -7,15 +7,20 @@ use crate::metric::Samples;
 /// Name of the layer of the picture itself.
 pub(crate) const BEAUTY: &str = "beauty";
 
-/// Colours before alpha; other channels follow by name.
-const ORDER: [&str; 4] = ["R", "G", "B", "A"];
+/// Channels without a layer that say how much of each pixel is covered, by all colors or by one. They belong to the picture,
+/// and are layers of their own, since depth and alpha in its metrics would hide its faults.
+pub(crate) const ALPHA: [&str; 4] = ["A", "AR", "AG", "AB"];
+
+/// Colors before alpha; then coordinates and chroma, and other channels by name.
+const ORDER: [&str; 9] = ["R", "G", "B", "A", "X", "Y", "Z", "RY", "BY"];
 
 /// A layer of both images.
 #[derive(Clone, Debug)]
 pub struct Layer<'a> {
-    /// What comes before the last dot; `beauty` for R, G, B and Y without one; else the channel's own name.
+    /// What comes before the last dot; `beauty` for the channels without one that are the picture; else the channel's own
+    /// name.
     pub name: String,
-    /// Names after the dot, with their samples; R, G, B, A come in this order, then others by name.
+    /// Names after the dot, with their samples; R, G, B, A, X, Y, Z, RY, BY come in this order, then others by name.
     pub channels: Vec<(String, Samples<'a>)>,
 }
 
@@ -29,8 +34,9 @@ impl<'a> Layer<'a> {
 /// Both images have the same channels. Beauty first, then by name.
 pub(crate) fn layers<'a>(reference: &'a Image, test: &'a Image) -> Vec<Layer<'a>> {
     let mut layers: Vec<Layer<'a>> = Vec::new();
+    let picture = picture(reference);
     for channel in &reference.channels {
-        let (layer, name) = split(&channel.name);
+        let (layer, name) = split(&channel.name, picture);
         let Some(samples) = test.channel(&channel.name) else { continue };
         let entry = (name.to_owned(), Samples { planes: vec![(channel.samples.as_slice(), samples)] });
         match layers.iter_mut().find(|known| known.name == layer) {
@@ -47,11 +53,22 @@ pub(crate) fn layers<'a>(reference: &'a Image, test: &'a Image) -> Vec<Layer<'a>
     layers
 }
 
-/// Depth and alpha are not colour: mixed into the picture's metrics they would hide its faults.
-fn split(channel: &str) -> (&str, &str) {
+/// The channels without a layer that are the picture: red, green and blue with a luminance; without these, CIE X, Y and Z,
+/// or luminance with its chroma. X and Z without Y are something else, such as depth.
+fn picture(image: &Image) -> &'static [&'static str] {
+    let has = |name: &&str| image.channels.iter().any(|channel| channel.name == *name);
+    match () {
+        () if ["R", "G", "B"].iter().any(has) => &["R", "G", "B", "Y"],
+        () if ["X", "Y", "Z"].iter().all(has) => &["X", "Y", "Z"],
+        () if has(&"Y") => &["Y", "RY", "BY"],
+        () => &[],
+    }
+}
+
+fn split<'a>(channel: &'a str, picture: &[&str]) -> (&'a str, &'a str) {
     match channel.rsplit_once('.') {
         Some((layer, name)) => (layer, name),
-        None if ["R", "G", "B", "Y"].contains(&channel) => (BEAUTY, channel),
+        None if picture.contains(&channel) => (BEAUTY, channel),
         None => (channel, channel),
     }
 }
@@ -65,14 +82,26 @@ mod tests {
     #[test]
     fn channels_are_grouped_by_the_name_before_the_dot() {
         let names = ["A", "B", "G", "N.X", "R", "Z", "a.b.R", "subsurface.B", "subsurface.G", "subsurface.R"];
-        let channels = names.map(|name| Channel { name: name.to_owned(), samples: vec![0.0] }).to_vec();
+        assert_eq!(found(&names), ["beauty RGB", "A A", "N X", "Z Z", "a.b R", "subsurface RGB"]);
+    }
+
+    /// Caught: a picture of X, Y, Z or of luminance and chroma of which only Y was judged.
+    #[test]
+    fn a_picture_without_colors_is_one_layer() {
+        assert_eq!(found(&["X", "Y", "Z"]), ["beauty XYZ"]);
+        assert_eq!(found(&["A", "BY", "RY", "Y"]), ["beauty YRYBY", "A A"]);
+        assert_eq!(found(&["Y", "Z"]), ["beauty Y", "Z Z"]);
+        assert_eq!(found(&["X", "Z"]), ["X X", "Z Z"]);
+        assert_eq!(found(&["B", "BY", "G", "R", "X", "Y", "Z"]), ["beauty RGBY", "BY BY", "X X", "Z Z"]);
+    }
+
+    /// Layers with the names of their channels.
+    fn found(names: &[&str]) -> Vec<String> {
+        let channels = names.iter().map(|name| Channel { name: (*name).to_owned(), samples: vec![0.0] }).collect();
         let image = Image { width: 1, height: 1, channels, ..Image::default() };
-        let found: Vec<String> = layers(&image, &image)
-            .iter()
-            .map(|layer| {
-                format!("{} {}", layer.name, layer.channels.iter().map(|(name, _)| name.as_str()).collect::<String>())
-            })
-            .collect();
-        assert_eq!(found, ["beauty RGB", "A A", "N X", "Z Z", "a.b R", "subsurface RGB"]);
+        let name = |layer: &Layer<'_>| {
+            format!("{} {}", layer.name, layer.channels.iter().map(|(name, _)| name.as_str()).collect::<String>())
+        };
+        layers(&image, &image).iter().map(name).collect()
     }
 }

@@ -6,6 +6,7 @@
 //! of displayed values; their files say how.
 
 use formats::image::Image;
+use meaning::Meaning;
 
 mod difference;
 pub mod distribution;
@@ -14,12 +15,13 @@ pub mod heatmap;
 pub mod html;
 mod layer;
 mod limits;
+mod meaning;
 pub mod metric;
 pub mod replicates;
 mod report;
 mod structure;
 
-pub use difference::difference;
+pub use difference::{TooFar, difference};
 pub use gate::{Gate, Judgement};
 pub use layer::Layer;
 pub use limits::{Limit, LimitsError, read_limits};
@@ -53,7 +55,7 @@ impl Settings {
 /// Which layers the gates look at.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Choice {
-    /// The beauty layer; for the bitwise gate, which is about the file, all layers.
+    /// The beauty layer and its alpha; for the bitwise gate, which is about the file, all layers.
     #[default]
     Default,
     /// All layers.
@@ -85,5 +87,7 @@ pub fn compare(reference: &Image, test: &Image, settings: &Settings) -> Result<R
     report.gates = gate::judge(&layers, &report, settings);
     report.pass = report.gates.iter().all(|gate| gate.ok);
     report.judged = gate::judged_layers(&layers, &settings.choice);
+    report.unjudged = gate::unjudged_layers(&layers, &report, settings);
+    report.notes = Meaning::of(test).notes(&Meaning::of(reference));
     Ok(report)
 }

@@ -81,6 +81,8 @@ fn read(path: &Path) -> std::io::Result<String> {
 }
 
 fn parse(text: &str) -> Result<Vec<Limit>, String> {
+    // Some editors begin a file with a byte order mark.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let document: Document = serde_json::from_str(text).map_err(|error| error.to_string())?;
     if document.schema != SCHEMA {
         return Err(format!("`schema` is {}; this program knows {SCHEMA}", document.schema));
@@ -157,6 +159,12 @@ mod tests {
             assert!(message.contains(words), "{entry}: {message}");
         }
         assert!(parse(r#"{"schema": 2, "limits": []}"#).unwrap_err().contains("`schema`"));
+    }
+
+    #[test]
+    fn a_byte_order_mark_is_no_fault() {
+        let text = r#"{"schema": 1, "limits": [{"gate": "max-bias", "limit": 0.1, "reason": "r"}]}"#;
+        assert_eq!(parse(&format!("\u{feff}{text}")), parse(text));
     }
 
     #[test]

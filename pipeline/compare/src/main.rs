@@ -4,13 +4,13 @@ use arguments::Arguments;
 use clap::Parser;
 use cli::Failure;
 use compare::compare;
-use formats::image::Image;
 use index_command::IndexArguments;
-use std::num::NonZeroUsize;
 
 mod accept;
 mod arguments;
 mod index_command;
+mod inputs;
+mod lock;
 mod noise_mode;
 mod outputs;
 
@@ -37,15 +37,18 @@ fn judge(arguments: &Arguments) -> Result<u8, Failure> {
              another limit beside it, such as --max-bias or --max-outliers",
         ));
     }
-    let (reference, test) = read_both(arguments)?;
-    let report = arguments.common.in_pool(|| compare(&reference, &test, &settings))?.map_err(|mismatch| {
+    let _lock = accept::lock(arguments)?;
+    let [old, new] = inputs::read_both(arguments)?;
+    let (reference, test) = (&old.image, &new.image);
+    let report = arguments.common.in_pool(|| compare(reference, test, &settings))?.map_err(|mismatch| {
         let (test, reference) = (arguments.test.display(), arguments.reference.display());
         Failure::usage(format!("{test}: {mismatch} (the reference is {reference})"))
     })?;
     let name = arguments.test.file_name().unwrap_or_default().to_string_lossy();
     let verdict = report.verdict(&name);
-    outputs::write(arguments, &settings, [&reference, &test], &report, &verdict)?;
-    let accepted = if arguments.accept { Some(accept::accept(arguments, &report, &verdict)?) } else { None };
+    outputs::write(arguments, &settings, [reference, test], &report, &verdict)?;
+    let accepted =
+        if arguments.accept { Some(accept::accept(arguments, [&old, &new], &report, &verdict)?) } else { None };
     if !arguments.common.quiet {
         cli::print(&report.table())?;
     }
@@ -54,19 +57,4 @@ fn judge(arguments: &Arguments) -> Result<u8, Failure> {
         cli::print(done)?;
     }
     Ok(if report.pass || accepted.is_some() { 0 } else { 1 })
-}
-
-/// Both images at once, each by half of the threads: much of reading a file is not shared among threads.
-fn read_both(arguments: &Arguments) -> Result<(Image, Image), Failure> {
-    let threads = arguments.threads();
-    let read = |path, threads| Image::read_with(path, threads);
-    let Some(half) = NonZeroUsize::new(threads.get() / 2) else {
-        return Ok((read(&arguments.reference, threads)?, read(&arguments.test, threads)?));
-    };
-    std::thread::scope(|scope| {
-        let reference = scope.spawn(|| read(&arguments.reference, half));
-        let test = read(&arguments.test, half);
-        let reference = reference.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-        Ok((reference?, test?))
-    })
 }

@@ -1,11 +1,12 @@
 //! `compare --replicates` and `--summarise`: folders of images instead of two.
 
 use std::num::NonZeroU16;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
-use cli::Failure;
+use cli::{Failure, Files, Need};
 use compare::replicates::{NoiseReport, Replicates, Summary, judge};
+use formats::image::{Dimensions, Image};
 use serde::Serialize;
 
 use crate::Arguments;
@@ -20,7 +21,8 @@ pub(crate) struct NoiseArguments {
     /// How many folders this run judges: their chance of a false alarm is 1e-3 together
     #[arg(long, value_name = "N", default_value = "1", requires = "replicates")]
     family: NonZeroU16,
-    /// Write what --replicates needs of the folder REFERENCE, and its mean image, into the folder TEST
+    /// Write what --replicates needs of the folder REFERENCE, and its mean image, into the folder TEST, which holds no
+    /// images
     #[arg(long, conflicts_with_all = TWO_IMAGES, conflicts_with_all = ["replicates", "json"])]
     summarise: bool,
 }
@@ -64,8 +66,31 @@ struct Document<'a> {
     verdict: &'a str,
 }
 
+/// Bytes for each pixel, besides those of an image: sums of three channels, and the pixels of a part.
+const PIXEL_BYTES: u64 = 40;
+
+/// Refuses what cannot fit before any of it is read. Images are read one by one; what a header does not say is left to the
+/// reading.
+fn check_memory(images: &[PathBuf]) -> Result<(), Failure> {
+    let sizes = images.iter().filter_map(|path| Some((path, Image::dimensions(path).ok()?)));
+    let need = |size: &Dimensions| {
+        let pixels = (size.width as u64).saturating_mul(size.height as u64);
+        size.reading_bytes.saturating_add(pixels.saturating_mul(PIXEL_BYTES))
+    };
+    let Some((path, size)) = sizes.max_by_key(|(_, size)| need(size)) else { return Ok(()) };
+    let what = format!("{}: an image of {} x {} pixels", path.display(), size.width, size.height);
+    cli::require_memory(&what, Need { held: need(&size), mapped: 0 }, "render smaller replicates")
+}
+
 /// Tests the replicates of one folder against the reference of another.
 fn test(arguments: &Arguments) -> Result<u8, Failure> {
+    let (references, tests) = (Summary::paths(&arguments.reference)?, Replicates::paths(&arguments.test)?);
+    let mut files = Files::default();
+    references.iter().try_for_each(|path| files.reads("an image of REFERENCE", path))?;
+    tests.iter().try_for_each(|path| files.reads("an image of TEST", path))?;
+    arguments.json.iter().try_for_each(|path| files.writes("--json", path))?;
+    check_memory(&references)?;
+    check_memory(&tests)?;
     let reference = Summary::read(&arguments.reference)?;
     let report = judge(&reference, &Replicates::read(&arguments.test)?, usize::from(arguments.noise.family.get()))?;
     let name = arguments.test.file_name().unwrap_or_default().to_string_lossy();
@@ -82,6 +107,8 @@ fn test(arguments: &Arguments) -> Result<u8, Failure> {
 
 /// Writes what a reference folder stores of replicates.
 fn summarise(arguments: &Arguments) -> Result<u8, Failure> {
+    check_memory(&Replicates::paths(&arguments.reference)?)?;
+    Summary::check_target(&arguments.test)?;
     let replicates = Replicates::read(&arguments.reference)?;
     Summary::of(&replicates, &arguments.reference)?.write(&replicates, &arguments.test)?;
     Ok(0)

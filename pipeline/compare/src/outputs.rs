@@ -47,6 +47,10 @@ pub(crate) fn write(
     report: &Report,
     verdict: &str,
 ) -> Result<(), Failure> {
+    // First, so that nothing is written if there is none.
+    let difference = arguments.diff_exr.is_some().then(|| difference(reference, test));
+    let path = arguments.diff_exr.as_deref().unwrap_or(&arguments.test).display();
+    let difference = difference.transpose().map_err(|error| Failure::numerical(format!("{path}: {error}")))?;
     let document = document(arguments, report, verdict);
     if let Some(path) = &arguments.json {
         atomic::write(path, (serde_json::to_string_pretty(&document)? + "\n").as_bytes())?;
@@ -55,9 +59,9 @@ pub(crate) fn write(
         let page = arguments.common.in_pool(|| html::page(&document, report, reference, test))??;
         atomic::write(path, &page)?;
     }
-    if let Some(path) = &arguments.diff_exr {
+    if let (Some(path), Some(difference)) = (&arguments.diff_exr, difference) {
         let fail = |error| Failure::usage(format!("{}: {error}", path.display()));
-        let bytes = difference(reference, test).encode_with(arguments.threads()).map_err(fail)?;
+        let bytes = difference.encode_with(arguments.threads()).map_err(fail)?;
         atomic::write(path, &bytes)?;
     }
     if let Some(path) = &arguments.heatmap {

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use cli::printable;
 use formats::image::Image;
 use serde::Serialize;
 
@@ -12,6 +13,8 @@ use crate::structure::Input;
 
 /// Changes only when a key of the JSON report changes its meaning or goes.
 const SCHEMA: u32 = 1;
+/// Layers that are not judged that the verdict names; the report has all.
+const NAMED: usize = 12;
 
 /// Everything that was measured and judged. Numbers that are not finite become `null` in JSON.
 #[derive(Clone, Debug, Serialize)]
@@ -36,6 +39,10 @@ pub struct Report {
     pub gates: Vec<Judgement>,
     /// Layers that the verdict speaks of.
     pub judged: Vec<String>,
+    /// Layers that differ and that no gate looks at.
+    pub unjudged: Vec<String>,
+    /// What a reader should know of the headers besides, in words.
+    pub notes: Vec<String>,
     /// Whether every gate passed.
     pub pass: bool,
 }
@@ -98,6 +105,8 @@ pub(crate) fn measure(image: &Image, layers: &[Layer<'_>]) -> Report {
         picture: PictureMetrics::default(),
         gates: Vec::new(),
         judged: Vec::new(),
+        unjudged: Vec::new(),
+        notes: Vec::new(),
         pass: false,
     }
 }
@@ -119,10 +128,10 @@ impl Report {
             "layer", "mean ref", "mean test", "bias", "MAE", "RMSE", "relMSE", "p99", "max"
         );
         for layer in &self.layers {
-            line(&mut table, &layer.name, &layer.metrics);
+            line(&mut table, &printable(&layer.name), &layer.metrics);
             if layer.channels.len() > 1 && self.judged.contains(&layer.name) {
                 for channel in &layer.channels {
-                    line(&mut table, &format!("  {}", channel.name), &channel.metrics);
+                    line(&mut table, &format!("  {}", printable(&channel.name)), &channel.metrics);
                 }
             }
         }
@@ -131,19 +140,20 @@ impl Report {
         let _ = writeln!(table, "not finite: {reference} samples of the reference, {test} of the test image");
         let _ = writeln!(table, "relMSE = mean of (test - reference)^2 / (reference^2 + {EPSILON})");
         table.push_str(&self.picture.lines());
-        for note in self.inputs.iter().filter_map(Input::note) {
-            let _ = writeln!(table, "{note}");
+        for note in self.inputs.iter().filter_map(Input::note).chain(self.notes.iter().cloned()) {
+            let _ = writeln!(table, "{}", printable(&note));
         }
         for gate in self.gates.iter().filter(|gate| !gate.ok) {
             if let Some(reason) = &gate.reason {
-                let _ =
-                    writeln!(table, "{} of {} is limited to {}: {reason}", gate.gate, gate.layer, number(gate.limit));
+                let (layer, limit) = (printable(&gate.layer), number(gate.limit));
+                let _ = writeln!(table, "{} of {layer} is limited to {limit}: {}", gate.gate, printable(reason));
             }
         }
         table
     }
 
-    /// One line: `PASS name relmse=... bias=...`, of the worst channel, or `FAIL gate value > limit`.
+    /// One line: `PASS name relmse=... bias=...`, of the worst channel, or `FAIL gate value > limit`. If layers differ that
+    /// no gate looks at, it says which after the numbers.
     pub fn verdict(&self, name: &str) -> String {
         let failed: Vec<String> = self.gates.iter().filter(|gate| !gate.ok).map(failure).collect();
         if !failed.is_empty() {
@@ -155,10 +165,22 @@ impl Report {
             values.max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
         };
         format!(
-            "PASS {name} relmse={:.3e} bias={:+.3e}\n",
+            "PASS {} relmse={:.3e} bias={:+.3e}{}\n",
+            printable(name),
             worst(|metrics| metrics.relmse),
-            worst(|metrics| metrics.bias)
+            worst(|metrics| metrics.bias),
+            self.not_judged()
         )
+    }
+
+    /// The layers that differ and that no gate looks at, as the end of a verdict.
+    fn not_judged(&self) -> String {
+        let named: Vec<_> = self.unjudged.iter().take(NAMED).map(|name| printable(name)).collect();
+        match self.unjudged.len().saturating_sub(NAMED) {
+            _ if named.is_empty() => String::new(),
+            0 => format!("; different but not judged: {}", named.join(", ")),
+            more => format!("; different but not judged: {} and {more} more", named.join(", ")),
+        }
     }
 }
 
@@ -177,9 +199,10 @@ fn line(table: &mut String, name: &str, metrics: &Metrics) {
 }
 
 fn failure(gate: &Judgement) -> String {
+    let layer = printable(&gate.layer);
     let place = match &gate.channel {
-        Some(channel) => format!("{} {channel}", gate.layer),
-        None => gate.layer.clone(),
+        Some(channel) => format!("{layer} {}", printable(channel)),
+        None => layer.into_owned(),
     };
     format!("{} {} > {} ({place})", gate.gate, number(gate.value), number(gate.limit))
 }

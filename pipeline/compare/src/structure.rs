@@ -2,10 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use formats::image::{Attribute, Image};
+use formats::image::Image;
 use serde::Serialize;
 
 use crate::layer::Layer;
+use crate::meaning::{Difference, Meaning, words};
 
 /// Hashes that say what an image was made of.
 const HASHES: [&str; 2] = ["pcsss/cloud", "pcsss/scene"];
@@ -65,6 +66,18 @@ pub enum Mismatch {
         /// Only in the test image.
         additional: String,
     },
+    /// The same numbers would mean another picture.
+    #[error("{name} is {test}, but {reference} in the reference, so that equal numbers are not the same; {way_out}")]
+    Meaning {
+        /// The attribute of the header.
+        name: &'static str,
+        /// What it says, or means by its absence.
+        reference: String,
+        /// What it says, or means by its absence.
+        test: String,
+        /// What to do about it.
+        way_out: &'static str,
+    },
     /// Different inputs.
     #[error(
         "made from other inputs ({name} is {test}, but {reference} in the reference); give --ignore-meta to compare all the same"
@@ -110,8 +123,11 @@ pub(crate) fn check(reference: &Image, test: &Image, ignore_meta: bool) -> Resul
         let missing = list(expected.difference(&found).collect());
         return Err(Mismatch::Channels { missing, additional: list(found.difference(&expected).collect()) });
     }
+    if let Some(Difference { name, reference, test, way_out }) = Meaning::of(test).difference(&Meaning::of(reference)) {
+        return Err(Mismatch::Meaning { name, reference, test, way_out });
+    }
     let inputs = HASHES.map(|name| {
-        let value = |image: &Image| image.attributes.get(name).map(show);
+        let value = |image: &Image| image.attributes.get(name).map(words);
         Input { name, reference: value(reference), test: value(test) }
     });
     if !ignore_meta {
@@ -127,18 +143,5 @@ fn check_input(input: &Input) -> Result<(), Mismatch> {
             Err(Mismatch::Inputs { name, reference: reference.clone(), test: test.clone() })
         }
         _ => Ok(()),
-    }
-}
-
-fn show(value: &Attribute) -> String {
-    match value {
-        Attribute::Text(text) => text.clone(),
-        Attribute::Float(_)
-        | Attribute::Double(_)
-        | Attribute::Int(_)
-        | Attribute::Vector(_)
-        | Attribute::Matrix(_)
-        | Attribute::Chromaticities(_)
-        | Attribute::Texts(_) => format!("{value:?}"),
     }
 }

@@ -177,6 +177,58 @@ fn a_summary_judges_like_the_images_it_was_made_of() {
     bench.run("--replicates", ["golden", "test"], &[]).cannot_judge(&["same cloud", "golden"]);
 }
 
+/// Caught: the mean left among the replicates, so that a second run refused the folder; a summary beside images, which
+/// would be read instead of them.
+#[test]
+fn a_summary_is_not_written_among_images() {
+    let bench = Bench::new(SOUND);
+    let names = || std::fs::read_dir(bench.path("reference")).unwrap().count();
+    for target in ["reference", "test"] {
+        bench.run("--summarise", ["reference", target], &[]).cannot_judge(&[target, ".exr", "without images"]);
+    }
+    assert_eq!(names(), 12);
+    // Its own mean of an earlier run is no stranger.
+    for _ in 0..2 {
+        assert_eq!(bench.run("--summarise", ["reference", "golden"], &[]).0, Some(0));
+    }
+}
+
+/// Caught: a replicate that the report was written over.
+#[test]
+fn the_report_does_not_replace_a_replicate() {
+    let bench = Bench::new(SOUND);
+    for image in ["reference/3.exr", "test/3.exr"] {
+        let (path, before) = (bench.path(image), std::fs::read(bench.path(image)).unwrap());
+        bench.judge(&["--json", path.to_str().unwrap()]).cannot_judge(&[image, "--json would replace an image"]);
+        assert_eq!(std::fs::read(path).unwrap(), before);
+    }
+}
+
+/// Caught: primaries and display windows that were never looked at.
+#[test]
+fn replicates_of_another_meaning_are_refused() {
+    let aces = Attribute::Chromaticities([0.713, 0.293, 0.165, 0.83, 0.128, 0.044, 0.321_68, 0.337_67]);
+    let convert = |image: &mut Image| drop(image.attributes.insert("chromaticities".to_owned(), aces.clone()));
+    Bench::with(convert).judge(&[]).cannot_judge(&["chromaticities", "0.713", "0.64"]);
+    let bench = Bench::new(SOUND);
+    assert_eq!(bench.run("--summarise", ["reference", "golden"], &[]).0, Some(0));
+    for seed in 0..8 {
+        let mut image = replicate(seed + 101, SOUND);
+        convert(&mut image);
+        bench.write("test", seed, &image);
+    }
+    bench.judge(&[]).cannot_judge(&["chromaticities", "reference"]);
+    bench.run("--replicates", ["golden", "test"], &[]).cannot_judge(&["chromaticities", "golden"]);
+    for seed in 0..12 {
+        let mut image = replicate(seed + 1, SOUND);
+        convert(&mut image);
+        bench.write("reference", seed, &image);
+    }
+    assert_eq!(bench.run("--summarise", ["reference", "golden"], &[]).0, Some(0));
+    assert!(Image::read(&bench.path("golden/mean.exr")).unwrap().attributes["chromaticities"] == aces);
+    bench.run("--replicates", ["golden", "test"], &[]).passes();
+}
+
 #[test]
 fn a_damaged_summary_is_refused() {
     let bench = Bench::new(SOUND);

@@ -22,6 +22,8 @@ use super::{Attribute, Channel, Image, ImageError, MAX_SAMPLES, Window, header};
 const BLOCKS_PER_THREAD: usize = 4;
 /// Longest name of a channel or attribute, bytes (OpenEXR file layout, "long names").
 const MAX_NAME: usize = 255;
+/// Longest name of a type, bytes: the flag for long names is set by those of channels and attributes only.
+const MAX_KIND: usize = 31;
 /// Largest coordinate of a data window that OpenEXR libraries accept.
 const MAX_COORDINATE: i64 = (i32::MAX / 2) as i64;
 
@@ -77,15 +79,36 @@ fn describe(image: &Image, channels: &[&Channel]) -> Header {
         image.display.map_or(IntegerBounds::new(position, size), |Window { position: [x, y], size: [w, h] }| {
             IntegerBounds::new(Vec2(x, y), Vec2(w, h))
         });
+    let others = image.attributes.iter().filter(|(name, _)| !REQUIRED.contains(&name.as_str()));
     let attributes = LayerAttributes {
         layer_position: position,
-        other: image.attributes.iter().map(|(name, value)| (text(name), attribute(value))).collect::<HashMap<_, _>>(),
+        other: others.map(|(name, value)| (text(name), attribute(value))).collect::<HashMap<_, _>>(),
         ..LayerAttributes::default()
     };
-    Header::new(text(""), size, list.collect())
+    let mut header = Header::new(text(""), size, list.collect())
         .with_encoding(Compression::ZIP16, BlockDescription::ScanLines, LineOrder::Increasing)
         .with_display_window(display)
-        .with_attributes(attributes)
+        .with_attributes(attributes);
+    require(&mut header, image);
+    header
+}
+
+/// Attributes that every file has, and the library a field for.
+const REQUIRED: [&str; 3] = [header::PIXEL_ASPECT, header::SCREEN_CENTER, header::SCREEN_WIDTH];
+
+/// Sets those of the attributes that the image has; their types were checked.
+fn require(header: &mut Header, image: &Image) {
+    if let Some(Attribute::Float(aspect)) = image.attributes.get(header::PIXEL_ASPECT) {
+        header.shared_attributes.pixel_aspect = *aspect;
+    }
+    if let Some(Attribute::Float(width)) = image.attributes.get(header::SCREEN_WIDTH) {
+        header.own_attributes.screen_window_width = *width;
+    }
+    if let Some(Attribute::Other { value, .. }) = image.attributes.get(header::SCREEN_CENTER)
+        && let [x, y] = value.as_chunks::<4>().0
+    {
+        header.own_attributes.screen_window_center = Vec2(f32::from_le_bytes(*x), f32::from_le_bytes(*y));
+    }
 }
 
 /// Bytes as they are: OpenEXR text has no encoding of its own, and its tools show UTF-8.
@@ -108,6 +131,9 @@ fn attribute(value: &Attribute) -> AttributeValue {
             white: Vec2(value[6], value[7]),
         }),
         Attribute::Texts(values) => AttributeValue::TextVector(values.iter().map(|value| text(value)).collect()),
+        Attribute::Other { kind, value } => {
+            AttributeValue::Custom { kind: text(kind), bytes: SmallVec::from_slice(value) }
+        }
     }
 }
 
@@ -159,6 +185,9 @@ fn check_channels(image: &Image) -> Result<(), ImageError> {
 
 fn check_attribute(name: &str, value: &Attribute) -> Result<(), ImageError> {
     check_name("attribute", name)?;
+    if let Attribute::Other { kind, .. } = value {
+        check_kind(name, kind)?;
+    }
     if header::LAYOUT.contains(&name) {
         return unwritable(format!("attribute `{name}` describes the layout of the file"));
     }
@@ -170,6 +199,16 @@ fn check_attribute(name: &str, value: &Attribute) -> Result<(), ImageError> {
         }
         _ => Ok(()),
     }
+}
+
+/// The library panics at a type without a name.
+fn check_kind(name: &str, kind: &str) -> Result<(), ImageError> {
+    if kind.is_empty() || kind.len() > MAX_KIND || kind.contains('\0') {
+        return unwritable(format!(
+            "attribute `{name}` is of type {kind:?}, not of 1 to {MAX_KIND} bytes without a zero"
+        ));
+    }
+    Ok(())
 }
 
 fn check_name(what: &str, name: &str) -> Result<(), ImageError> {

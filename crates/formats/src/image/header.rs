@@ -8,7 +8,7 @@ const PREAMBLE: usize = 8;
 const SEVERAL_PARTS: u8 = 0x10;
 
 /// Attributes that describe the layout of the file: written by the library, never part of an image.
-pub(super) const LAYOUT: [&str; 14] = [
+pub(super) const LAYOUT: [&str; 11] = [
     "channels",
     "chunkCount",
     "compression",
@@ -17,16 +17,24 @@ pub(super) const LAYOUT: [&str; 14] = [
     "lineOrder",
     "maxSamplesPerPixel",
     "name",
-    "pixelAspectRatio",
-    "screenWindowCenter",
-    "screenWindowWidth",
     "tiles",
     "type",
     "version",
 ];
 
+pub(super) const PIXEL_ASPECT: &str = "pixelAspectRatio";
+pub(super) const SCREEN_CENTER: &str = "screenWindowCenter";
+pub(super) const SCREEN_WIDTH: &str = "screenWindowWidth";
+
+/// Between the name of an attribute and the number of a part that disagrees about it.
+const OF_PART: &str = " of part ";
+
+/// Attributes that every file has, with the bytes of the values that say nothing.
+const USUAL: [(&str, &[u8]); 3] =
+    [(PIXEL_ASPECT, &1f32.to_le_bytes()), (SCREEN_CENTER, &[0; 8]), (SCREEN_WIDTH, &1f32.to_le_bytes())];
+
 /// Standard attributes and their types (openexr.com, "Standard Attributes"): readers expect these.
-const STANDARD: [(&str, &str); 35] = [
+const STANDARD: [(&str, &str); 38] = [
     ("adoptedNeutral", "v2f"),
     ("altitude", "float"),
     ("aperture", "float"),
@@ -51,8 +59,11 @@ const STANDARD: [(&str, &str); 35] = [
     ("near", "float"),
     ("originalDataWindow", "box2i"),
     ("owner", "string"),
+    (PIXEL_ASPECT, "float"),
     ("preview", "preview"),
     ("renderingTransform", "string"),
+    (SCREEN_CENTER, "v2f"),
+    (SCREEN_WIDTH, "float"),
     ("software", "string"),
     ("timeCode", "timecode"),
     ("utcOffset", "float"),
@@ -91,24 +102,32 @@ pub(super) fn sort(bytes: &mut [u8]) -> Result<(), ImageError> {
     Ok(())
 }
 
-/// The attributes of all parts that an image may hold; where parts disagree, the first counts.
+/// The attributes of all parts that an image may hold. Where a part disagrees with those before it, its attribute is there
+/// too, named `... of part 2`.
 pub(super) fn attributes(bytes: &[u8]) -> Option<std::collections::BTreeMap<String, Attribute>> {
     let several = bytes.get(5)? & SEVERAL_PARTS != 0;
     let mut found = std::collections::BTreeMap::new();
     let mut rest = bytes.get(PREAMBLE..)?;
-    loop {
+    for part in 1.. {
         let (entries, after) = split(rest)?;
         for entry in &entries {
             let name = text(entry.name);
-            if let (false, Some(value)) = (LAYOUT.contains(&name.as_str()), value(entry)) {
-                found.entry(name).or_insert(value);
+            let says_nothing = LAYOUT.contains(&name.as_str()) || USUAL.contains(&(name.as_str(), entry.value));
+            if let (false, Some(value)) = (says_nothing, value(entry)) {
+                match found.get(&name) {
+                    Some(first) if *first == value => {}
+                    Some(_) if part > 1 => drop(found.insert(format!("{name}{OF_PART}{part}"), value)),
+                    Some(_) => {}
+                    None => drop(found.insert(name, value)),
+                }
             }
         }
         if !several || entries.is_empty() {
-            return Some(found);
+            break;
         }
         rest = after;
     }
+    Some(found)
 }
 
 /// The number of the compression of the first part.
@@ -139,7 +158,7 @@ fn split_at_zero(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     Some((&bytes[..end], &bytes[end + 1..]))
 }
 
-/// `None` for types that an image does not hold, and for values of the wrong size.
+/// `None` for values of the wrong size.
 fn value(entry: &Entry<'_>) -> Option<Attribute> {
     Some(match entry.kind {
         b"string" => Attribute::Text(text(entry.value)),
@@ -150,7 +169,7 @@ fn value(entry: &Entry<'_>) -> Option<Attribute> {
         b"m44f" => Attribute::Matrix(floats(entry.value)?),
         b"chromaticities" => Attribute::Chromaticities(floats(entry.value)?),
         b"stringvector" => Attribute::Texts(texts(entry.value)?),
-        _ => return None,
+        kind => Attribute::Other { kind: text(kind), value: entry.value.to_vec() },
     })
 }
 
@@ -202,6 +221,17 @@ mod tests {
         for bytes in [bytes, header()] {
             assert_eq!(attributes(&bytes), Some(expected.clone().map(|(name, value)| (name.to_owned(), value)).into()));
         }
+    }
+
+    /// Caught: an attribute of the second part that nobody could see.
+    #[test]
+    fn parts_that_disagree_are_both_heard() {
+        let mut bytes = b"\x76\x2f\x31\x01\x02\x10\0\0".to_vec();
+        bytes.extend(b"a\0int\0\x04\0\0\0\x07\0\0\0b\0int\0\x04\0\0\0\x07\0\0\0\0");
+        bytes.extend(b"a\0int\0\x04\0\0\0\x07\0\0\0b\0int\0\x04\0\0\0\x08\0\0\0\0\0");
+        let expected = [("a", 7), ("b", 7), ("b of part 2", 8)];
+        let expected = expected.map(|(name, value)| (name.to_owned(), Attribute::Int(value)));
+        assert_eq!(attributes(&bytes), Some(expected.into()));
     }
 
     /// A size that is negative or beyond the end ends the reading, not the program.

@@ -11,10 +11,10 @@ mod plane;
 mod reduce;
 mod thumbnail;
 
-use formats::image::{Attribute, Image};
+use formats::image::Image;
 use serde::Serialize;
 
-use crate::{Report, layer};
+use crate::{Report, layer, meaning};
 use fit::LayerData;
 
 pub use index::{IndexError, index};
@@ -95,25 +95,11 @@ fn attributes<'a>(reference: &'a Image, test: &'a Image) -> Vec<AttributePair<'a
     let mut names: Vec<&String> = reference.attributes.keys().chain(test.attributes.keys()).collect();
     names.sort_unstable();
     names.dedup();
-    let text = |image: &Image, name: &String| image.attributes.get(name).map(words);
+    let text = |image: &Image, name: &String| image.attributes.get(name).map(meaning::words);
     names
         .into_iter()
         .map(|name| AttributePair { name, reference: text(reference, name), test: text(test, name) })
         .collect()
-}
-
-fn words(value: &Attribute) -> String {
-    let list = |numbers: &[f32]| numbers.iter().map(f32::to_string).collect::<Vec<_>>().join(", ");
-    match value {
-        Attribute::Text(text) => text.clone(),
-        Attribute::Float(number) => number.to_string(),
-        Attribute::Double(number) => number.to_string(),
-        Attribute::Int(number) => number.to_string(),
-        Attribute::Vector(numbers) => list(numbers),
-        Attribute::Matrix(numbers) => list(numbers),
-        Attribute::Chromaticities(numbers) => list(numbers),
-        Attribute::Texts(texts) => texts.join("\n"),
-    }
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use std::io::Read;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::read::ZlibDecoder;
-use formats::image::Channel;
+use formats::image::{Attribute, Channel};
 use serde_json::Value;
 
 use super::reduce::{Rectangle, block_for, means};

@@ -45,7 +45,8 @@ pub(super) fn thumbnails(layers: &[Layer<'_>], width: usize, height: usize) -> T
     let reduced = |samples: &[f32]| means(samples, width, Rectangle { x: 0, y: 0, width, height }, block);
     // Colours, or one channel as grey.
     let planes = layer.samples().planes;
-    let shown = &planes[..if planes.len() < 3 { 1 } else { 3 }];
+    let is_luminance = layer.channels.first().is_some_and(|(name, _)| name == "Y");
+    let shown = &planes[..if planes.len() < 3 || is_luminance { 1 } else { 3 }];
     let white = white(&shown.iter().flat_map(|(reference, _)| reduced(reference)).collect::<Vec<f32>>());
     let test: Vec<Vec<f32>> = shown.iter().map(|(_, test)| reduced(test)).collect();
     let colours = (0..size[0] * size[1]).map(|i| [0, 1, 2].map(|c| shade(test[c.min(test.len() - 1)][i], white)));

@@ -63,6 +63,18 @@ pub enum ReplicateError {
         /// What is wrong.
         what: String,
     },
+    /// The summary would be written among images.
+    #[error(
+        "{}: a summary beside images such as {} would be read instead of them; give --summarise a folder without images",
+        folder.display(),
+        image.display()
+    )]
+    HoldsImages {
+        /// Where it would be written.
+        folder: PathBuf,
+        /// One of the images there.
+        image: PathBuf,
+    },
     /// A reference that is no number.
     #[error("{}: holds {count} samples that are not finite, and a reference must not; render it again", path.display())]
     NotFinite {

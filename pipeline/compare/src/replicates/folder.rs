@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use formats::image::{Attribute, Image};
+use formats::image::{Attribute, Channel, Image};
 
 use super::statistic::{Statistic, statistics};
 use super::{FEWEST, ReplicateError};
+use crate::meaning::{self, Difference, Meaning};
 
 /// The attribute that tells clouds apart.
 const CLOUD: &str = "pcsss/cloud";
@@ -22,6 +23,7 @@ pub(super) struct Structure {
     pub height: usize,
     pub window: [i32; 2],
     pub channels: Vec<String>,
+    pub meaning: Meaning,
 }
 
 /// What is left of one image.
@@ -51,10 +53,10 @@ impl Replicate {
         };
         let mut channels: Vec<String> = image.channels.iter().map(|channel| channel.name.clone()).collect();
         channels.sort();
-        let (width, height, window) = (image.width, image.height, image.window);
+        let (width, height, window, meaning) = (image.width, image.height, image.window, Meaning::of(image).judged());
         Ok(Replicate {
             path: path.to_owned(),
-            structure: Structure { scene: text(SCENE)?, width, height, window, channels },
+            structure: Structure { scene: text(SCENE)?, width, height, window, channels, meaning },
             cloud: text(CLOUD)?.chars().take(HASH_LENGTH).collect(),
             not_finite: image.channels.iter().flat_map(|c| &c.samples).filter(|sample| !sample.is_finite()).count(),
             statistics: statistics(image),
@@ -65,8 +67,13 @@ impl Replicate {
 impl Replicates {
     /// All `.exr` files of a folder, in order of name.
     pub fn read(folder: &Path) -> Result<Replicates, ReplicateError> {
-        let images = images(folder)?.into_iter().map(|path| Ok((Image::read(&path)?, path)));
+        let images = Replicates::paths(folder)?.into_iter().map(|path| Ok((Image::read(&path)?, path)));
         Replicates::of(folder, images)
+    }
+
+    /// The files that [`Replicates::read`] reads of a folder, in order of name.
+    pub fn paths(folder: &Path) -> Result<Vec<PathBuf>, ReplicateError> {
+        images(folder)
     }
 
     /// Images with their names, one after the other; `folder` is for messages.
@@ -74,11 +81,16 @@ impl Replicates {
         folder: &Path,
         images: impl IntoIterator<Item = Result<(Image, PathBuf), ReplicateError>>,
     ) -> Result<Replicates, ReplicateError> {
-        let (mut all, mut sum) = (Vec::new(), Vec::new());
+        let (mut all, mut sum, mut mean) = (Vec::new(), Vec::new(), Image::default());
         for image in images {
             let (image, path) = image?;
             let replicate = Replicate::of(&path, &image)?;
             belongs(&replicate, all.first())?;
+            if all.is_empty() {
+                let Image { width, height, window, display, .. } = image;
+                mean =
+                    Image { width, height, window, display, attributes: meaning::kept(&image), channels: Vec::new() };
+            }
             add(&mut sum, &image);
             all.push(replicate);
         }
@@ -86,7 +98,8 @@ impl Replicates {
             return Err(ReplicateError::TooFew { folder: folder.to_owned(), found: all.len(), wanted: FEWEST });
         }
         independent(&all)?;
-        Ok(Replicates { mean: mean(&sum, &all[0].structure, all.len()), all })
+        mean.channels = means(&sum, all.len());
+        Ok(Replicates { mean, all })
     }
 }
 
@@ -140,6 +153,11 @@ impl Structure {
         if self.channels != reference.channels {
             return Some("other channels; write both with one version of the renderer".to_owned());
         }
+        if let Some(Difference { name, reference, test, way_out }) = self.meaning.difference(&reference.meaning) {
+            return Some(format!(
+                "{name} is {test} instead of {reference}, so that equal numbers are not the same; {way_out}"
+            ));
+        }
         let scenes = (&self.scene, &reference.scene);
         (scenes.0 != scenes.1).then(|| format!("its scene is {} instead of {}; render one scene", scenes.0, scenes.1))
     }
@@ -155,12 +173,11 @@ fn add(sum: &mut Vec<Vec<f64>>, image: &Image) {
     }
 }
 
-fn mean(sum: &[Vec<f64>], structure: &Structure, count: usize) -> Image {
+fn means(sum: &[Vec<f64>], count: usize) -> Vec<Channel> {
     let channels = ["R", "G", "B"].iter().zip(sum).filter(|(_, plane)| !plane.is_empty());
-    let channels = channels.map(|(name, plane)| formats::image::Channel {
+    let mean = |(name, plane): (&&str, &Vec<f64>)| Channel {
         name: (*name).to_owned(),
         samples: plane.iter().map(|sum| (sum / count as f64) as f32).collect(),
-    });
-    let Structure { width, height, window, .. } = *structure;
-    Image { width, height, window, channels: channels.collect(), ..Image::default() }
+    };
+    channels.map(mean).collect()
 }

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use cli::printable;
 use serde::Serialize;
 
 use super::judge::{FALSE_ALARM_RATE, Judged};
@@ -81,7 +82,7 @@ impl NoiseReport {
             "{} replicates against {} of the reference; {} tests, level {:.2e} each: {:.0e} over {} such folders\n",
             self.test_replicates, self.reference_replicates, self.tests, self.level, self.false_alarm_rate, self.family
         );
-        let width = self.statistics.iter().map(|judged| judged.name.len()).max().unwrap_or(0);
+        let width = self.statistics.iter().map(|judged| printable(&judged.name).len()).max().unwrap_or(0);
         // Writing to a string cannot fail, here and below.
         let _ = writeln!(
             table,
@@ -92,7 +93,7 @@ impl NoiseReport {
             line(&mut table, judged, width);
         }
         for [name, reason] in &self.left_out {
-            let _ = writeln!(table, "{name:<width$}  not tested: {reason}");
+            let _ = writeln!(table, "{:<width$}  not tested: {}", printable(name), printable(reason));
         }
         let _ = writeln!(table, "not finite: {} samples of the test images", self.not_finite);
         table + "visible: the smallest bias that is found nine times in ten; of `noise`, only growth is tested\n"
@@ -101,9 +102,10 @@ impl NoiseReport {
     /// One line: `PASS name` with the least chance and what could have been seen, or `FAIL name` with what differs.
     pub fn verdict(&self, name: &str) -> String {
         let (p, whose) = self.least();
+        let (name, whose) = (printable(name), printable(whose));
         if self.pass {
             let sees = self.statistics.iter().filter(|judged| judged.kind == Kind::Scatter);
-            let sees: Vec<String> = sees.map(|j| format!("{} {:.2}%", j.name, 100.0 * j.visible)).collect();
+            let sees: Vec<String> = sees.map(|j| format!("{} {:.2}%", printable(&j.name), 100.0 * j.visible)).collect();
             let (tests, level) = (self.tests, self.level);
             return format!(
                 "PASS {name} p={p:.1e} ({whose}) tests={tests} level={level:.1e} sees: {}\n",
@@ -124,6 +126,7 @@ impl NoiseReport {
 
     fn failure(&self, judged: &Judged) -> String {
         let Judged { name, difference, t, freedom, p, .. } = judged;
+        let name = printable(name);
         match judged.scatter {
             Some(scatter) if *p >= self.level => {
                 format!("{name} variance x {:.2} (p {:.1e} < {:.1e})", scatter.ratio, scatter.p, self.level)
@@ -135,6 +138,7 @@ impl NoiseReport {
 
 fn line(table: &mut String, judged: &Judged, width: usize) {
     let Judged { name, reference, test, difference, t, freedom, p, visible, scatter, ok, .. } = judged;
+    let name = printable(name);
     let _ = write!(
         table,
         "{name:<width$}{reference:>12.4e}{test:>12.4e}{:>+11.3}%{t:>8.2}{freedom:>5}{p:>10.1e}{:>9.3}%",

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::folder::Structure;
 use super::statistic::is_background;
 use super::{FEWEST, Kind, ReplicateError, Replicates};
+use crate::meaning::Meaning;
 
 /// The file's name in a reference folder.
 pub const SUMMARY: &str = "statistics.json";
@@ -35,6 +36,9 @@ pub struct Summary {
     height: usize,
     window: [i32; 2],
     channels: Vec<String>,
+    /// What headers say beyond the usual about the meaning of the numbers.
+    #[serde(default, skip_serializing_if = "Meaning::is_usual")]
+    meaning: Meaning,
     /// The beginning of each cloud's hash: as many as there were replicates.
     clouds: Vec<String>,
     pub(super) statistics: Vec<Summarised>,
@@ -75,9 +79,17 @@ impl Summary {
             return Err(wrong(format!("not a file of at most {MOST_BYTES} bytes")));
         }
         let bytes = std::fs::read(&path).map_err(fail)?;
-        let summary: Summary = serde_json::from_slice(&bytes).map_err(|error| wrong(error.to_string()))?;
+        // Some editors begin a file with a byte order mark.
+        let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
+        let summary: Summary = serde_json::from_slice(text).map_err(|error| wrong(error.to_string()))?;
         summary.check().map_err(wrong)?;
         Ok(Summary { folder: folder.to_owned(), ..summary })
+    }
+
+    /// The files that [`Summary::read`] reads of a folder.
+    pub fn paths(folder: &Path) -> Result<Vec<PathBuf>, ReplicateError> {
+        let path = folder.join(SUMMARY);
+        if path.exists() { Ok(vec![path]) } else { Replicates::paths(folder) }
     }
 
     /// Of images in memory; `folder` is for messages.
@@ -94,14 +106,24 @@ impl Summary {
             })
             .collect();
         leave_out_background(&mut statistics, replicates);
-        let Structure { scene, width, height, window, channels } = first.structure.clone();
+        let Structure { scene, width, height, window, channels, meaning } = first.structure.clone();
         let clouds = replicates.all.iter().map(|replicate| replicate.cloud.clone()).collect();
         let folder = folder.to_owned();
-        Ok(Summary { schema: SCHEMA, scene, width, height, window, channels, clouds, statistics, folder })
+        Ok(Summary { schema: SCHEMA, scene, width, height, window, channels, meaning, clouds, statistics, folder })
     }
 
-    /// Writes the summary and the mean picture into a folder, which is made if it is not there.
+    /// Refuses a folder of images: the mean would be taken for one of them, and the summary be read instead of them.
+    pub fn check_target(folder: &Path) -> Result<(), ReplicateError> {
+        let images = if folder.is_dir() { Replicates::paths(folder)? } else { Vec::new() };
+        match images.into_iter().find(|path| !path.ends_with(MEAN_IMAGE)) {
+            Some(image) => Err(ReplicateError::HoldsImages { folder: folder.to_owned(), image }),
+            None => Ok(()),
+        }
+    }
+
+    /// Writes the summary and the mean picture into a folder, which is made if it is not there and must hold no images.
     pub fn write(&self, replicates: &Replicates, folder: &Path) -> Result<(), ReplicateError> {
+        Summary::check_target(folder)?;
         std::fs::create_dir_all(folder).map_err(|source| formats::Error::write(folder, source))?;
         let path = folder.join(SUMMARY);
         let text = serde_json::to_string_pretty(self)
@@ -140,6 +162,7 @@ impl Summary {
             height: self.height,
             window: self.window,
             channels: self.channels.clone(),
+            meaning: self.meaning.clone(),
         };
         let (first, reference) = (&test.all[0], self.folder.display().to_string());
         if let Some(what) = first.structure.difference(&structure) {

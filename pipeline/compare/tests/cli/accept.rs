@@ -73,6 +73,36 @@ fn the_time_is_that_of_source_date_epoch() {
     assert_eq!(log(&bench)[0]["time"], 1234);
 }
 
+/// Each of many at once is logged as a change from what the one before it installed. Caught: lines whose `old` was no
+/// other's `new`, and lines that were lost.
+#[test]
+fn acceptances_at_once_are_one_chain() {
+    let bench = Bench::new();
+    let first = fs::read(bench.path("reference.exr")).unwrap();
+    let start = |number: u8| {
+        let mut image = crate::support::picture();
+        scale(&mut image, 2.0 + f32::from(number));
+        let name = format!("test{number}.exr");
+        bench.write(&name, &image);
+        let images = [bench.path("reference.exr"), bench.path(&name)];
+        let mut command = Command::new(env!("CARGO_BIN_EXE_compare"));
+        command.args(images).args(["--accept", "--reason", "why", "--threads", "1", "--quiet"]);
+        command.stdout(std::process::Stdio::null()).spawn().unwrap()
+    };
+    let children: Vec<_> = (0..12).map(start).collect();
+    for mut child in children {
+        assert!(child.wait().unwrap().success());
+    }
+    let mut before = blake3::hash(&first).to_hex().to_string();
+    let lines = log(&bench);
+    assert_eq!(lines.len(), 12);
+    for line in lines {
+        assert_eq!(line["old"], before);
+        before = line["new"].as_str().unwrap().to_owned();
+    }
+    assert_eq!(before, blake3::hash(&fs::read(bench.path("reference.exr")).unwrap()).to_hex().to_string());
+}
+
 #[test]
 fn a_refusal_changes_nothing() {
     let bench = Bench::new();

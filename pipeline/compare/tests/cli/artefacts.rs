@@ -39,6 +39,26 @@ fn the_difference_is_signed_and_keeps_names_and_window() {
     assert_eq!(["R", "G", "Z"].map(zeroes), [24 * 16, 24 * 16 - 1, 24 * 16 - 1]);
 }
 
+/// Caught: infinities written for finite images, with exit code 0.
+#[test]
+fn a_difference_that_float32_does_not_hold_is_not_written() {
+    let bench = Bench::new();
+    let mut reference = picture();
+    reference.channels[1].samples[WIDTH + 3] = -3e38;
+    bench.write("reference.exr", &reference);
+    let (path, json) = (bench.path("difference.exr"), bench.path("report.json"));
+    let change = |value: f32| move |image: &mut Image| image.channels[1].samples[WIDTH + 3] = value;
+    let outputs = [options("--diff-exr", &path), options("--json", &json)].concat();
+    let run = bench.compare(change(3e38), &outputs);
+    assert_eq!((run.code, run.stdout.as_str()), (Some(3), ""), "{}", run.stderr);
+    for words in ["difference.exr", "channel G at pixel 3,1", "6.000e38", "--diff-exr"] {
+        assert!(run.stderr.contains(words), "{}", run.stderr);
+    }
+    assert!(!path.exists() && !json.exists());
+    bench.compare(change(3e37), &outputs).passes();
+    assert!(Image::read(&path).unwrap().channel("G").unwrap()[WIDTH + 3] > 3.2e38);
+}
+
 /// Two images with different errors share the scale; its end can be set.
 #[test]
 fn the_heatmap_has_a_fixed_scale() {

@@ -49,6 +49,15 @@ fn limits_keep_their_layer() {
     brighter(&bench, &format!("{}, {}", on("Z"), on("Z")), &[]).cannot_judge(&["limits.json", "limit 2", "twice"]);
 }
 
+/// Caught: refused, though other JSON files are read with it.
+#[test]
+fn a_byte_order_mark_is_no_fault() {
+    let bench = Bench::new();
+    let path = bench.path("limits.json");
+    std::fs::write(&path, format!("\u{feff}{{\"schema\": 1, \"limits\": [{LOOSE}]}}")).unwrap();
+    bench.compare(|image| scale(image, 1.01), &["--limits", path.to_str().unwrap()]).passes();
+}
+
 #[test]
 fn a_limits_file_that_cannot_be_used_is_named() {
     let bench = Bench::new();

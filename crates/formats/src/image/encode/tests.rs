@@ -31,6 +31,11 @@ fn attributes() -> BTreeMap<String, Attribute> {
         ("pcsss/seed", Attribute::Double(7.0)),
         ("pcsss/samples", Attribute::Int(1_000_000)),
         ("pcsss/sigma_a", Attribute::Vector([0.1, 0.2, 0.3])),
+        ("pixelAspectRatio", Attribute::Float(2.0)),
+        ("screenWindowCenter", Attribute::Other { kind: "v2f".to_owned(), value: vec![0, 0, 0, 63, 0, 0, 128, 63] }),
+        ("screenWindowWidth", Attribute::Float(0.5)),
+        ("envmap", Attribute::Other { kind: "envmap".to_owned(), value: vec![1] }),
+        ("pcsss/unknown", Attribute::Other { kind: "m33d".to_owned(), value: vec![7; 72] }),
         ("pcsss/arguments with a name of more than thirty-one bytes", Attribute::Texts(vec!["a".into(), "".into()])),
     ]
     .into_iter()
@@ -104,4 +109,8 @@ fn what_no_file_can_hold_is_refused_with_its_name() {
     assert!(message(insert("dataWindow", Attribute::Int(1))).contains("`dataWindow`"));
     assert!(message(insert("worldToCamera", Attribute::Int(1))).contains("m44f, not int"));
     assert!(message(insert("a\0b", Attribute::Int(1))).contains("a\\0b"));
+    let of_kind = |kind: &str| message(insert("a", Attribute::Other { kind: kind.to_owned(), value: Vec::new() }));
+    assert!(
+        ["", "a\0b", &"k".repeat(32)].map(of_kind).iter().all(|message| message.contains("attribute `a` is of type"))
+    );
 }
