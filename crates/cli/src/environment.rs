@@ -1,12 +1,15 @@
 //! Light from all around as it is named on a command line.
 
-use crate::{Failure, parse_rgb};
+use crate::{Common, Failure, Need, parse_rgb, require_memory};
 use formats::Panorama;
 use scene::{
     DVec3, Vec3,
     light::{Environment, EnvironmentMap},
 };
-use std::{path::PathBuf, sync::Arc};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 /// What `--environment` is.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,16 +29,26 @@ pub fn parse_environment(text: &str) -> Result<EnvironmentSource, String> {
 }
 
 impl EnvironmentSource {
-    /// The light, with its radiance multiplied and turned about +Y.
-    pub fn read(&self, scale: f64, rotation_degrees: f64) -> Result<Environment, Failure> {
+    /// The light, with its radiance multiplied and turned about +Y; prints what the picture differs in from its file.
+    pub fn read(&self, scale: f64, rotation_degrees: f64, common: &Common) -> Result<Environment, Failure> {
         let path = match self {
             EnvironmentSource::Constant(radiance) => return Ok((*radiance * scale).into()),
             EnvironmentSource::File(path) => path,
         };
+        check_memory(path)?;
         let picture = Panorama::read(path).map_err(|e| Failure::usage(format!("--environment: {e}")))?;
+        picture.warnings.iter().for_each(|w| common.warn(format_args!("--environment: {}: {w}", path.display())));
         let pixels = picture.pixels.into_iter().map(Vec3::from_array).collect();
         let map = EnvironmentMap::new((picture.width, picture.height), pixels, scale, rotation_degrees)
             .map_err(|e| Failure::usage(format!("--environment: {}: {e}", path.display())))?;
         Ok(Environment::Map(Arc::new(map)))
     }
+}
+
+/// Refuses a picture that cannot be held, before its pixels are read.
+fn check_memory(path: &Path) -> Result<(), Failure> {
+    let size = Panorama::size(path).map_err(|e| Failure::usage(format!("--environment: {e}")))?;
+    let map = EnvironmentMap::bytes((size.width, size.height));
+    let what = format!("--environment: {}: a picture of {} x {} pixels", path.display(), size.width, size.height);
+    require_memory(&what, Need { held: size.reading_bytes.max(map), mapped: 0 }, "scale it down")
 }

@@ -58,6 +58,7 @@ fn is_ignored(signal: i32) -> bool {
 /// `ulimit -f` is an output that cannot be written, like one on a full disk.
 pub fn run(name: &str, program: impl FnOnce() -> Result<u8, Failure>) -> ! {
     crate::truncated::end_with_a_message();
+    crate::allocator::end_without_signal_stacks();
     // With a handler the system tells the writer, instead of ending the process, that the file would be too long.
     flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false))).ok();
     clean_up_after_signals();

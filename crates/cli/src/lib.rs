@@ -1,5 +1,6 @@
 //! How a stage behaves as a program: arguments in common, exit codes, progress, signals.
 
+mod allocator;
 mod count;
 mod environment;
 mod failure;

@@ -71,7 +71,7 @@ impl SceneArgs {
         let mut scene = Scene::import(path, &options)?;
         scene.warnings.iter().for_each(|w| common.warn(format_args!("{}: {w}", path.display())));
         let source = self.environment.as_ref().unwrap_or(&EnvironmentSource::Constant(DVec3::ZERO));
-        let environment = source.read(self.environment_scale, self.environment_rotation)?;
+        let environment = source.read(self.environment_scale, self.environment_rotation, common)?;
         scene.add_environment(environment.clone());
         Ok((scene, environment))
     }

@@ -8,13 +8,12 @@ use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
-mod decode;
-mod dimensions;
+pub(crate) mod decode;
 mod encode;
 mod header;
 mod parallel;
 
-pub use dimensions::Dimensions;
+pub use decode::Dimensions;
 
 /// Most samples of an image (pixels times channels), both ways: 8 GiB as float32.
 const MAX_SAMPLES: u64 = 1 << 31;
@@ -122,6 +121,16 @@ pub enum ImageError {
         channels: usize,
         /// The limit, in words.
         limit: String,
+    },
+    /// The system has no memory for the samples.
+    #[error("not enough memory for {width} x {height} pixels with {channels} channels; make the image smaller")]
+    OutOfMemory {
+        /// Pixels per row.
+        width: usize,
+        /// Rows.
+        height: usize,
+        /// Channels of one part.
+        channels: usize,
     },
     /// The image in memory is not one that a file can hold.
     #[error("image cannot be written: {0}")]

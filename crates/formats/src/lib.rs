@@ -9,11 +9,12 @@ pub mod atomic;
 pub mod cloud;
 mod error;
 pub mod image;
+mod memory;
 mod octahedral;
 mod panorama;
 mod ply;
 
 pub use error::Error;
 pub use image::{Attribute, Channel, Image, ImageError, Window};
-pub use panorama::Panorama;
+pub use panorama::{Panorama, PanoramaSize};
 pub use ply::write_ply;

@@ -1,7 +1,9 @@
 //! OpenEXR bytes to image. The bytes are not trusted.
 
-use std::io::Cursor;
+use std::fs::File;
+use std::io::{BufReader, Cursor, Read, Seek};
 use std::num::NonZeroUsize;
+use std::path::Path;
 
 use exr::block::reader::ChunksReader;
 use exr::block::{UncompressedBlock, read};
@@ -9,12 +11,13 @@ use exr::compression::Compression::{PIZ, PXR24, RLE, Uncompressed, ZIP1, ZIP16};
 use exr::error::Error as ExrError;
 use exr::math::Vec2;
 use exr::meta::BlockDescription;
-use exr::meta::attribute::SampleType;
+use exr::meta::attribute::{Chromaticities, EnvironmentMap, IntegerBounds, SampleType};
 use exr::meta::header::Header;
 use exr::prelude::f16;
 
 use super::parallel::parallel;
 use super::{Channel, Image, ImageError, MAX_SAMPLES, Window, header};
+use crate::memory::has_room;
 
 /// First bytes of every OpenEXR file.
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
@@ -25,6 +28,85 @@ const BYTES_PER_THREAD: usize = 4 << 20;
 const MAX_BLOCKS_PER_THREAD: usize = 256;
 /// Unpacked bytes that any file may have, however short.
 const ALWAYS_ALLOWED: u64 = 64 << 20;
+/// Bytes of the start of a file in which its compression is looked for, to name it in a refusal.
+const START: u64 = 1 << 20;
+
+/// What the header of an OpenEXR file says about its size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Dimensions {
+    /// Pixels per row of the data window.
+    pub width: usize,
+    /// Rows of the data window.
+    pub height: usize,
+    /// Channels of all parts.
+    pub channels: usize,
+    /// Most bytes that [`Image::read`] fills at a time, those of the file included. Each further thread of
+    /// [`Image::read_with`] fills 12 MiB or three blocks more.
+    pub reading_bytes: u64,
+}
+
+impl Image {
+    /// Reads the header of an OpenEXR file, and refuses what [`Image::read`] would refuse for its size or kind.
+    pub fn dimensions(path: &Path) -> Result<Dimensions, ImageError> {
+        let outline = outline_of_file(path);
+        let outline = outline.map_err(|source| ImageError::File { path: path.to_owned(), source: Box::new(source) })?;
+        Ok(outline.dimensions)
+    }
+}
+
+/// What a header says about the pixels.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Outline {
+    pub dimensions: Dimensions,
+    /// The data window.
+    pub data: Window,
+    /// The display window.
+    pub display: Window,
+    /// Attribute `envmap`: six sides of a cube instead of latitude and longitude.
+    pub is_cube: bool,
+    /// CIE x and y of red, green, blue and white.
+    pub chromaticities: Option<[f32; 8]>,
+}
+
+/// The outline of a file; its pixels are not read.
+pub(crate) fn outline_of_file(path: &Path) -> Result<Outline, ImageError> {
+    let meta = std::fs::metadata(path)?;
+    if !meta.is_file() {
+        return Err(ImageError::NotAFile);
+    }
+    let mut start = Vec::new();
+    File::open(path)?.take(START).read_to_end(&mut start)?;
+    outline(BufReader::new(File::open(path)?), &start, meta.len())
+}
+
+/// The outline of a file of this length, which begins with `start`.
+pub(crate) fn outline(file: impl Read + Seek, start: &[u8], length: u64) -> Result<Outline, ImageError> {
+    if !start.starts_with(&MAGIC) {
+        return Err(ImageError::NotOpenExr);
+    }
+    let reader = read(file, false).map_err(|error| refusal(error, start))?;
+    let headers = reader.headers();
+    check_size(headers, length)?;
+    let (_, data) = common_window(headers)?;
+    let first = headers.first().ok_or_else(|| damaged("it has no part"))?;
+    let channels = headers.iter().map(|part| part.channels.list.len()).sum();
+    let [width, height] = data.size;
+    let samples = (width as u64).saturating_mul(height as u64).saturating_mul(channels as u64);
+    let blocks = largest_block(headers).max(BYTES_PER_THREAD) as u64;
+    let reading_bytes = length.saturating_add(samples.saturating_mul(4)).saturating_add(blocks.saturating_mul(3));
+    Ok(Outline {
+        dimensions: Dimensions { width, height, channels, reading_bytes },
+        data,
+        display: window(first.shared_attributes.display_window),
+        is_cube: headers.iter().any(|part| part.own_attributes.environment_map == Some(EnvironmentMap::Cube)),
+        chromaticities: first.shared_attributes.chromaticities.map(numbers),
+    })
+}
+
+/// CIE x and y of red, green, blue and white.
+fn numbers(Chromaticities { red, green, blue, white }: Chromaticities) -> [f32; 8] {
+    [red.0, red.1, green.0, green.1, blue.0, blue.1, white.0, white.1]
+}
 
 /// Blocks are unpacked by threads of our own, so that a pool of the library never exceeds a program's thread limit.
 pub(super) fn decode(bytes: &[u8], threads: NonZeroUsize) -> Result<Image, ImageError> {
@@ -32,10 +114,10 @@ pub(super) fn decode(bytes: &[u8], threads: NonZeroUsize) -> Result<Image, Image
         return Err(ImageError::NotOpenExr);
     }
     let reader = read(Cursor::new(bytes), false).map_err(|error| refusal(error, bytes))?;
-    check_size(reader.headers(), bytes.len())?;
+    check_size(reader.headers(), bytes.len() as u64)?;
     let mut image = empty_image(reader.headers())?;
     let several = reader.headers().len() > 1;
-    let mut parts: Vec<Part> = reader.headers().iter().map(Part::new).collect();
+    let mut parts: Vec<Part> = reader.headers().iter().map(Part::new).collect::<Result<_, _>>()?;
     let mut chunks = reader.filter_chunks(false, |_, tile, _| tile.level_index == Vec2(0, 0)).map_err(fault)?;
     let meta = chunks.meta_data().clone();
     let unpack = |chunk: exr::error::Result<_>| UncompressedBlock::decompress_chunk(chunk?, &meta, true);
@@ -64,16 +146,25 @@ pub(super) fn decode(bytes: &[u8], threads: NonZeroUsize) -> Result<Image, Image
 
 /// Enough for each thread to outweigh its start, few enough for memory.
 fn blocks_at_a_time(headers: &[Header], threads: NonZeroUsize) -> usize {
-    let bytes = |part: &Header| {
-        let Vec2(width, height) = part.max_block_pixel_size();
-        width.saturating_mul(height).saturating_mul(part.channels.bytes_per_pixel)
-    };
-    let largest = headers.iter().map(bytes).max().unwrap_or(0).max(1);
-    (BYTES_PER_THREAD / largest).clamp(1, MAX_BLOCKS_PER_THREAD).saturating_mul(threads.get())
+    (BYTES_PER_THREAD / largest_block(headers)).clamp(1, MAX_BLOCKS_PER_THREAD).saturating_mul(threads.get())
 }
 
-/// The windows of all parts, without their channels.
-fn empty_image(headers: &[Header]) -> Result<Image, ImageError> {
+/// Unpacked bytes of the largest block, at least 1.
+fn largest_block(headers: &[Header]) -> usize {
+    let bytes = |part: &Header| {
+        let (block, all) = (part.max_block_pixel_size(), part.layer_size);
+        let pixels = block.0.min(all.0).saturating_mul(block.1.min(all.1));
+        pixels.saturating_mul(part.channels.bytes_per_pixel)
+    };
+    headers.iter().map(bytes).max().unwrap_or(0).max(1)
+}
+
+fn window(bounds: IntegerBounds) -> Window {
+    Window { position: [bounds.position.0, bounds.position.1], size: [bounds.size.0, bounds.size.1] }
+}
+
+/// The display window and the data window, which all parts must share.
+fn common_window(headers: &[Header]) -> Result<(Window, Window), ImageError> {
     // The others lose data, and the library's decoders of them do not survive damaged files.
     let trusted = |compression| matches!(compression, Uncompressed | RLE | ZIP1 | ZIP16 | PIZ | PXR24);
     if let Some(part) = headers.iter().find(|part| !trusted(part.compression)) {
@@ -83,17 +174,25 @@ fn empty_image(headers: &[Header]) -> Result<Image, ImageError> {
     if headers.iter().any(|part| part.data_window() != first.data_window()) {
         return Err(ImageError::Unsupported("its parts have different data windows".to_owned()));
     }
-    let (Vec2(width, height), Vec2(x, y)) = (first.layer_size, first.own_attributes.layer_position);
-    let shown = first.shared_attributes.display_window;
-    let display = Window { position: [shown.position.0, shown.position.1], size: [shown.size.0, shown.size.1] };
-    let data = Window { position: [x, y], size: [width, height] };
+    Ok((window(first.shared_attributes.display_window), window(first.data_window())))
+}
+
+/// The windows of all parts, without their channels.
+fn empty_image(headers: &[Header]) -> Result<Image, ImageError> {
+    let (display, data) = common_window(headers)?;
     let display = (display != data).then_some(display);
+    let [width, height] = data.size;
     Ok(Image { width, height, window: data.position, display, ..Image::default() })
 }
 
+/// Bytes of pixels that a file of this length may claim.
+pub(crate) fn most_unpacked(file_length: u64) -> u64 {
+    ALWAYS_ALLOWED.saturating_add(file_length.saturating_mul(MAX_EXPANSION))
+}
+
 /// Refuses sizes that would take much more memory than the file, before any of it is taken.
-fn check_size(headers: &[Header], file_length: usize) -> Result<(), ImageError> {
-    let allowed = ALWAYS_ALLOWED + (file_length as u64).saturating_mul(MAX_EXPANSION);
+fn check_size(headers: &[Header], file_length: u64) -> Result<(), ImageError> {
+    let allowed = most_unpacked(file_length);
     let mut samples = 0_u64;
     for part in headers {
         let Vec2(width, height) = part.layer_size;
@@ -133,22 +232,25 @@ struct Part {
 }
 
 impl Part {
-    fn new(header: &Header) -> Part {
+    fn new(header: &Header) -> Result<Part, ImageError> {
         let Vec2(width, height) = header.layer_size;
+        let count = header.channels.list.len();
+        let scarce = || ImageError::OutOfMemory { width, height, channels: count };
         let block = header.max_block_pixel_size();
         let blocks_per_row = width.div_ceil(block.0);
         let channels = header.channels.list.iter().map(|channel| {
             let name = header::text(channel.name.as_slice());
-            (channel.sample_type, Channel { name, samples: vec![0.0; width * height] })
+            let samples = zeros(width * height)?;
+            Some((channel.sample_type, Channel { name, samples }))
         });
-        Part {
+        Ok(Part {
             layer: header.own_attributes.layer_name.as_ref().map(|name| header::text(name.as_slice())),
             width,
-            channels: channels.collect(),
+            channels: channels.collect::<Option<_>>().ok_or_else(scarce)?,
             block,
             blocks_per_row,
-            seen: vec![false; blocks_per_row * height.div_ceil(block.1)],
-        }
+            seen: zeros(blocks_per_row.saturating_mul(height.div_ceil(block.1))).ok_or_else(scarce)?,
+        })
     }
 
     /// Each block may come once: the offsets in the file could name one block twice and another never.
@@ -194,6 +296,11 @@ impl Part {
             channel
         }))
     }
+}
+
+/// So many zeros, if there is memory for them.
+fn zeros<T: Clone + Default>(count: usize) -> Option<Vec<T>> {
+    has_room((count as u64).saturating_mul(size_of::<T>() as u64)).then(|| vec![T::default(); count])
 }
 
 /// One row of one channel, in the byte order of this machine, to float32; whether all of it is exact.

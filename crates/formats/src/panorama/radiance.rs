@@ -1,33 +1,50 @@
 //! Radiance HDR bytes to pixels (Ward 1994, "Real pixels", and the reference manual's picture format). The bytes are
 //! not trusted.
 
-use super::{MAX_PIXELS, Panorama};
+use super::{PIXEL_BYTES, Panorama, PanoramaSize, black, check_size, color};
+use glam::DMat3;
 
 /// Widths that the scan lines of run-length coding have.
 const CODED_WIDTHS: std::ops::Range<usize> = 8..32768;
 
 /// A byte stands for fewer pixels than this: four runs of two bytes code 127.
-const PIXELS_PER_BYTE: usize = 16;
+const PIXELS_PER_BYTE: u64 = 16;
 
 pub(super) fn decode(bytes: &[u8]) -> Result<Panorama, String> {
     let mut reader = Reader { rest: bytes };
-    let gain = header(&mut reader)?;
-    let (width, height) = resolution(reader.line()?)?;
-    let limit = reader.rest.len().saturating_mul(PIXELS_PER_BYTE);
-    if width.checked_mul(height).is_none_or(|pixels| pixels > limit) {
-        return Err(format!("{width} x {height} pixels are more than a file of {} bytes can hold", bytes.len()));
-    }
-    if width * height > MAX_PIXELS {
-        return Err(format!("{width} x {height} pixels; scale the picture down to at most {MAX_PIXELS}"));
-    }
-    let mut pixels = Vec::new();
-    pixels.try_reserve_exact(width * height).map_err(|e| format!("{width} x {height} pixels: {e}; scale it down"))?;
+    let (Header { gain, matrix }, [width, height]) = start(&mut reader, bytes.len() as u64)?;
+    let mut pixels = black(width, height)?;
     let mut line = Vec::new();
-    for _ in 0..height {
+    for row in pixels.chunks_exact_mut(width) {
         reader.scan_line(width, &mut line)?;
-        pixels.extend(line.iter().map(|rgbe| radiance(*rgbe, gain)));
+        row.iter_mut().zip(&line).for_each(|(pixel, rgbe)| *pixel = radiance(*rgbe, gain));
     }
-    Ok(Panorama { width, height, pixels })
+    let mut picture = Panorama { width, height, pixels, warnings: Vec::new() };
+    if let Some(matrix) = matrix {
+        color::convert(&mut picture, matrix);
+    }
+    Ok(picture)
+}
+
+/// The size of a file of this length, which begins with `bytes`.
+pub(super) fn size(bytes: &[u8], length: u64) -> Result<PanoramaSize, String> {
+    let (_, [width, height]) = start(&mut Reader { rest: bytes }, length)?;
+    let pixels = (width as u64).saturating_mul(height as u64).saturating_mul(PIXEL_BYTES);
+    Ok(PanoramaSize { width, height, reading_bytes: length.saturating_add(pixels) })
+}
+
+/// Reads all before the first row: the header, columns and rows.
+fn start(reader: &mut Reader, length: u64) -> Result<(Header, [usize; 2]), String> {
+    let whole = reader.rest.len() as u64;
+    let header = header(reader)?;
+    let size @ [width, height] = resolution(reader.line()?)?;
+    let left = length.saturating_sub(whole - reader.rest.len() as u64);
+    let limit = left.saturating_mul(PIXELS_PER_BYTE);
+    if width.checked_mul(height).is_none_or(|pixels| pixels as u64 > limit) {
+        return Err(format!("{width} x {height} pixels are more than a file of {length} bytes can hold"));
+    }
+    check_size(size)?;
+    Ok((header, size))
 }
 
 /// Scene-linear colour: mantissas share an exponent.
@@ -40,44 +57,65 @@ fn radiance([r, g, b, exponent]: [u8; 4], gain: [f64; 3]) -> [f32; 3] {
     [r * gain[0], g * gain[1], b * gain[2]].map(|x| (x * unit) as f32)
 }
 
-/// Reads the lines before the resolution. Returns what pixels are multiplied by: all exposures and colour corrections
-/// that they were multiplied with are undone.
-fn header(reader: &mut Reader) -> Result<[f64; 3], String> {
-    let mut gain = [1.0; 3];
+/// What a header says about the numbers of the pixels.
+struct Header {
+    /// What they are multiplied by: all exposures and color corrections that they were multiplied with are undone.
+    gain: [f64; 3],
+    /// From their primaries to Rec. 709, if they have others.
+    matrix: Option<DMat3>,
+}
+
+/// Reads the lines before the resolution. A line that begins with a space or tab tells of a picture that this one was
+/// made from.
+fn header(reader: &mut Reader) -> Result<Header, String> {
+    let mut header = Header { gain: [1.0; 3], matrix: None };
     loop {
         let line = reader.line()?;
-        let Some((name, value)) = line.split_once('=') else {
-            if line.is_empty() {
-                return Ok(gain);
-            }
+        if line.is_empty() {
+            return Ok(header);
+        }
+        let Some((name, value)) = line.split_once('=').filter(|_| !line.starts_with([' ', '\t'])) else {
             continue;
         };
-        let bad = || format!("{}: `{}` is not understood; save the picture again", name.trim(), value.trim());
-        let factors = match name.trim() {
-            "FORMAT" if value.trim() == "32-bit_rle_rgbe" => continue,
-            "FORMAT" => return Err(format!("FORMAT: {} is not supported, 32-bit_rle_rgbe is", value.trim())),
-            "EXPOSURE" => value.trim().parse().map(|x| vec![x; 3]).map_err(|_| bad())?,
-            "COLORCORR" => {
-                value.split_whitespace().map(str::parse).collect::<Result<Vec<f64>, _>>().map_err(|_| bad())?
+        let (name, value) = (name.trim(), value.trim());
+        let bad = || format!("{name}: `{value}` is not understood; save the picture again");
+        let numbers = || value.split_whitespace().map(str::parse).collect::<Result<Vec<f64>, _>>().map_err(|_| bad());
+        let factors = match name {
+            "FORMAT" if value == "32-bit_rle_rgbe" => continue,
+            "FORMAT" => {
+                return Err(format!("FORMAT: {value} is not supported, 32-bit_rle_rgbe is; `ra_xyze -r` makes it"));
             }
+            "GAMMA" if numbers()? != [1.0] => {
+                return Err(format!("GAMMA: {value}: its numbers are not linear; save the picture with GAMMA 1"));
+            }
+            "PRIMARIES" => {
+                let stated: [f64; 8] = numbers()?.try_into().map_err(|_| bad())?;
+                // Some programs write zeros for what they do not know.
+                let known = stated != [0.0; 8];
+                header.matrix =
+                    if known { color::to_rec_709(stated).map_err(|e| format!("{name}: {e}"))? } else { None };
+                continue;
+            }
+            "EXPOSURE" => value.parse().map(|x| vec![x; 3]).map_err(|_| bad())?,
+            "COLORCORR" => numbers()?,
             _ => continue,
         };
         if factors.len() != 3 || !factors.iter().all(|x| *x > 0.0 && x.is_finite()) {
             return Err(bad());
         }
-        gain.iter_mut().zip(factors).for_each(|(gain, factor)| *gain /= factor);
+        header.gain.iter_mut().zip(factors).for_each(|(gain, factor)| *gain /= factor);
     }
 }
 
 /// Rows from the top, columns from the left: the one order that programs write.
-fn resolution(line: &str) -> Result<(usize, usize), String> {
+fn resolution(line: &str) -> Result<[usize; 2], String> {
     let unknown = || format!("`{line}`: the line `-Y height +X width` is needed; save the picture again");
     let words: Vec<&str> = line.split_whitespace().collect();
     let ["-Y", height, "+X", width] = words[..] else {
         return Err(unknown());
     };
     let number = |word: &str| word.parse().ok().filter(|n: &usize| *n > 0).ok_or_else(unknown);
-    Ok((number(width)?, number(height)?))
+    Ok([number(width)?, number(height)?])
 }
 
 /// What is left of the file.
@@ -178,6 +216,39 @@ mod tests {
         for line in ["EXPOSURE=0", "EXPOSURE=nan", "COLORCORR=1 1", "FORMAT=32-bit_rle_xyze"] {
             let message = decode(&file(&format!("{HEAD}{line}\n"), "-Y 1 +X 1", &[0; 4])).expect_err("refused");
             assert!(message.contains(line.split_once('=').expect("a name").0), "{message}");
+        }
+    }
+
+    /// The tree without this took all primaries for Rec. 709, undid the exposures of pictures that this one was made
+    /// from, and took a picture for display for a linear one.
+    #[test]
+    fn primaries_are_converted_and_history_is_not_read() {
+        let with = |line: &str| decode(&file(&format!("{HEAD}{line}\n"), "-Y 1 +X 1", &[128, 128, 128, 129]));
+        let pixel = |line: &str| with(line).expect("a picture").pixels[0];
+        // White is white, whatever its primaries; Radiance's own have another green and an equal-energy white.
+        let radiance = pixel("PRIMARIES= 0.640 0.330 0.290 0.600 0.150 0.060 0.333 0.333");
+        assert!(radiance.iter().all(|x| (x - 1.0).abs() < 1e-6), "{radiance:?}");
+        for same in ["PRIMARIES=0.6400 0.3300 0.3000 0.6000 0.1500 0.0600 0.3127 0.3290", "PRIMARIES=0 0 0 0 0 0 0 0"] {
+            assert_eq!(pixel(same), [1.0; 3], "{same}");
+        }
+        for history in ["\tEXPOSURE=4", " PRIMARIES=1 2 3", "GAMMA=1", "VIEW= -vtv -vh 45", "PIXASPECT= 0.5"] {
+            assert_eq!(pixel(history), [1.0; 3], "{history}");
+        }
+        let green = file(
+            &format!("{HEAD}PRIMARIES=.713 .293 .165 .83 .128 .044 .32168 .33767\n"),
+            "-Y 1 +X 1",
+            &[0, 128, 0, 129],
+        );
+        let picture = decode(&green).expect("a picture");
+        let [r, g, b] = picture.pixels[0];
+        assert!(r == 0.0 && (g - 1.1408).abs() < 1e-4 && b == 0.0 && picture.warnings.len() == 1, "{picture:?}");
+        for bad in ["PRIMARIES=1 2 3", "PRIMARIES=0.1 0.1 0.2 0.2 0.3 0.3 0.3 0.3", "GAMMA=2.2", "GAMMA=x"] {
+            let message = with(bad).expect_err("refused");
+            assert!(message.starts_with(bad.split_once('=').expect("a name").0), "{message}");
+        }
+        for order in ["+Y 1 +X 1", "-Y 1 -X 1", "+X 1 -Y 1"] {
+            let message = decode(&file(HEAD, order, &[128; 4])).expect_err("refused");
+            assert!(message.contains("-Y height +X width"), "{message}");
         }
     }
 

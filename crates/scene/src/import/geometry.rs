@@ -8,7 +8,8 @@ use super::{
 };
 use crate::mesh::{Mesh, Triangle, area};
 use glam::{DMat3, DVec3, Vec3};
-use std::{collections::BTreeMap, hint::black_box};
+use memmap2::MmapMut;
+use std::collections::BTreeMap;
 
 /// More than this, instances included, is refused before memory is asked for: a small file can name a large mesh many
 /// times.
@@ -76,13 +77,13 @@ impl Builder {
             }
         }
         let [triangles, vertices, _] = counts.map(|(count, ..)| count as usize);
-        // Asked for and given back: what follows would end without a message where so much cannot be had.
-        let mut room: Vec<u8> = Vec::new();
-        let room = room.try_reserve_exact(triangles * BYTES_PER_TRIANGLE).map(|()| drop(black_box(room)));
-        room.and_then(|()| self.triangles.try_reserve_exact(triangles))
-            .and_then(|()| self.positions.try_reserve_exact(vertices))
-            .and_then(|()| self.normals.try_reserve_exact(vertices))
-            .map_err(|_| format!("not enough memory for {triangles} triangles with {vertices} vertices; export fewer"))
+        // Asked for and given back, from the system: an allocator may end the process instead of saying no.
+        let room = MmapMut::map_anon((triangles * BYTES_PER_TRIANGLE).max(1)).is_ok()
+            && self.triangles.try_reserve_exact(triangles).is_ok()
+            && self.positions.try_reserve_exact(vertices).is_ok()
+            && self.normals.try_reserve_exact(vertices).is_ok();
+        let scarce = || format!("not enough memory for {triangles} triangles with {vertices} vertices; export fewer");
+        room.then_some(()).ok_or_else(scarce)
     }
 
     /// Adds a primitive on a node.

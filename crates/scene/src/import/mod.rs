@@ -10,6 +10,7 @@ mod container;
 mod features;
 pub(crate) mod files;
 mod geometry;
+mod jpeg;
 mod lights;
 mod materials;
 mod nodes;

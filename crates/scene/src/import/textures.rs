@@ -1,6 +1,6 @@
 //! Pictures that the file names: PNG and JPEG.
 
-use super::{Fault, container::Document, get};
+use super::{Fault, container::Document, get, jpeg};
 use crate::texture::{Picture, Texture, Wrap};
 use glam::{DMat2, DVec2};
 use gltf::json::{
@@ -9,10 +9,10 @@ use gltf::json::{
     validation::Checked,
 };
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
+use memmap2::MmapMut;
 use std::{
     borrow::Cow,
     collections::{BTreeMap, btree_map::Entry},
-    hint::black_box,
     io::Cursor,
     path::PathBuf,
     sync::Arc,
@@ -142,7 +142,8 @@ fn decode(bytes: &[u8], room: u64) -> Result<Picture, Fault> {
     let fault = |_| format!("a damaged PNG or JPEG picture, or of a kind that is not read; {WAY_OUT} again");
     let bytes = without_packed_chunks(bytes);
     let reader = ImageReader::new(Cursor::new(&*bytes)).with_guessed_format().map_err(|e| e.to_string())?;
-    if !matches!(reader.format(), Some(ImageFormat::Png | ImageFormat::Jpeg)) {
+    let format = reader.format();
+    if !matches!(format, Some(ImageFormat::Png | ImageFormat::Jpeg)) {
         return Err(format!("neither a PNG nor a JPEG picture; {WAY_OUT}"));
     }
     let decoder = reader.into_decoder().map_err(fault)?;
@@ -152,11 +153,13 @@ fn decode(bytes: &[u8], room: u64) -> Result<Picture, Fault> {
         let limits = format!("1 to {MAX_TEXELS} texels are read, {MAX_TEXELS_OF_ALL} in all pictures of a scene");
         return Err(format!("{width} x {height} texels: {limits}; export it smaller"));
     }
-    // Asked for and given back: what follows would end without a message where so much cannot be had.
-    let mut space: Vec<u8> = Vec::new();
+    // Asked for and given back, from the system: what follows could not name the picture.
     let needed = decoder.total_bytes().saturating_add(8 * texels);
-    let space = space.try_reserve_exact(needed as usize).map(|()| drop(black_box(space)));
+    let space = MmapMut::map_anon(needed as usize);
     space.map_err(|_| format!("not enough memory for {width} x {height} texels; export it smaller"))?;
+    if format == Some(ImageFormat::Jpeg) {
+        jpeg::check(&bytes).map_err(|e| format!("{e}; {WAY_OUT} again"))?;
+    }
     let pixels = DynamicImage::from_decoder(decoder).map_err(fault)?.into_rgba8();
     Ok(Picture { width: width as usize, texels: pixels.into_raw().as_chunks().0.to_vec() })
 }

@@ -46,6 +46,12 @@ pub struct EnvironmentMap {
 }
 
 impl EnvironmentMap {
+    /// Bytes that a map of so many columns and rows takes: a pixel of 12 with a sum of 4, and sums of four times as many
+    /// pixels at each level above.
+    pub fn bytes((width, height): (usize, usize)) -> u64 {
+        (width as u64).saturating_mul(height as u64).saturating_mul(18)
+    }
+
     /// A map of `width * height` pixels of radiance, row after row from the top, W/(m² sr) after multiplication by
     /// `scale`.
     pub fn new(

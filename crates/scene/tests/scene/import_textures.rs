@@ -280,6 +280,25 @@ fn pictures_that_cannot_be_read() {
     }
 }
 
+/// The tree without this padded a JPEG picture that ends early with grey, and said nothing. Whatever the picture lacks, it
+/// is refused; of a PNG picture only the mark of its end may be missing.
+#[test]
+fn pictures_that_end_early_are_refused() {
+    let picture = RgbaImage::from_fn(40, 24, |x, y| Rgba([6 * x as u8, 10 * y as u8, (x * y) as u8, 255]));
+    for (format, end) in [(ImageFormat::Jpeg, 1), (ImageFormat::Png, 17)] {
+        let whole = encoded(&picture, format);
+        assert!(with_picture(&whole, textured(json!({})), json!({})).import().is_ok());
+        for missing in (end..whole.len() - 1).step_by(5) {
+            let cut = &whole[..whole.len() - missing];
+            let message = fault(&with_picture(cut, textured(json!({})), json!({})));
+            assert!(message.contains("images[0] `weave`: "), "{missing}: {message}");
+            let marked = [cut, &[0xff, 0xd9]].concat();
+            let marked = with_picture(&marked, textured(json!({})), json!({})).import();
+            assert!(format == ImageFormat::Png || missing < 8 || marked.is_err(), "{missing}");
+        }
+    }
+}
+
 /// Damage is refused or shows: nothing ends the program.
 #[test]
 fn damaged_pictures() {

@@ -1,7 +1,7 @@
 //! Pictures as light from all around, through both programs.
 
-use crate::support::{Bench, data};
-use formats::{Channel, Image};
+use crate::support::{Bench, Limits, data};
+use formats::{Attribute, Channel, Image, Window};
 use std::fs;
 
 /// Twelve by six pixels that both formats hold exactly: a bright one on a sky over dark ground.
@@ -14,10 +14,13 @@ fn sky() -> Vec<[f32; 3]> {
     (0..72).map(pixel).collect()
 }
 
-fn exr(pixels: &[[f32; 3]]) -> Vec<u8> {
+fn image(pixels: &[[f32; 3]]) -> Image {
     let channel = |c: usize| Channel { name: "RGB"[c..=c].into(), samples: pixels.iter().map(|p| p[c]).collect() };
-    let image = Image { width: 12, height: 6, channels: (0..3).map(channel).collect(), ..Image::default() };
-    image.encode().expect("encodes")
+    Image { width: 12, height: pixels.len() / 12, channels: (0..3).map(channel).collect(), ..Image::default() }
+}
+
+fn exr(pixels: &[[f32; 3]]) -> Vec<u8> {
+    image(pixels).encode().expect("encodes")
 }
 
 /// Pixel by pixel, without runs.
@@ -108,4 +111,78 @@ fn bad_pictures_are_refused_by_name_and_pixel() {
     refuses("cut.hdr", flat[..flat.len() - 9].to_vec(), &["ends early"]);
     refuses("bomb.hdr", b"#?RADIANCE\n\n-Y 100000 +X 100000\n".to_vec(), &["can hold"]);
     refuses("text.hdr", b"a letter".to_vec(), &["neither"]);
+}
+
+/// Seen to catch: the data window stretched over the sphere, and its border taken for sky; numbers of ACEScg taken for
+/// Rec. 709 without a word.
+#[test]
+fn a_picture_is_what_its_header_says() {
+    let bench = Bench::new();
+    let display = Some(Window { position: [0, 0], size: [12, 6] });
+    let write = |name: &str, image: Image| bench.write(name, image.encode().expect("encodes"));
+    let sampled = |name: &str| sample(&bench, "sky.cloud", &["--environment", name]);
+    let [black, bright] = [[0.0; 3], [5.0; 3]];
+    let upper = [&sky()[..36], &[black; 36]].concat();
+    bench.write("upper.exr", exr(&upper));
+    write("window.exr", Image { display, ..image(&sky()[..36]) });
+    assert_eq!(sampled("upper.exr"), sampled("window.exr"));
+    bench.write("sky.exr", exr(&sky()));
+    let bordered = [&[bright; 24], &sky()[..], &[bright; 12]].concat();
+    write("border.exr", Image { display, window: [0, -2], ..image(&bordered) });
+    assert_eq!(sampled("sky.exr"), sampled("border.exr"));
+    let chromaticities = Attribute::Chromaticities([0.713, 0.293, 0.165, 0.830, 0.128, 0.044, 0.32168, 0.33767]);
+    let attributes = [("chromaticities".to_owned(), chromaticities)].into();
+    write("green.exr", Image { attributes, ..image(&[[0.0, 1.0, 0.0]; 72]) });
+    let arguments = [&data("scenes/slab.glb"), "-n", "1k", "-o", "green.cloud", "--environment", "green.exr"];
+    let said = bench.says("sample-surface", &arguments);
+    for words in
+        ["warning: --environment: green.exr: 72 of 72 pixels", "0.0000e0 1.1408e0 0.0000e0 instead of -6.2179e-1"]
+    {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+}
+
+/// A picture of as many rows, whose blocks of 16 all are that of this one.
+fn tall(bytes: &[u8], rows: usize) -> Vec<u8> {
+    let mut end = 8;
+    while bytes[end] != 0 {
+        let text = |at: usize| at + bytes[at..].iter().position(|b| *b == 0).expect("text ends") + 1;
+        let size = text(text(end));
+        end = size + 4 + u32::from_le_bytes(bytes[size..size + 4].try_into().expect("four bytes")) as usize;
+    }
+    let (mut header, block) = (bytes[..=end].to_vec(), &bytes[end + 1 + 8..]);
+    let mut set = |name: &[u8], offset: usize, value: usize| {
+        let at = header.windows(name.len()).position(|w| w == name).expect("the attribute") + name.len() + offset;
+        header[at..at + 4].copy_from_slice(&(value as u32).to_le_bytes());
+    };
+    let count = rows / 16;
+    set(b"dataWindow\0box2i\0", 4 + 12, rows - 1);
+    set(b"displayWindow\0box2i\0", 4 + 12, rows - 1);
+    set(b"chunkCount\0int\0", 4, count);
+    let first = header.len() + 8 * count;
+    header.extend((0..count).flat_map(|k| ((first + k * block.len()) as u64).to_le_bytes()));
+    let blocks = (0..count).flat_map(|k| [&(16 * k as u32).to_le_bytes(), &block[4..]].concat());
+    header.extend(blocks);
+    header
+}
+
+/// Half a megabyte of zeros is read only where there is room. The tree without this was aborted by signal 6 in both.
+#[test]
+fn pictures_that_do_not_fit_are_refused_before_they_are_read() {
+    let bench = Bench::new();
+    let limits = Limits { kibibytes: 700_000, seconds: 20 };
+    for (width, rows, words) in [(12_000, 12_000, "scale the picture down"), (8_000, 8_000, "GiB of memory")] {
+        let channel = Channel { name: "Y".into(), samples: vec![0.0; width * 16] };
+        let block = Image { width, height: 16, channels: vec![channel], ..Image::default() };
+        let file = tall(&block.encode().expect("encodes"), rows);
+        assert!(file.len() < 1 << 20);
+        bench.write("big.exr", file);
+        let arguments = [&data("scenes/slab.glb"), "-n", "10", "-o", "out.cloud", "--environment", "big.exr"];
+        let output = bench.run_within(limits, "sample-surface", &arguments);
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        for words in ["--environment: ", "big.exr", &format!("{width} x {rows}"), words] {
+            assert!(message.contains(words), "`{words}` is not in: {message}");
+        }
+    }
 }
