@@ -327,7 +327,8 @@ check-power:
 slow: build
 	$(CARGO) test --release --package bssrdf --test lanes -- --nocapture
 	$(CARGO) test --release --package pipeline-tests --features slow
-	$(CARGO) test --release --package gather --features slow --test programs -- --nocapture mutations faults
+	$(CARGO) test --release --package sample-surface --features slow --test targets -- --nocapture
+	$(CARGO) test --release --package gather --features slow --test programs -- --nocapture mutations faults sixteen
 
 # Outside the workspace, with a nightly compiler. What is new goes to OUT, not into the corpus.
 # TARGET of the environment is mostly a compiler's.

@@ -1,8 +1,14 @@
 //! Pixels: layers, mean and variance, and the channels of the image.
 
-use crate::{Crop, edge::Edge, path::PathLight};
+use crate::{
+    Crop,
+    edge::Edge,
+    freedom::{self, Cells},
+    path::PathLight,
+};
 use formats::{Channel, Image, Window};
 use scene::DVec3;
+use sums::confidence::Estimate;
 
 /// What a path's light is filed under: its first event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,11 +57,18 @@ impl PixelSum {
         }
     }
 
+    /// What its halves differ by.
+    fn difference(&self, edge: Option<&Edge>) -> DVec3 {
+        let mean = |half: usize| self.halves[half] / self.counts[half];
+        let [even, odd] = [0, 1].map(|half| mean(half) + edge.map_or(DVec3::ZERO, |e| e.correction(half)));
+        even - odd
+    }
+
     /// Variance of the pixel by what its halves differ by, and by what the paths of each half do: the second has the
     /// paths' part of the first as its mean if they are independent, and more if they are well spread.
     fn variances(&self, edge: Option<&Edge>) -> [DVec3; 2] {
         let mean = |half: usize| self.halves[half] / self.counts[half];
-        let [even, odd] = [0, 1].map(|half| mean(half) + edge.map_or(DVec3::ZERO, |e| e.correction(half)));
+        let difference = self.difference(edge);
         let within = [0, 1].map(|half| {
             let n = self.counts[half];
             let (of_mean, of_square) = edge.map_or((DVec3::ZERO, DVec3::ZERO), |e| e.removed(half));
@@ -64,7 +77,7 @@ impl PixelSum {
         });
         // Each half of an edge takes its factor from the other, so that both err together.
         let together = edge.map_or(DVec3::ZERO, |e| e.correction(0) * e.correction(1));
-        [(even - odd) * (even - odd) / 4.0 + together, (within[0] + within[1]) / 4.0]
+        [difference * difference / 4.0 + together, (within[0] + within[1]) / 4.0]
     }
 
     /// Light in each layer.
@@ -89,25 +102,54 @@ impl PixelSum {
 pub struct Errors {
     /// All of it.
     pub total: f64,
+    /// That of the paths, were they independent; well-spread ones have less.
+    pub paths: f64,
     /// What more paths cannot remove, at least.
     pub cloud: f64,
+    /// Degrees of freedom that the cloud's is estimated with.
+    pub cloud_freedom: f64,
+    /// Degrees of freedom of the paths' part of the total.
+    pub paths_freedom: f64,
+    /// Paths of one half of a pixel.
+    pub half: f64,
+    /// Root mean square of the scattered light, relative to that of all light.
+    pub scattered: f64,
 }
 
 impl Errors {
-    /// 0 of a black image.
-    pub fn of<'a>(pixels: impl Iterator<Item = (&'a PixelSum, Option<&'a Edge>)>) -> Errors {
-        let (mut power, mut total, mut paths) = (0.0, 0.0, 0.0);
-        for (sum, edge) in pixels {
-            let value: DVec3 = sum.layers(edge).iter().sum();
-            let [between, within] = sum.variances(edge);
-            power += value.length_squared();
-            total += between.element_sum();
-            paths += within.element_sum();
+    /// Of the pixels of an image of this size, row by row; none of a black image.
+    pub fn of<'a>(size: [usize; 2], pixels: impl Iterator<Item = (&'a PixelSum, Option<&'a Edge>)>) -> Option<Errors> {
+        let (mut power, mut scattered, mut half) = (0.0, 0.0, 1.0);
+        let (mut total, mut paths, mut squares) = (0.0, 0.0, 0.0);
+        let mut cells = Cells::new(size);
+        for (place, (sum, edge)) in pixels.enumerate() {
+            let layers = sum.layers(edge);
+            let [between, within] = sum.variances(edge).map(DVec3::element_sum);
+            power += layers.iter().sum::<DVec3>().length_squared();
+            scattered += layers[Layer::Subsurface as usize].length_squared();
+            total += between;
+            paths += within;
+            squares += within * within;
+            half = sum.counts[1];
+            cells.add(place, sum.difference(edge));
         }
-        if power == 0.0 {
-            return Errors::default();
-        }
-        Errors { total: (total.max(0.0) / power).sqrt(), cloud: ((total - paths).max(0.0) / power).sqrt() }
+        let relative = |variance: f64| (variance.max(0.0) / power).sqrt();
+        // The channels of a pixel are one value.
+        let paths_freedom = if squares > 0.0 { (paths * paths / squares).max(1.0) } else { 1.0 };
+        let cloud_freedom = cells.freedom();
+        let [total, paths, cloud, scattered] = [total, paths, total - paths, scattered].map(relative);
+        (power > 0.0).then_some(Errors { total, paths, cloud, cloud_freedom, paths_freedom, half, scattered })
+    }
+
+    /// The error that is compared with a target. Two halves may agree by luck, well-spread paths are not that much better
+    /// than independent ones: their variance falls as their number to the power 3/2 where edges cross a pixel. None if no
+    /// two paths differ, which tells nothing.
+    pub fn estimate(&self) -> Option<Estimate> {
+        let least = self.paths / self.half.max(1.0).powf(0.25);
+        let (paths, cloud) = (self.paths.min(self.total), self.cloud);
+        let parts = [(paths * paths, self.paths_freedom), (cloud * cloud, self.cloud_freedom)];
+        let error = self.total.max(least);
+        (error > 0.0).then(|| Estimate { error, freedom: freedom::of_sum(parts) })
     }
 }
 

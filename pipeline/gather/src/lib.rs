@@ -8,6 +8,7 @@ pub mod clouds;
 pub mod counts;
 mod edge;
 pub mod film;
+mod freedom;
 mod gathering;
 pub mod media;
 mod passes;
@@ -109,8 +110,8 @@ pub trait Session {
     /// Adds so many paths to every pixel; `progress` is told how many pixels were done.
     fn pass(&mut self, paths: u32, progress: &(dyn Fn(u64) + Sync));
 
-    /// The image's errors so far.
-    fn errors(&self) -> Errors;
+    /// The image's errors so far; none of a black image.
+    fn errors(&self) -> Option<Errors>;
 
     /// The image.
     fn finish(self: Box<Self>) -> Rendered;

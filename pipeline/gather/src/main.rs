@@ -208,7 +208,9 @@ fn finish(arguments: &Arguments, facts: &Facts, rendered: &Rendered) -> Result<(
         )));
     }
     let counts = &rendered.counts;
-    let error = film::relative_error(&rendered.pixels).map_or("unknown".into(), |e| format!("{:.2} %", 100.0 * e));
+    // No two paths differ: that tells nothing of what none of them met.
+    let error = film::relative_error(&rendered.pixels).filter(|error| *error > 0.0);
+    let error = error.map_or("unknown".into(), sums::confidence::percent);
     arguments.common.say(format_args!(
         "{} gathers, {} BSSRDF evaluations; relative error {error} ({})",
         count(counts.gathers),

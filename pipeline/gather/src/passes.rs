@@ -195,8 +195,8 @@ impl<M: LaneModel> Session for Passes<'_, M> {
         self.paths = range.end;
     }
 
-    fn errors(&self) -> Errors {
-        Errors::of(self.sums.iter().zip(self.edges.iter().map(Option::as_deref)))
+    fn errors(&self) -> Option<Errors> {
+        Errors::of([self.part.width, self.part.height], self.sums.iter().zip(self.edges.iter().map(Option::as_deref)))
     }
 
     fn finish(self: Box<Self>) -> Rendered {

@@ -10,12 +10,14 @@ pub mod hierarchy;
 mod pattern;
 mod ribbon;
 mod sample;
+mod trials;
 
 pub use bounce::Bounce;
 pub use choice::{Choice, Chosen, TriangleChoice};
-pub use enough::{Goal, relative_error, sample_enough};
+pub use enough::{Enough, Goal, Round, sample_enough};
 pub use pattern::{Numbers, Pattern, Place};
 pub use sample::{Drawn, LitSurface, draw};
+pub use trials::{TRIALS, Trials};
 
 use cli::{Thing, Unclear, count, count_up, the_one};
 use formats::cloud::{Content, Group, Meta, Options, Record, SampledMaterial, version};
@@ -125,7 +127,8 @@ impl Plan {
 
     /// Makes the cloud's identity depend on what its number of samples is chosen by.
     pub fn depends_on(&mut self, goal: &Goal) {
-        let what = format!("{:?} {:?} {}", goal.medium.channels, goal.medium.eta, goal.error);
+        // By the scatter of trials: a cloud of the time when the first small difference of halves did is not kept.
+        let what = format!("trials {:?} {:?} {}", goal.medium.channels, goal.medium.eta, goal.error);
         self.content = *blake3::Hasher::new().update(&self.content).update(what.as_bytes()).finalize().as_bytes();
     }
 }

@@ -1,5 +1,7 @@
 //! `sample-surface SCENE -o CLOUD`: arguments and files; the phase itself is the library.
 
+mod told;
+
 use clap::Parser;
 use cli::{
     Common, Failure, Files, Need, Progress, SceneArgs, count, file_name, is_file, material_table, parse_count,
@@ -10,7 +12,9 @@ use formats::{
     cloud::{self, Cloud, Options, Shard},
     write_ply,
 };
-use sample_surface::{Choice, Goal, Pattern, Plan, SampleError, Sampled, Settings, sample, sample_enough};
+use sample_surface::{
+    Choice, Enough, Goal, Pattern, Plan, Round, SampleError, Sampled, Settings, sample, sample_enough,
+};
 use scene::{Health, Rays, Scene, light::Environment};
 use std::{
     collections::BTreeMap,
@@ -40,7 +44,8 @@ struct Arguments {
     /// Draw as many samples as this medium needs for --target-error, by the directional dipole
     #[arg(long, value_name = "NAME|FILE.json", requires = "target_error", conflicts_with = "samples")]
     for_medium: Option<String>,
-    /// Relative error of the light that leaves the surface, of --for-medium
+    /// Relative standard error of the light that leaves the surface, of --for-medium: 95 of 100 clouds are off by less
+    /// than twice this
     #[arg(long, value_name = "X", requires = "for_medium", value_parser = parse_error)]
     target_error: Option<f64>,
     /// Material whose surfaces are sampled, by name or index:N of --list-materials (repeatable) [default: those the file marks as volumes; if there is none,
@@ -271,16 +276,14 @@ impl Work<'_> {
     fn sample(&self, rays: &Rays) -> Result<Sampled, SampleError> {
         let common = &self.arguments.common;
         if let Some(goal) = self.goal {
-            let tell = |samples, error: f64| {
-                common.say(format_args!(
-                    "{} samples: relative error {:.2} % in {}",
-                    count(samples),
-                    100.0 * error,
-                    goal.medium.name
-                ));
-            };
-            let enough = sample_enough(self.scene, rays, self.settings, self.plan, goal, tell);
-            return enough.map(|(sampled, _)| sampled);
+            let medium = &goal.medium.name;
+            let tell = |round: &Round| common.say(told::round(round, medium));
+            let Enough { sampled, estimate } = sample_enough(self.scene, rays, self.settings, self.plan, goal, tell)?;
+            match estimate {
+                Some(estimate) => common.say(told::enough(&sampled, &estimate, medium)),
+                None => common.warn(told::dark(&sampled, medium)),
+            }
+            return Ok(sampled);
         }
         let progress = Progress::start(common, "sampling", self.settings.samples, "samples");
         let sampled = sample(self.scene, rays, self.settings, self.plan, |n| progress.add(n))?;

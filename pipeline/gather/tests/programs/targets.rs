@@ -19,8 +19,8 @@ fn relative_error(bench: &Bench, reference: &str, test: &str) -> f64 {
 fn gather(bench: &Bench, cloud: &str, output: &str, more: &[&str]) -> String {
     let (scene, view) = (data("scenes/sphere.glb"), data("views/sphere/front.json"));
     let arguments = [cloud, &scene, "--view", &view, "--medium", "skimmilk", "-o", output, "--stats", "stats.json"];
-    let size = ["--width", "32", "--height", "32"];
-    let run = bench.run("gather", &[&arguments[..], &size, more].concat());
+    let size: &[&str] = if more.contains(&"--width") { &[] } else { &["--width", "32", "--height", "32"] };
+    let run = bench.run("gather", &[&arguments[..], size, more].concat());
     let message = String::from_utf8_lossy(&run.stderr).into_owned();
     assert_eq!(run.status.code(), Some(0), "{message}");
     message
@@ -57,4 +57,44 @@ fn targets_are_met_or_the_cloud_is_named() {
     // What is there is kept, though its number of samples was not asked for.
     bench.succeed("sample-surface", &[&[sphere.as_str()], &chosen[..]].concat());
     assert_eq!(bench.json("samples.json")["kept"], true);
+}
+
+/// The halves of sixteen pixels agree by luck now and then, and differ by luck as often. Images of many seeds, of clouds
+/// whose own error is a thirtieth of the target: 5 % of them are beyond twice the target at most, none claims to have no
+/// error, and none blames the cloud. Of 200 seeds none was beyond twice the target, so that new ones would fail less than
+/// once in a hundred times.
+///
+/// Seen to catch, with the first small difference of halves believed: images of more than twice the target, and clouds that
+/// were said to have an error of 3 to 20 %.
+#[test]
+fn sixteen_pixels_do_not_meet_a_target_by_luck() {
+    const TARGET: f64 = 0.05;
+    let seeds = if cfg!(feature = "slow") { 200 } else { 12 };
+    let bench = Bench::new();
+    let sphere = data("scenes/sphere.glb");
+    let size = ["--width", "4", "--height", "4"];
+    bench.succeed("sample-surface", &[&sphere, "-n", "1M", "--seed", "999", "-o", "fine.cloud"]);
+    gather(&bench, "fine.cloud", "fine.exr", &[&size[..], &["--spp", "2048", "--accuracy", "0.005"]].concat());
+    let (mut beyond, mut blamed, mut squares, mut paths) = (0, 0, 0.0, 0.0);
+    for seed in 0..seeds {
+        // In the short run, some seeds share a cloud.
+        let (cloud, seed) = (if seeds < 200 { seed / 4 } else { seed }.to_string(), seed.to_string());
+        bench.succeed("sample-surface", &[&sphere, "-n", "200k", "--seed", &cloud, "-o", "own.cloud"]);
+        let own = ["--target-error", "0.05", "--seed", &seed];
+        let message = gather(&bench, "own.cloud", "own.exr", &[&size[..], &own].concat());
+        let error = relative_error(&bench, "fine.exr", "own.exr");
+        let statistics = bench.json("stats.json");
+        let stated = statistics["estimated_relative_error"].as_f64().expect("an error");
+        assert!(stated > 0.0 && !message.contains(" 0.00 %"), "seed {seed}: {message}");
+        beyond += usize::from(error > 2.0 * TARGET);
+        blamed += usize::from(message.contains("warning: the cloud"));
+        squares += error * error / f64::from(seeds);
+        paths += statistics["paths"].as_f64().expect("a count") / 16.0 / f64::from(seeds);
+    }
+    println!(
+        "{beyond} of {seeds} beyond twice the target, {blamed} blame the cloud; error {:.4}, {paths:.1} paths",
+        squares.sqrt()
+    );
+    assert!(20 * beyond <= seeds as usize && squares.sqrt() <= TARGET, "{beyond} of {seeds}, error {}", squares.sqrt());
+    assert_eq!(blamed, 0, "the error of the cloud is far below the target");
 }

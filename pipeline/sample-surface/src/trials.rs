@@ -1,0 +1,137 @@
+//! Trial clouds: small independent ones, whose scatter tells what a difference of two halves cannot: how far the error of
+//! a cloud is one value, the same everywhere on the surface, or many.
+//!
+//! The light that a trial's half brings to the points of the surface is a vector `v`; `d` is the difference of the two
+//! halves of a trial, of covariance `C`. A sum of squares `|d|²` of normal numbers scatters as a chi-square of
+//! `ν = (tr C)²/tr C²` degrees of freedom (Satterthwaite 1946). Here `tr C` is the mean of `|d|²`, and `tr C²` that of
+//! `(d · d')²` over pairs of trials. Light that is rare makes `|d|²` scatter more: the smaller of both counts.
+
+use crate::{Goal, Plan, SampleError, Settings, enough::Points, sample};
+use rayon::prelude::*;
+use scene::{Rays, Scene, random};
+use sums::confidence::Estimate;
+
+/// Trial clouds in a round.
+pub const TRIALS: u64 = 8;
+
+/// Their halves.
+const HALVES: f64 = 2.0 * TRIALS as f64;
+
+/// Points of the surface that they are compared at.
+const POINTS: u64 = 256;
+
+/// What the trial clouds of one size say.
+#[derive(Clone, Copy, Debug)]
+pub struct Trials {
+    /// Samples of each.
+    pub samples: u64,
+    /// Samples of all that carry light.
+    pub lit: u64,
+    /// The relative error of the mean of all, with the degrees of freedom of all; none if all is dark.
+    pub mean: Option<Estimate>,
+    /// Degrees of freedom of one difference of two halves.
+    pub freedom: f64,
+}
+
+impl Trials {
+    /// Draws them, in so many samples each, all with random numbers of their own.
+    pub fn draw(
+        (scene, rays): (&Scene, &Rays),
+        settings: &Settings,
+        plan: &Plan,
+        goal: &Goal,
+        samples: u64,
+    ) -> Result<Trials, SampleError> {
+        let points = Points::new(scene, settings, plan, POINTS);
+        let trial = |index: u64| {
+            let mut own = Settings { samples, ..settings.clone() };
+            // A part of a cloud that is never drawn: its index is beyond that of the last.
+            own.options.seed = random::shard_seed(settings.seed(), index as u32, u32::MAX);
+            own.options.shard = formats::cloud::Shard::ALONE;
+            let sampled = sample(scene, rays, &own, plan, |_| ())?;
+            let halves = [0, 1].map(|half| points.light(&sampled, half, index, goal));
+            Ok((sampled.content.samples, halves))
+        };
+        let drawn: Result<Vec<_>, SampleError> = (0..TRIALS).into_par_iter().map(trial).collect();
+        let (lit, halves): (Vec<u64>, Vec<[Vec<f64>; 2]>) = drawn?.into_iter().unzip();
+        let freedom = freedom(&halves);
+        let error = error_of_mean(&halves);
+        let mean = error.map(|error| Estimate { error, freedom: (HALVES - 1.0) * freedom });
+        Ok(Trials { samples, lit: lit.iter().sum(), mean, freedom })
+    }
+
+    /// Samples of all of them together.
+    pub fn all(&self) -> u64 {
+        TRIALS * self.samples
+    }
+
+    /// The relative error that a cloud of more samples has at most: that of independent samples falls as the root of
+    /// their number. None is foretold where all is dark.
+    pub fn foretell(&self, samples: u64) -> f64 {
+        let root = (self.all() as f64 / samples as f64).sqrt();
+        self.mean.map_or(0.0, |mean| mean.error * root)
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// The relative standard error of the mean of all halves; none if it is zero.
+fn error_of_mean(trials: &[[Vec<f64>; 2]]) -> Option<f64> {
+    let halves = || trials.iter().flatten();
+    let mut mean = vec![0.0; halves().next().map_or(0, Vec::len)];
+    halves().for_each(|v| mean.iter_mut().zip(v).for_each(|(m, x)| *m += x / HALVES));
+    let power = dot(&mean, &mean);
+    let scatter: f64 = halves().map(|v| v.iter().zip(&mean).map(|(x, m)| (x - m) * (x - m)).sum::<f64>()).sum();
+    (power > 0.0).then(|| (scatter / (HALVES * (HALVES - 1.0)) / power).sqrt())
+}
+
+/// The degrees of freedom of one difference of two halves, at least one.
+fn freedom(trials: &[[Vec<f64>; 2]]) -> f64 {
+    let difference = |[one, two]: &[Vec<f64>; 2]| one.iter().zip(two).map(|(a, b)| a - b).collect::<Vec<f64>>();
+    let differences: Vec<Vec<f64>> = trials.iter().map(difference).collect();
+    let squares: Vec<f64> = differences.iter().map(|d| dot(d, d)).collect();
+    let count = squares.len() as f64;
+    let mean = squares.iter().sum::<f64>() / count;
+    let scatter = squares.iter().map(|s| (s - mean) * (s - mean)).sum::<f64>() / (count - 1.0);
+    let mut products = 0.0;
+    for (k, one) in differences.iter().enumerate() {
+        products += differences[..k].iter().map(|two| dot(one, two).powi(2)).sum::<f64>();
+    }
+    let shared = products / (0.5 * count * (count - 1.0));
+    // Nothing differs: nothing is known.
+    let ratio = |of: f64| if of > 0.0 { mean * mean / of } else { 1.0 };
+    ratio(shared).min(2.0 * ratio(scatter)).max(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Trials whose halves differ by normal numbers of the same variance, each shared by `together` of `length` values.
+    fn trials(length: usize, together: usize) -> Vec<[Vec<f64>; 2]> {
+        let stream = random::Stream::new(7, random::Purpose::Calibration);
+        let half = |half: u64| {
+            let normal = |k: u64| (0..12).map(|d| stream.item(half << 32 | k).uniform(d)).sum::<f64>() - 6.0;
+            (0..length).map(|k| 100.0 + normal((k / together) as u64)).collect()
+        };
+        (0..TRIALS).map(|k| [half(2 * k), half(2 * k + 1)]).collect()
+    }
+
+    /// 256 independent values, four that 64 share each, and one that all share.
+    ///
+    /// Seen to catch: differences multiplied by their own; the count of values in place of their correlation.
+    #[test]
+    fn shared_values_are_one_degree_of_freedom() {
+        for (together, low, high) in [(1, 60.0, 600.0), (64, 1.5, 9.0), (256, 1.0, 2.0)] {
+            let trials = trials(256, together);
+            let found = freedom(&trials);
+            assert!((low..high).contains(&found), "{together} together: {found}");
+            // The mean of 16 has a quarter of the error of one, 1 % here.
+            let error = error_of_mean(&trials).expect("there is light");
+            assert!((0.001..0.004).contains(&error), "{error}");
+        }
+        assert_eq!(error_of_mean(&[[vec![0.0; 3], vec![0.0; 3]]]), None);
+    }
+}
