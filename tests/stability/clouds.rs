@@ -6,11 +6,15 @@ use crate::{
 };
 use bssrdf::{Medium, Model};
 use formats::cloud::{Cloud, Sample};
-use gather::{Filter, Settings, estimator::Estimator};
+use gather::{
+    Filter, Settings,
+    estimator::{Estimator, Sum},
+    samples::{Exit, LitSamples},
+};
 use glam::{DVec3, Vec3};
 use support::{
     meshes::{Light, Part, World, quad, slab, world},
-    pipeline::{ESTIMATORS, Lit, MODELS, Point, cloud, grey, settings, stratified},
+    pipeline::{ESTIMATORS, Lit, MODELS, Point, Scatterer, cloud, grey, settings, stratified},
     planted::{Halves, alternating, cloud_of},
     random::Random,
 };
@@ -136,6 +140,63 @@ fn all_samples_in_one_half() {
             for (a, b) in image(exact, paths).iter().zip(&whole) {
                 assert_is("one half", a.beauty(), b.beauty(), 1e-3);
                 assert!(b.beauty().min_element() > 0.0 && a.variance().min_element() > 0.0);
+            }
+        }
+    }
+}
+
+/// Light stronger or weaker by a power of two gives the same sum times that, to the last bit, of the same samples.
+///
+/// Seen to catch: errors that are squared as they are, which float32 has no room for: beyond, every sample is summed, and
+/// below, far too few are.
+#[test]
+fn strong_and_weak_light_is_cut_as_finely() {
+    let lit = scattered(3000);
+    let sums = |exponent: i32| -> Vec<Sum> {
+        let scaled = lit.iter().map(|s| Sample { flux: s.flux * 2f32.powi(exponent), ..*s });
+        let cloud = cloud_of(&alternating(scaled));
+        let at = |model| {
+            let lit = Lit::new(&cloud, &milky(), model);
+            let points = around(DVec3::ZERO);
+            points.iter().map(|p| lit.sum(0, Estimator::Cut { accuracy: 0.05 }, *p, 7)).collect::<Vec<_>>()
+        };
+        MODELS.into_iter().flat_map(at).collect()
+    };
+    let plain = sums(0);
+    assert!(plain.iter().any(|sum| sum.evaluations < 1000 && sum.radiance.x > 0.0), "nothing was left out");
+    for exponent in [-100, -70, -40, 40, 70, 100] {
+        for (sum, plain) in sums(exponent).into_iter().zip(&plain) {
+            assert_eq!(sum.radiance, plain.radiance * 2f64.powi(exponent), "2^{exponent}");
+            assert_eq!((sum.evaluations, sum.nodes), (plain.evaluations, plain.nodes), "2^{exponent}");
+        }
+    }
+}
+
+/// A tree and samples that nobody has checked, or that are changed while they are read: no sum of them panics or hangs.
+///
+/// Seen to catch: a threshold below 0, for which leaves beyond the last tile are opened.
+#[test]
+fn samples_and_nodes_that_were_never_checked_do_no_harm() {
+    let cloud = cloud_of(&alternating(scattered(180)));
+    let group = cloud.meta().materials[0].halves[0];
+    let (tiles, nodes) = cloud.group(&group);
+    let numbers = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -1.0, -1e30, 0.0, 1e-45];
+    let (mut random, scatterer) = (Random(3), Scatterer::new(Model::StandardDipole, &milky()));
+    for round in 0..400 {
+        let (mut tiles, mut nodes) = (tiles.to_vec(), nodes.to_vec());
+        let mut number = || numbers[random.bits() as usize % numbers.len()];
+        match round % 4 {
+            0 => nodes.iter_mut().for_each(|n| n.flux = -n.flux),
+            1 => tiles.iter_mut().flatten().for_each(|r| r.flux = [number(); 3]),
+            2 => nodes.iter_mut().for_each(|n| (n.flux, n.radius) = (number(), number())),
+            _ => nodes.iter_mut().for_each(|n| (n.centre[0], n.spread, n.turn) = (number(), number(), number())),
+        }
+        for len in [group.samples as usize, usize::MAX] {
+            let samples = LitSamples::of(&tiles, &nodes, len, 1.3);
+            let exit = Exit::new(DVec3::new(1e-3, 0.0, 0.0), DVec3::Z, round);
+            for estimator in ESTIMATORS {
+                let sum = scatterer.sum(&samples, &exit, estimator);
+                assert!(sum.evaluations <= 16 * tiles.len() as u64);
             }
         }
     }

@@ -50,17 +50,24 @@ fn radiance_beyond_float32_is_counted_and_placed() {
     assert_eq!((harmless.non_finite_count, harmless.non_finite.len()), (0, 0));
 }
 
-/// A variance is a square: it leaves float32 long before the radiance does, and goes into the same file. It is that of the
-/// cloud, too: one path a pixel knows it.
+/// A variance is a square: it leaves float32 long before the radiance does, and goes into the same file, as the largest
+/// number there. It is that of the cloud, too: one path a pixel knows it.
+///
+/// Seen to catch: no image of a good pixel because of its variance.
 #[test]
-fn variance_beyond_float32_is_counted() {
+fn variance_beyond_float32_is_the_largest_number_of_the_file() {
     for paths_per_pixel in [1, 4] {
         let settings = Settings { paths_per_pixel, filter: gather::Filter::Box, ..settings(MODELS[0], 12, 12) };
-        let rendered = rendered(Vec3::splat(1e25), false, &settings);
-        let beyond = rendered.pixels.iter().filter(|p| p.variance().max_element() > f64::from(f32::MAX)).count();
-        assert!(beyond > 0);
-        assert_eq!(rendered.non_finite_count, beyond as u64);
-        assert!(rendered.pixels.iter().all(|p| p.beauty().max_element() < f64::from(f32::MAX)));
+        let rendered = |flux: f32| rendered(Vec3::splat(flux), false, &settings);
+        let (strong, plain) = (rendered(1e25), rendered(1.0));
+        let beyond = |p: &gather::film::Pixel| p.variance().x > f64::from(f32::MAX);
+        assert!(strong.pixels.iter().any(beyond) && strong.non_finite_count == 0);
+        let image = gather::film::image(&strong.pixels, 12, 12);
+        for (pixel, stored) in strong.pixels.iter().zip(image.channel("variance.R").expect("it has one")) {
+            assert_eq!(*stored, pixel.variance().x.clamp(0.0, f64::from(f32::MAX)) as f32);
+        }
+        let [one, other] = [&strong, &plain].map(|image| gather::film::relative_error(&image.pixels).expect("light"));
+        assert!((one / other - 1.0).abs() < 1e-4, "{one} is not {other}");
     }
 }
 

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 pub(crate) mod decode;
 mod encode;
 mod header;
-mod parallel;
+pub(crate) mod parallel;
 
 pub use decode::Dimensions;
 

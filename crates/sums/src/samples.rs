@@ -16,6 +16,8 @@ pub struct LitSamples<'a> {
     nodes: &'a [Node],
     len: usize,
     entry: Entry,
+    /// See [`LitSamples::scale`].
+    scale: f32,
 }
 
 /// The exitant point that a sum is for.
@@ -61,9 +63,17 @@ impl<'a> LitSamples<'a> {
         LitSamples::of(tiles, nodes, group.samples as usize, eta)
     }
 
-    /// `len` samples in tiles with the tree over them.
+    /// `len` samples in tiles with the tree over them: as many as the tiles hold, if that is less.
     pub fn of(tiles: &'a [Tile], nodes: &'a [Node], len: usize, eta: f64) -> LitSamples<'a> {
-        LitSamples { tiles, nodes, len, entry: Entry::new(eta) }
+        let scale = nodes.get(1).map_or(1.0, |root| unit_of(root.flux));
+        LitSamples { tiles, nodes, len: len.min(tiles.len() * TILE), entry: Entry::new(eta), scale }
+    }
+
+    /// What makes the flux of all samples together about 1: a power of two, so that nothing is rounded by it. Squares and
+    /// sums of so many fluxes then have room in float32, however strong or weak the light is.
+    #[inline(always)]
+    pub fn scale(&self) -> f32 {
+        self.scale
     }
 
     /// Samples, fillers not counted.
@@ -141,6 +151,12 @@ impl<'a> LitSamples<'a> {
     }
 }
 
+/// The power of two that makes a number about 1, as far as float32 has it.
+fn unit_of(number: f32) -> f32 {
+    let exponent = ((number.to_bits() >> 23) & 0xFF) as i32 - 127;
+    2f32.powi(-exponent.clamp(-126, 126))
+}
+
 /// Sixteen records, component by component.
 #[derive(Clone, Copy, Default)]
 #[repr(align(64))]
@@ -160,5 +176,22 @@ impl Words {
         }
         self.normal[lane] = record.normal;
         self.direction[lane] = record.direction;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Seen to catch: an exponent that is not held within those of normal numbers, whose power is infinite or 0.
+    #[test]
+    fn the_unit_of_any_number_is_a_power_of_two() {
+        for number in [1.0, 1.5, 3e-20, 3e20, 1e38] {
+            let (unit, bits) = (unit_of(number), unit_of(number).to_bits());
+            assert!((1.0..2.0).contains(&(number * unit)) && bits << 9 == 0, "{number}: {unit}");
+        }
+        for number in [0.0, -1.0, 1e-45, f32::MAX, f32::INFINITY, f32::NAN] {
+            assert!(unit_of(number).is_normal() && unit_of(number) > 0.0, "{number}");
+        }
     }
 }

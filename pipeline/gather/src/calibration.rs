@@ -118,7 +118,7 @@ fn measure<M: LaneModel>(
         let (mean, variance) = moments(&sums);
         let predicted = sums[0].predicted;
         let asked = renderer.accuracy(1.0) * f64::from(body.calibration.factor(predicted));
-        Measured { mean, predicted: f64::from(predicted), worse: variance / (mean * asked).powi(2) }
+        Measured { mean, predicted, worse: variance / (mean * asked).powi(2) }
     };
     points.par_iter().enumerate().map(at).collect()
 }

@@ -163,11 +163,15 @@ pub struct Guide {
     pub depth: f64,
 }
 
+/// The largest variance that a file holds.
+const LARGEST: DVec3 = DVec3::splat(f32::MAX as f64);
+
 /// A pixel's values.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Pixel {
     layers: Layers,
-    /// Variance of the mean, an estimate: at edges it may be negative.
+    /// Variance of the mean, an estimate: at edges it may be negative. As a square it leaves float32 long before the
+    /// pixel does; the file then has the largest float32 in its place.
     variance: DVec3,
     guide: Guide,
 }
@@ -187,8 +191,11 @@ impl Pixel {
         let mut values = [0.0; 28];
         // Where nothing was met it is 0, whatever it is relative to.
         let position = if self.guide.normal == DVec3::ZERO { DVec3::ZERO } else { self.guide.position - origin };
-        let vectors =
-            [&[self.beauty()], &self.layers[..], &[self.variance.max(DVec3::ZERO), self.guide.normal, position]];
+        let vectors = [
+            &[self.beauty()],
+            &self.layers[..],
+            &[self.variance.clamp(DVec3::ZERO, LARGEST), self.guide.normal, position],
+        ];
         let numbers = vectors.concat().into_iter().flat_map(|v| v.to_array()).chain([self.guide.depth]);
         values.iter_mut().zip(numbers).for_each(|(value, x)| *value = x as f32);
         values
@@ -196,7 +203,7 @@ impl Pixel {
 
     /// True if every number can go into a file.
     pub fn is_finite(&self) -> bool {
-        self.values(DVec3::ZERO).iter().all(|x| x.is_finite())
+        self.variance.is_finite() && self.values(DVec3::ZERO).iter().all(|x| x.is_finite())
     }
 }
 

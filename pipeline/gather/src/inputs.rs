@@ -5,7 +5,10 @@ use cli::{Failure, Files, is_file};
 use formats::cloud::Cloud;
 use gather::clouds::{self, JoinError};
 use scene::{Health, Scene, light::Environment};
-use std::path::{Path, PathBuf};
+use std::{
+    num::NonZeroUsize,
+    path::{Path, PathBuf},
+};
 
 /// At least one CLOUD, and SCENE.
 pub fn paths(arguments: &Arguments) -> Result<(&[PathBuf], &Path), Failure> {
@@ -55,9 +58,6 @@ pub fn declare_outputs(files: &mut Files, arguments: &Arguments, shots: &[Shot],
     Ok(())
 }
 
-/// Clouds of fewer bytes are checked before the work, in milliseconds; larger ones beside it, before anything is written.
-const VERIFIED_FIRST: u64 = 1 << 26;
-
 /// One cloud or more, open, and their files.
 pub struct CloudFiles {
     paths: Vec<PathBuf>,
@@ -78,19 +78,15 @@ impl CloudFiles {
         &self.clouds
     }
 
-    /// So small that they are checked before the work.
-    pub fn are_small(&self) -> bool {
-        self.clouds.iter().map(Cloud::bytes).sum::<u64>() < VERIFIED_FIRST
-    }
-
     /// Of the sampled surfaces, as phase one found them.
     pub fn health(&self) -> Health {
         Health::from_counts(|name| self.clouds[0].meta().mesh_faults.get(name).copied())
     }
 
-    /// Checks all of each file.
-    pub fn verify(&self) -> Result<(), formats::Error> {
-        self.clouds.iter().zip(&self.paths).try_for_each(|(cloud, path)| cloud.verify(path))
+    /// Checks all of each file, by so many threads. Before the work: it takes a hundredth of what the smallest picture
+    /// does, and damage that is found later was paid for.
+    pub fn verify(&self, threads: NonZeroUsize) -> Result<(), formats::Error> {
+        self.clouds.iter().zip(&self.paths).try_for_each(|(cloud, path)| cloud.verify_with(threads, path))
     }
 
     /// Refuses files that were written to since they were opened.

@@ -59,23 +59,22 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     scene.files.iter().try_for_each(|path| declared.reads("a file that SCENE names", path))?;
     inputs::declare_outputs(&mut declared, arguments, &shots, output_path)?;
     let mut first = shots.first().map(|shot| Output::create(&shot.file(output_path))).transpose()?;
-    let at_once = files.are_small();
-    if at_once {
-        files.verify()?;
-    }
+    files.verify(threads(arguments))?;
     let mut seconds = Seconds(vec![("open", start.elapsed().as_secs_f64())]);
     let ray_tree = Instant::now();
     let rays = common.in_pool(|| Rays::of_scene(&scene, sampled))?;
     seconds.0.push(("ray_tree", ray_tree.elapsed().as_secs_f64()));
 
     let mut start = start;
-    let mut unverified = !at_once;
     for shot in &shots {
         let (settings, path) = (&shot.settings, shot.file(output_path));
         let output = first.take().map_or_else(|| Output::create(&path), Ok)?;
         let input = Input { scene: &scene, rays: &rays, clouds, media: &media, camera: &shot.camera };
         let render = Instant::now();
-        let rendered = rendered(arguments, &input, settings, unverified.then_some(&files))?;
+        let rendered = common.in_pool(|| match arguments.target_error {
+            None => render_all(&input, settings, common),
+            Some(target) => render_to(target, &input, settings, common),
+        })?;
         files.check_unchanged()?;
         seconds.0.push(("render", render.elapsed().as_secs_f64()));
         let facts = Facts {
@@ -102,30 +101,14 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         if let Some(warning) = outlook::warning(&rendered.counts, settings) {
             common.warn(shot.line(&warning));
         }
-        (start, seconds, unverified) = (Instant::now(), Seconds::default(), false);
+        (start, seconds) = (Instant::now(), Seconds::default());
     }
     Ok(())
 }
 
-/// The image; clouds that are not verified are checked beside the work.
-fn rendered(
-    arguments: &Arguments,
-    input: &Input,
-    settings: &Settings,
-    unverified: Option<&CloudFiles>,
-) -> Result<Rendered, Failure> {
-    let common = &arguments.common;
-    std::thread::scope(|scope| {
-        let verified = unverified.map(|files| scope.spawn(|| files.verify()));
-        let rendered = common.in_pool(|| match arguments.target_error {
-            None => render_all(input, settings, common),
-            Some(target) => render_to(target, input, settings, common),
-        })?;
-        if let Some(check) = verified {
-            check.join().map_err(|_| Failure::usage("CLOUD: its check came to no end"))??;
-        }
-        Ok(rendered)
-    })
+/// Threads of work that is no pool's.
+fn threads(arguments: &Arguments) -> NonZeroUsize {
+    NonZeroUsize::new(arguments.common.thread_count()).unwrap_or(NonZeroUsize::MIN)
 }
 
 /// Refuses what cannot fit before any work is done: the image thrice. The cloud is mapped.
@@ -186,8 +169,7 @@ fn write_image(
     let origin = facts.clouds[0].meta().exchange_origin_m().map(f64::from).into();
     let mut image = film::part(&rendered.pixels, part, [settings.width, settings.height], origin);
     image.attributes = facts.attributes(arguments);
-    let threads = NonZeroUsize::new(arguments.common.thread_count()).unwrap_or(NonZeroUsize::MIN);
-    let bytes = image.encode_with(threads)?;
+    let bytes = image.encode_with(threads(arguments))?;
     output.write_all(&bytes).map_err(|source| formats::Error::write(path, source))?;
     if let Some(preview_path) = &arguments.preview {
         let png = preview::png(&rendered.pixels, part.width, part.height, arguments.exposure)?;

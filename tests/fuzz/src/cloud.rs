@@ -6,7 +6,7 @@ use bssrdf::{
     lanes::{DirectionalLanes, LaneModel},
     simd,
 };
-use formats::cloud::{Cloud, Sample, TILE};
+use formats::cloud::{Cloud, Record, Sample, TILE, version};
 use gather::{
     estimator::{Calibration, Cut, Exhaustive, Radial, Roulette, Rule, Scratch},
     samples::{Exit, LitSamples},
@@ -15,8 +15,8 @@ use std::{ops::Range, path::Path, sync::LazyLock};
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
 /// An accepted cloud has the groups that it speaks of; one that was verified has samples that are points with normals,
-/// directions and flux, and sums over them are finite, unless they are absurd. The bytes are tried as they are, and with
-/// length and checksums that fit.
+/// directions and flux, and sums over them are finite, unless they are absurd. Sums over one that was not verified do no
+/// harm. The bytes are tried as they are, and with version, length and checksums that fit.
 pub fn cloud(bytes: &[u8]) -> bool {
     let mut sealed = bytes.to_vec();
     seal(&mut sealed);
@@ -27,14 +27,17 @@ fn look_at(path: &Path) -> bool {
     let Ok(cloud) = Cloud::open(path) else { return false };
     let good = cloud.verify(path).is_ok();
     let mut samples = 0;
+    // The models are held to places of a scene.
+    let placed = |record: &Record| record.position.iter().all(|x| x.abs() < FARTHEST);
+    let sums = good || cloud.tiles().as_flattened().iter().all(placed);
     for material in &cloud.meta().materials {
         for half in &material.halves {
             let (tiles, nodes) = cloud.group(half);
             assert!(half.samples <= (tiles.len() * TILE) as u64 && (tiles.is_empty() == nodes.is_empty()));
         }
         for sample in cloud.samples(material) {
-            if good && samples % 1000 == 0 {
-                check_sums(&cloud, &sample);
+            if sums && samples % 1000 == 0 {
+                check_sums(&cloud, &sample, good);
             }
             samples += 1;
             let unit = |length: f64| (length - 1.0).abs() < 1e-12;
@@ -50,9 +53,11 @@ fn look_at(path: &Path) -> bool {
 
 /// Beyond, numbers may get too large for float32.
 const SANE: f32 = 1e12;
+/// No scene is wider, m.
+const FARTHEST: f32 = 1e18;
 
-/// Sums over all groups at a sample, and at a point beside it.
-fn check_sums(cloud: &Cloud, sample: &Sample) {
+/// Sums over all groups at a sample, and at a point beside it; of a `good` cloud they are finite.
+fn check_sums(cloud: &Cloud, sample: &Sample, good: bool) {
     static MARBLE: LazyLock<(Medium, Radial)> = LazyLock::new(|| {
         let medium = built_in("marble").expect("it is built in");
         let radial = Radial::new(&medium, &*Model::DirectionalDipole.of(&medium), 0.1);
@@ -75,7 +80,7 @@ fn check_sums(cloud: &Cloud, sample: &Sample) {
                 simd::dispatch(Roulette { model, samples, exit, rates }),
                 simd::dispatch(Cut { model, samples, radial, exit, accuracy: 0.1, calibration, scratch }),
             ];
-            if cloud.meta().materials.iter().flat_map(|m| cloud.samples(m)).all(|s| small(&s)) {
+            if good && cloud.meta().materials.iter().flat_map(|m| cloud.samples(m)).all(|s| small(&s)) {
                 assert!(sums.iter().all(|s| s.radiance.is_finite() && s.radiance.min_element() >= 0.0), "{sums:?}");
             }
         }
@@ -85,9 +90,11 @@ fn check_sums(cloud: &Cloud, sample: &Sample) {
 const HEADER: usize = 64;
 const ENTRY: usize = 64;
 
-/// Makes the length and all checksums right as far as the file has them; the layout is that of `formats::cloud`.
-fn seal(file: &mut [u8]) -> Option<()> {
+/// Makes the version, the length and all checksums right as far as the file has them; the layout is that of
+/// `formats::cloud`, where a section is one block, as in all files that are small.
+pub fn seal(file: &mut [u8]) -> Option<()> {
     let length = file.len() as u64;
+    file.get_mut(8..10)?.copy_from_slice(&version().to_le_bytes());
     file.get_mut(16..24)?.copy_from_slice(&length.to_le_bytes());
     let count = u32::from_le_bytes(file.get(32..36)?.try_into().ok()?) as usize;
     let table = HEADER..count.checked_mul(ENTRY)?.checked_add(HEADER)?;

@@ -24,6 +24,6 @@ fn main() -> ExitCode {
 }
 
 fn usage() -> ExitCode {
-    eprintln!("usage: replay cloud|gltf|image|limits|medium|view MUTATIONS FILE...");
+    eprintln!("usage: replay facts|cloud|gltf|image|limits|medium|view MUTATIONS FILE...");
     ExitCode::from(2)
 }

@@ -53,6 +53,11 @@ fn assert_kept(target: &str) {
 }
 
 #[test]
+fn facts() {
+    assert_kept("facts");
+}
+
+#[test]
 fn clouds() {
     assert_kept("cloud");
 }

@@ -14,8 +14,9 @@
 //! ```
 //!
 //! A table entry: name (16, zero padded); element type, components, layout, codec (4 × u16); offset, stored bytes, raw
-//! bytes, elements (4 × u64); xxh3-64 of the stored bytes (u64). Layout 1: elements follow each other, and within each
-//! its components.
+//! bytes, elements (4 × u64); checksum of the stored bytes (u64). Layout 1: elements follow each other, and within each
+//! its components. The checksum is the xxh3-64 of up to 256 KiB; of more it is the xxh3-64 of those of its blocks of
+//! 256 KiB, in order, as little-endian numbers, so that several threads may check a large section at once.
 
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
@@ -26,6 +27,8 @@ const MAX_SECTIONS: u32 = 64;
 /// Sections start at multiples of this, the samples at a page.
 const ALIGN: u64 = 64;
 const PAGE: u64 = 4096;
+/// A section is checked by blocks of so many bytes, which a processor's own cache holds: they are read once for all.
+pub(super) const BLOCK: usize = 1 << 18;
 /// Elements follow each other.
 const RECORDS: u16 = 1;
 
@@ -149,7 +152,11 @@ pub(super) fn decode(file: &[u8], known: &[(&'static str, Kind, u16)]) -> Result
     let mut sections = Vec::new();
     for k in 0..count as usize {
         let entry = &file[HEADER + k * ENTRY..HEADER + (k + 1) * ENTRY];
-        sections.extend(decode_entry(entry, known, file.len() as u64)?);
+        let section = decode_entry(entry, known, file.len() as u64)?;
+        if let Some(twice) = section.as_ref().filter(|s| sections.iter().any(|other: &Section| other.name == s.name)) {
+            return Err(format!("section `{}` is there twice; sample again", twice.name));
+        }
+        sections.extend(section);
     }
     Ok(Header { samples: u64::from_le_bytes(word(file, 24)?), sections })
 }
@@ -181,12 +188,21 @@ fn decode_entry(entry: &[u8], known: &[(&'static str, Kind, u16)], length: u64) 
     if fits { Ok(Some(section)) } else { Err(format!("section `{name}` is damaged; sample again")) }
 }
 
-/// Checks the bytes of a section against its checksum.
-pub(super) fn verify(file: &[u8], s: &Section) -> Result<(), String> {
-    let bytes = &file[s.offset as usize..s.end() as usize];
-    if xxh3_64(bytes) == s.checksum {
-        Ok(())
-    } else {
-        Err(format!("section `{}` is damaged (checksum); sample again", s.name))
+/// The checksum of a section's bytes.
+pub(super) fn checksum(bytes: &[u8]) -> u64 {
+    checksum_of(&bytes.chunks(BLOCK).map(xxh3_64).collect::<Vec<u64>>())
+}
+
+/// The checksum of a section by those of its blocks.
+pub(super) fn checksum_of(blocks: &[u64]) -> u64 {
+    match blocks {
+        [] => xxh3_64(&[]),
+        [one] => *one,
+        _ => xxh3_64(&blocks.iter().flat_map(|block| block.to_le_bytes()).collect::<Vec<u8>>()),
     }
+}
+
+/// Checks the checksum that was found for a section's bytes against the one that the table has.
+pub(super) fn verify(found: u64, s: &Section) -> Result<(), String> {
+    if found == s.checksum { Ok(()) } else { Err(format!("section `{}` is damaged (checksum); sample again", s.name)) }
 }

@@ -1,5 +1,6 @@
 //! What a cloud says of itself.
 
+use super::bounded::{counts, list, shares, text};
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, fmt};
 
@@ -23,10 +24,12 @@ pub struct Meta {
     /// `K`: samples drawn, the unlit ones included. The estimator divides by it.
     pub samples_drawn: u64,
     /// Samples drawn but not stored because they carry no light, by reason.
+    #[serde(deserialize_with = "counts")]
     pub samples_dropped: BTreeMap<String, u64>,
     /// Shadow rays traced.
     pub shadow_rays: u64,
     /// Faults of the sampled surfaces as a mesh, by name: who gathers need not look for them again.
+    #[serde(deserialize_with = "counts")]
     pub mesh_faults: BTreeMap<String, u64>,
     /// Area of the sampled surfaces, m².
     pub surface_area_m2: f64,
@@ -37,6 +40,7 @@ pub struct Meta {
     /// World position that sample positions are relative to, m.
     pub origin_m: [f64; 3],
     /// The sampled materials in order; their groups follow each other in the file.
+    #[serde(deserialize_with = "list")]
     pub materials: Vec<SampledMaterial>,
 }
 
@@ -57,12 +61,16 @@ impl Meta {
         if rounding > WORST * self.diagonal_m { self.origin_m.map(|x| x as f32) } else { [0.0; 3] }
     }
 
-    /// True if no fact is NaN or infinite.
-    pub(super) fn is_finite(&self) -> bool {
+    /// True if every fact is a number that it can be: none is NaN or infinite, and only a place may be negative.
+    pub(super) fn is_sound(&self) -> bool {
         let single = [self.surface_area_m2, self.diagonal_m, self.options.metres_per_unit];
-        let triples = [self.mean_flux_w, self.origin_m];
         let areas = self.materials.iter().map(|m| m.area_m2);
-        single.into_iter().chain(triples.into_iter().flatten()).chain(areas).all(f64::is_finite)
+        let sizes = single.into_iter().chain(self.mean_flux_w).chain(areas);
+        let shard = self.options.shard;
+        let facts = sizes.chain(self.options.shares.iter().map(|(_, share)| *share));
+        self.origin_m.into_iter().all(f64::is_finite)
+            && facts.into_iter().all(|x| x.is_finite() && x >= 0.0)
+            && shard.index < shard.count
     }
 }
 
@@ -72,19 +80,26 @@ pub struct Options {
     pub seed: u64,
     pub shard: Shard,
     /// `area` or `uniform`.
+    #[serde(deserialize_with = "text")]
     pub choice: String,
     /// `stratified` or `independent`.
+    #[serde(deserialize_with = "text")]
     pub pattern: String,
     /// Materials with the share of the samples that was asked for.
+    #[serde(deserialize_with = "shares")]
     pub shares: Vec<(String, f64)>,
     /// `shading` or `geometric`.
+    #[serde(deserialize_with = "text")]
     pub normals: String,
     pub metres_per_unit: f64,
     /// `radiometric` or `photometric`: the numbers of lights.
+    #[serde(deserialize_with = "text")]
     pub light_unit: String,
     /// The same of emitting materials.
+    #[serde(deserialize_with = "text")]
     pub emission_unit: String,
     /// Light from all around: its radiance, or the identity of a map.
+    #[serde(deserialize_with = "text")]
     pub environment: String,
 }
 
@@ -110,6 +125,7 @@ impl fmt::Display for Shard {
 /// A translucent material and its samples.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SampledMaterial {
+    #[serde(deserialize_with = "text")]
     pub name: String,
     /// Index into the scene's materials.
     pub index: u16,

@@ -3,6 +3,7 @@
 //! Readable without this code: the sections `tile` and `node` are little-endian arrays of [`Record`] and [`Node`] that
 //! start where the section table says, and the section `provenance` repeats the facts as JSON. It is mapped as it lies.
 
+mod bounded;
 mod layout;
 mod meta;
 mod record;
@@ -11,13 +12,13 @@ pub use layout::version;
 pub use meta::{Group, Meta, Options, SampledMaterial, Shard, hex};
 pub use record::{Node, Record, TILE, Tile, first_leaf, node_count, tile};
 
-use crate::{Error, atomic::Output};
+use crate::{Error, atomic::Output, image::parallel::parallel};
 use bytemuck::Pod;
 use glam::{DVec3, Vec3};
-use layout::{HEADER, Header, Kind, Section};
+use layout::{BLOCK, HEADER, Header, Kind, Section};
 use memmap2::Mmap;
 use meta::Versioned;
-use std::{fs::File, io::Write, path::Path, time::SystemTime};
+use std::{fs::File, io::Write, num::NonZeroUsize, path::Path, time::SystemTime};
 use xxhash_rust::xxh3::xxh3_64;
 
 /// The sections this version knows: name, element type, components.
@@ -28,8 +29,12 @@ const SECTIONS: [(&str, Kind, u16); 4] = [
     ("node", Kind::F32, (size_of::<Node>() / 4) as u16),
 ];
 
-/// Largest metadata block that is read.
+/// Largest metadata block that is written or read, bytes, and the largest text of the same facts.
 const META_LIMIT: usize = 1 << 20;
+const PROVENANCE_LIMIT: usize = 16 * META_LIMIT;
+
+/// Samples of a group are counted by 32 bits where they are picked.
+const LARGEST_GROUP: u64 = 1 << 32;
 
 /// Most samples drawn for a cloud: the sums over thousands of clouds are whole numbers still, in float64 too.
 const MOST_DRAWN: u64 = 1 << 40;
@@ -81,6 +86,9 @@ pub fn write(output: &mut Output, path: &Path, content: &Content, meta: &Meta) -
         .map_err(|e| Error::invalid(path, format!("the cloud's facts do not fit the file: {e}")))?;
     let provenance = serde_json::to_vec_pretty(&provenance(meta))
         .map_err(|e| Error::invalid(path, format!("the cloud's facts do not fit the file: {e}")))?;
+    if provenance.len() > PROVENANCE_LIMIT {
+        return Err(Error::invalid(path, "the cloud's facts do not fit the file: they are too long as text"));
+    }
     let (tiles, nodes) = (bytemuck::cast_slice(&content.tiles), bytemuck::cast_slice(&content.nodes));
     let blocks: [&[u8]; 4] = [&facts, &provenance, tiles, nodes];
     let counts = [facts.len(), provenance.len(), content.tiles.len(), content.nodes.len()];
@@ -88,7 +96,7 @@ pub fn write(output: &mut Output, path: &Path, content: &Content, meta: &Meta) -
     let mut sections = Vec::new();
     for (k, (name, kind, components)) in SECTIONS.into_iter().enumerate() {
         let mut section = Section::after(end, name, kind, components, counts[k] as u64);
-        section.checksum = xxh3_64(blocks[k]);
+        section.checksum = layout::checksum(blocks[k]);
         end = section.end();
         sections.push(section);
     }
@@ -127,11 +135,14 @@ pub struct Cloud {
 impl Cloud {
     /// Maps a file and checks its structure and facts, not its samples: milliseconds whatever its size.
     pub fn open(path: &Path) -> Result<Cloud, Error> {
+        let whole = |kind: std::fs::Metadata| {
+            let refused = || Error::invalid(path, "not a file; a cloud is mapped into memory");
+            kind.is_file().then_some(kind).ok_or_else(refused)
+        };
+        // Before it is opened, too: to open a pipe is to wait for its writer.
+        std::fs::metadata(path).map_err(|source| Error::read(path, source)).and_then(whole)?;
         let file = File::open(path).map_err(|source| Error::read(path, source))?;
-        let kind = file.metadata().map_err(|source| Error::read(path, source))?;
-        if !kind.is_file() {
-            return Err(Error::invalid(path, "not a file; a cloud is mapped into memory"));
-        }
+        let kind = file.metadata().map_err(|source| Error::read(path, source)).and_then(whole)?;
         let map = map(&file).map_err(|source| Error::read(path, source))?;
         let invalid = |what| Error::invalid(path, what);
         let header = layout::decode(&map, &SECTIONS).map_err(invalid)?;
@@ -176,19 +187,33 @@ impl Cloud {
         self.len() == 0
     }
 
-    /// Checks every section against its checksum, every sample for being a point of the scene with flux not negative, and
-    /// every node for numbers. Reads the whole file.
+    /// [`Cloud::verify_with`] by this thread alone.
     pub fn verify(&self, path: &Path) -> Result<(), Error> {
+        self.verify_with(NonZeroUsize::MIN, path)
+    }
+
+    /// Checks every section against its checksum, every sample for being a point of the scene with flux not negative, and
+    /// every node for numbers that a node can have. Reads the whole file, once, by so many threads: 6 GB/s each where it
+    /// is in memory already.
+    pub fn verify_with(&self, threads: NonZeroUsize, path: &Path) -> Result<(), Error> {
+        let reach = self.meta.diagonal_m.clamp(0.0, FARTHEST) as f32;
         for section in &self.header.sections {
-            layout::verify(&self.map, section).map_err(|what| Error::invalid(path, what))?;
-        }
-        if !records_are_good(self.tiles().as_flattened(), self.meta.diagonal_m.clamp(0.0, FARTHEST) as f32) {
-            let what = "a sample is not finite or lies beyond its scene, or its flux is negative; sample again";
-            return Err(Error::invalid(path, what));
-        }
-        let numbers: &[f32] = bytemuck::cast_slice(self.nodes());
-        if !numbers.iter().all(|x| x.is_finite()) || !self.nodes().iter().all(|n| n.flux >= 0.0) {
-            return Err(Error::invalid(path, "a node of the tree is not finite, or its flux negative; sample again"));
+            let is_good = |block: &[u8]| match section.name {
+                "tile" => records_are_good(bytemuck::cast_slice(block), reach),
+                "node" => nodes_are_good(bytemuck::cast_slice(block), reach),
+                _ => true,
+            };
+            let blocks = self.map[section.offset as usize..section.end() as usize].chunks(BLOCK).collect();
+            let checked = parallel(threads, blocks, |block: &[u8]| (xxh3_64(block), is_good(block)));
+            let (sums, good): (Vec<u64>, Vec<bool>) = checked.into_iter().unzip();
+            layout::verify(layout::checksum_of(&sums), section).map_err(|what| Error::invalid(path, what))?;
+            if good.contains(&false) {
+                let what = match section.name {
+                    "tile" => "a sample is not finite or lies beyond its scene, or its flux is negative",
+                    _ => "a node of the tree is not finite or lies beyond its scene, or a size or its flux is negative",
+                };
+                return Err(Error::invalid(path, format!("{what}; sample again")));
+            }
         }
         Ok(())
     }
@@ -225,17 +250,28 @@ impl Cloud {
     }
 }
 
+const SIGN: u32 = 1 << 31;
+
 /// True if positions lie within `reach` of the origin along each axis, and fluxes are finite and not negative.
 fn records_are_good(records: &[Record], reach: f32) -> bool {
-    // As whole numbers: of floats without sign those that are finite come first, of all the positive ones. Without a
-    // branch for each record this takes as long as reading the memory does.
-    const SIGN: u32 = 1 << 31;
     const MASKS: [u32; 8] = [!SIGN, !SIGN, !SIGN, 0, 0, !0, !0, !0];
-    let words: &[[u32; 8]] = bytemuck::cast_slice(records);
-    let worst = words
-        .iter()
-        .fold([0; 8], |worst: [u32; 8], record| std::array::from_fn(|i| worst[i].max(record[i] & MASKS[i])));
     let limits = [reach, reach, reach, f32::MAX, f32::MAX, f32::MAX, f32::MAX, f32::MAX];
+    are_within(bytemuck::cast_slice(records), MASKS, limits)
+}
+
+/// True if centres lie within `reach` of the origin along each axis, no sample is farther from them than two such points
+/// can be, and flux and deviations are finite and not negative.
+fn nodes_are_good(nodes: &[Node], reach: f32) -> bool {
+    const MASKS: [u32; 8] = [!SIGN, !SIGN, !SIGN, !0, !0, !0, !0, !0];
+    let apart = 4.0 * reach;
+    are_within(bytemuck::cast_slice(nodes), MASKS, [reach, reach, reach, apart, apart, f32::MAX, f32::MAX, 2.0])
+}
+
+/// True if the masked bits of eight floats, each time, are not above those of the limits.
+fn are_within(floats: &[[u32; 8]], masks: [u32; 8], limits: [f32; 8]) -> bool {
+    // As whole numbers: of floats without sign those that are finite come first, of all the positive ones. Without a
+    // branch for each this takes as long as reading the memory does.
+    let worst = floats.iter().fold([0; 8], |worst: [u32; 8], x| std::array::from_fn(|i| worst[i].max(x[i] & masks[i])));
     worst.iter().zip(limits).all(|(word, limit)| *word <= limit.to_bits())
 }
 
@@ -252,13 +288,17 @@ fn read_meta(file: &[u8], header: &Header) -> Result<Meta, String> {
     for (name, ..) in SECTIONS {
         header.section(name)?;
     }
-    let section = header.section("meta")?;
-    layout::verify(file, section)?;
-    let bytes = &file[section.offset as usize..section.end() as usize];
     let damaged = "the cloud's facts are damaged; sample again";
+    let section = header.section("meta")?;
+    // Before a byte of them is read: opening takes milliseconds whatever a file claims.
+    if section.bytes > META_LIMIT as u64 || header.section("provenance")?.bytes > PROVENANCE_LIMIT as u64 {
+        return Err(format!("the cloud's facts are longer than the {META_LIMIT} bytes they may have; sample again"));
+    }
+    let bytes = &file[section.offset as usize..section.end() as usize];
+    layout::verify(layout::checksum(bytes), section)?;
     let (Versioned::V5(meta), used) =
         bincode::serde::decode_from_slice(bytes, meta_config()).map_err(|_| damaged.to_owned())?;
-    let fits = used == bytes.len() && groups_fit(&meta, header).is_some() && meta.is_finite();
+    let fits = used == bytes.len() && groups_fit(&meta, header).is_some() && meta.is_sound();
     if fits { Ok(meta) } else { Err(damaged.into()) }
 }
 
@@ -266,7 +306,8 @@ fn read_meta(file: &[u8], header: &Header) -> Result<Meta, String> {
 fn groups_fit(meta: &Meta, header: &Header) -> Option<()> {
     let (mut samples, mut tiles, mut nodes) = (0u64, 0u64, 0u64);
     for half in meta.materials.iter().flat_map(|m| &m.halves) {
-        let placed = half.samples <= header.samples && (half.first_tile, half.first_node) == (tiles, nodes);
+        let counted = half.samples <= header.samples.min(LARGEST_GROUP);
+        let placed = counted && (half.first_tile, half.first_node) == (tiles, nodes);
         placed.then_some(())?;
         samples = samples.checked_add(half.samples)?;
         tiles = tiles.checked_add(half.tiles())?;

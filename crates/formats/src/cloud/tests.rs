@@ -1,9 +1,9 @@
 //! A cloud that was written is read, and what was damaged is not.
 
 use super::*;
-use std::{collections::BTreeMap, fs};
+use std::{collections::BTreeMap, fs, sync::mpsc, time::Duration};
 
-fn meta(count: u64) -> Meta {
+pub(super) fn meta(count: u64) -> Meta {
     let options = Options {
         seed: 3,
         shard: Shard::ALONE,
@@ -154,5 +154,123 @@ fn every_truncation_is_found() {
     for length in (0..good.len()).step_by(7) {
         fs::write(&bad, &good[..length]).expect("writes");
         assert!(Cloud::open(&bad).is_err(), "{length}");
+    }
+}
+
+/// Sections of several blocks, by one thread and by several: a change in any block is found.
+///
+/// Seen to catch: the checksum of the first block alone; the last block left out.
+#[test]
+fn every_block_of_a_large_section_is_checked() {
+    let folder = tempfile::tempdir().expect("folder");
+    let path = folder.path().join("test.cloud");
+    let count = 40_000;
+    let mut output = Output::create(&path).expect("creates");
+    write(&mut output, &path, &content(count), &Meta { diagonal_m: 1e6, ..meta(count) }).expect("writes");
+    output.commit().expect("commits");
+    let good = fs::read(&path).expect("reads");
+    let tile = Cloud::open(&path).expect("opens").header.section("tile").expect("is there").clone();
+    assert!(tile.bytes > 4 * BLOCK as u64);
+    let verified = |threads: usize| {
+        Cloud::open(&path).and_then(|c| c.verify_with(NonZeroUsize::new(threads).expect("some"), &path)).is_ok()
+    };
+    assert!([1, 2, 3, 64].into_iter().all(verified));
+    for at in (tile.offset..tile.end()).step_by(BLOCK).chain([tile.end() - 1]) {
+        let mut bytes = good.clone();
+        bytes[at as usize] ^= 1;
+        fs::write(&path, &bytes).expect("writes");
+        assert!(!verified(1) && !verified(3), "byte {at}");
+    }
+}
+
+/// A file of these sections, nearly all of it a hole.
+fn with_sections(path: &Path, sections: &[Section]) {
+    let length = sections.iter().map(Section::end).max().unwrap_or_default().max(HEADER as u64);
+    fs::write(path, layout::encode(sections, length, 0)).expect("writes");
+    fs::OpenOptions::new().write(true).open(path).and_then(|f| f.set_len(length)).expect("files may have holes");
+}
+
+/// Seen to catch: facts of 64 GiB that are read to the end before they are refused; a section that is there 60 times, each
+/// to be checked.
+#[test]
+fn facts_without_end_and_sections_that_are_there_twice_are_refused_at_once() {
+    let folder = tempfile::tempdir().expect("folder");
+    let path = folder.path().join("test.cloud");
+    let laid = |sizes: [u64; 4]| {
+        let mut end = (HEADER + 64 * 5) as u64;
+        let lay = |(k, (name, kind, components)): (usize, (&'static str, Kind, u16))| {
+            let section = Section::after(end, name, kind, components, sizes[k]);
+            end = section.end();
+            section
+        };
+        SECTIONS.into_iter().enumerate().map(lay).collect::<Vec<Section>>()
+    };
+    let refused = |sections: &[Section]| {
+        with_sections(&path, sections);
+        Cloud::open(&path).err().expect("is refused").to_string()
+    };
+    for sizes in [[1 << 36, 0, 0, 0], [16, 1 << 36, 0, 0]] {
+        assert!(refused(&laid(sizes)).contains("longer than"), "{sizes:?}");
+    }
+    let mut twice = laid([16, 16, 16, 16]);
+    twice.push(twice[2].clone());
+    assert!(refused(&twice).contains("`tile` is there twice"));
+}
+
+/// Samples are picked by numbers of 32 bits.
+///
+/// Seen to catch: no limit, where a sample's number would be cut off and another one taken.
+#[test]
+fn groups_are_no_larger_than_their_numbers() {
+    for (samples, good) in [(LARGEST_GROUP, true), (LARGEST_GROUP + 1, false)] {
+        let mut meta = meta(0);
+        let halves = &mut meta.materials[0].halves;
+        halves[0].samples = samples;
+        (halves[1].first_tile, halves[1].first_node) = (halves[0].tiles(), halves[0].nodes());
+        meta.samples_drawn = samples;
+        let counts = [0, 0, halves[0].tiles(), halves[0].nodes()];
+        let section = |(k, (name, kind, components)): (usize, (&'static str, Kind, u16))| {
+            Section::after(0, name, kind, components, counts[k])
+        };
+        let header = Header { samples, sections: SECTIONS.into_iter().enumerate().map(section).collect() };
+        assert_eq!(groups_fit(&meta, &header).is_some(), good, "{samples}");
+    }
+}
+
+/// Seen to catch: a file that is opened first, where a pipe's reader waits for a writer that never comes.
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_no_cloud_and_is_not_waited_for() {
+    let folder = tempfile::tempdir().expect("folder");
+    let path = folder.path().join("pipe");
+    let made = std::process::Command::new("mkfifo").arg(&path).status();
+    if !made.is_ok_and(|status| status.success()) {
+        eprintln!("not run: there is no mkfifo");
+        return;
+    }
+    let (tell, told) = mpsc::channel();
+    std::thread::spawn(move || tell.send(Cloud::open(&path).map(|_| ()).map_err(|e| e.to_string())));
+    let refused = told.recv_timeout(Duration::from_secs(10)).expect("it waits for the pipe's writer");
+    assert!(refused.expect_err("not a file").contains("not a file"));
+}
+
+/// What a tree over samples within 4 m of the origin can have.
+///
+/// Seen to catch: no sizes but the flux looked at.
+#[test]
+fn only_nodes_that_a_tree_can_have_are_good() {
+    let good =
+        Node { centre: [-2.0, 4.0, 0.0], spread: 1.0, radius: 13.0, flux: f32::MAX, flux_deviation: 30.0, turn: 1.4 };
+    assert!(nodes_are_good(&[], 4.0) && nodes_are_good(&[Node::default(), good], 4.0));
+    let limits = [4.0, 4.0, 4.0, 16.0, 16.0, f32::MAX, f32::MAX, 2.0];
+    for word in 0..8 {
+        let with = |x: f32| {
+            let mut node = good;
+            bytemuck::cast_mut::<Node, [f32; 8]>(&mut node)[word] = x;
+            nodes_are_good(&[good, node], 4.0)
+        };
+        let beyond = if limits[word] < f32::MAX { 1.01 * limits[word] } else { f32::INFINITY };
+        assert!(![f32::NAN, f32::INFINITY, beyond].into_iter().any(with), "word {word}");
+        assert!(with(limits[word]) && with(-limits[word]) == (word < 3), "word {word}");
     }
 }

@@ -1,4 +1,4 @@
-//! Blocks of pixels, packed and unpacked by several threads.
+//! Blocks of pixels, packed and unpacked, and of a cloud, checked, by several threads.
 
 use std::{
     num::NonZeroUsize,
@@ -7,7 +7,7 @@ use std::{
 };
 
 /// What `work` makes of each item, in the order of the items, whatever the number of threads.
-pub(super) fn parallel<T: Send, R: Send>(threads: NonZeroUsize, items: Vec<T>, work: impl Fn(T) -> R + Sync) -> Vec<R> {
+pub(crate) fn parallel<T: Send, R: Send>(threads: NonZeroUsize, items: Vec<T>, work: impl Fn(T) -> R + Sync) -> Vec<R> {
     if threads.get() == 1 || items.len() < 2 {
         return items.into_iter().map(work).collect();
     }

@@ -19,7 +19,8 @@ use formats::cloud::{Node, TILE, first_leaf};
 #[derive(Clone, Copy, Debug)]
 struct Closed {
     id: u32,
-    /// Standard deviation that it adds, and what it contributes: sums over channels, W/(m² sr).
+    /// Standard deviation that it adds, and what it contributes: sums over channels, W/(m² sr) times
+    /// [`LitSamples::scale`].
     error: f32,
     value: f32,
     /// What it contributes if its near end counts most.
@@ -92,25 +93,29 @@ impl<M: LaneModel> Cut<'_, M> {
     /// Finds the cut, and adds the samples of its open leaves; returns how many nodes were looked at, and the sum that it
     /// predicts.
     #[inline(always)]
-    fn choose(&mut self, sum: &mut Accumulator) -> (u64, f32) {
+    fn choose(&mut self, sum: &mut Accumulator) -> (u64, f64) {
         self.scratch.closed.clear();
         self.scratch.open.clear();
         self.scratch.frontier.push(1);
         let mut visited = self.sweep(Criterion::Wide);
         let mut added = self.add_open(0, sum);
-        let rough = self.scratch.closed.iter().fold(of_open(sum), |sum, c| sum + c.most);
-        let guess = self.accuracy * self.calibration.factor(rough);
+        let scale = self.samples.scale();
+        let unit = 1.0 / f64::from(scale);
+        let rough = self.scratch.closed.iter().fold(of_open(sum, scale), |sum, c| sum + c.most);
+        let guess = self.accuracy * self.calibration.factor(f64::from(rough) * unit);
+        // Below 0 it would open what is empty. It cannot be, unless the samples were changed while they are read.
+        let rough = if rough < 0.0 { 0.0 } else { rough };
         let mut threshold = START * guess * guess.sqrt() * rough;
         let mut predicted = 0.0;
         for _ in 0..ROUNDS {
             self.reopen(threshold);
             visited += self.sweep(Criterion::Above(threshold));
             added = self.add_open(added, sum);
-            let start = (of_open(sum), 0.0);
+            let start = (of_open(sum, scale), 0.0);
             let (total, variance) =
                 self.scratch.closed.iter().fold(start, |(t, v), c| (t + c.value, v + c.error * c.error));
-            predicted = total;
-            let excess = variance.sqrt() / (self.accuracy * self.calibration.factor(total) * total);
+            predicted = f64::from(total) * unit;
+            let excess = variance.sqrt() / (self.accuracy * self.calibration.factor(predicted) * total);
             // Not a number if nothing contributes.
             if excess <= GOOD_ENOUGH || excess.is_nan() {
                 break;
@@ -125,11 +130,11 @@ impl<M: LaneModel> Cut<'_, M> {
     /// Moves closed nodes above the threshold back to the frontier, as their children.
     #[inline(always)]
     fn reopen(&mut self, threshold: f32) {
-        let first_leaf = first_leaf(self.samples.tiles().len() as u64) as u32;
+        let leaves = Leaves::of(self.samples);
         let Scratch { frontier, closed, open, .. } = &mut *self.scratch;
         closed.retain(|node| {
             if node.error > threshold {
-                expand(node.id, first_leaf, frontier, open);
+                leaves.expand(node.id, frontier, open);
                 return false;
             }
             true
@@ -139,7 +144,7 @@ impl<M: LaneModel> Cut<'_, M> {
     /// Takes the frontier down until every node is closed or an open leaf.
     #[inline(always)]
     fn sweep(&mut self, criterion: Criterion) -> u64 {
-        let first_leaf = first_leaf(self.samples.tiles().len() as u64) as u32;
+        let (leaves, scale) = (Leaves::of(self.samples), self.samples.scale());
         let nodes = self.samples.nodes();
         let Scratch { frontier, closed, open, .. } = &mut *self.scratch;
         let mut visited = 0;
@@ -149,7 +154,7 @@ impl<M: LaneModel> Cut<'_, M> {
             ids[..count].copy_from_slice(&frontier[frontier.len() - count..]);
             frontier.truncate(frontier.len() - count);
             visited += count as u64;
-            let predicted = predict(self.radial, self.exit, nodes, &ids);
+            let predicted = predict(self.radial, self.exit, nodes, scale, &ids);
             for i in 0..count {
                 let (error, value, most) = (predicted.error[i], predicted.value[i], predicted.most[i]);
                 let node = Closed { id: ids[i], error, value, most };
@@ -158,7 +163,7 @@ impl<M: LaneModel> Cut<'_, M> {
                     Criterion::Above(threshold) => node.error > threshold,
                 };
                 if opens {
-                    expand(node.id, first_leaf, frontier, open);
+                    leaves.expand(node.id, frontier, open);
                 } else if nodes.get(ids[i] as usize).is_some_and(|n| n.flux > 0.0) {
                     closed.push(node);
                 }
@@ -216,19 +221,35 @@ impl<M: LaneModel> Cut<'_, M> {
     }
 }
 
-/// What open leaves contribute, the sum over channels. It depends on nothing that was picked.
+/// What open leaves contribute, the sum over channels, times the scale. It depends on nothing that was picked.
 #[inline(always)]
-fn of_open(sum: &Accumulator) -> f32 {
-    sum.total().element_sum() as f32
+fn of_open(sum: &Accumulator, scale: f32) -> f32 {
+    (sum.total().element_sum() * f64::from(scale)) as f32
 }
 
-/// Replaces a node by its children, or a leaf by its samples.
-#[inline(always)]
-fn expand(id: u32, first_leaf: u32, frontier: &mut Vec<u32>, open: &mut Vec<u32>) {
-    if id >= first_leaf {
-        open.push(id - first_leaf);
-    } else {
-        frontier.extend([2 * id, 2 * id + 1]);
+/// Where the leaves are in the tree.
+#[derive(Clone, Copy)]
+struct Leaves {
+    first: u32,
+    /// Those that have a tile.
+    tiles: u32,
+}
+
+impl Leaves {
+    #[inline(always)]
+    fn of(samples: &LitSamples) -> Leaves {
+        let tiles = samples.tiles().len();
+        Leaves { first: first_leaf(tiles as u64) as u32, tiles: tiles as u32 }
+    }
+
+    /// Replaces a node by its children, or a leaf by its samples.
+    #[inline(always)]
+    fn expand(self, id: u32, frontier: &mut Vec<u32>, open: &mut Vec<u32>) {
+        if id < self.first {
+            frontier.extend([2 * id, 2 * id + 1]);
+        } else if id - self.first < self.tiles {
+            open.push(id - self.first);
+        }
     }
 }
 
@@ -244,7 +265,7 @@ struct Predicted {
 
 /// Looks at sixteen nodes.
 #[inline(always)]
-fn predict(radial: &Radial, exit: &Exit, nodes: &[Node], ids: &[u32; LANES]) -> Predicted {
+fn predict(radial: &Radial, exit: &Exit, nodes: &[Node], scale: f32, ids: &[u32; LANES]) -> Predicted {
     let mut offset = [[0.0; LANES]; 3];
     let mut rest = [[0.0; LANES]; 5];
     for i in 0..LANES {
@@ -256,7 +277,7 @@ fn predict(radial: &Radial, exit: &Exit, nodes: &[Node], ids: &[u32; LANES]) -> 
         }
         rest[0][i] = node.spread;
         rest[1][i] = node.radius;
-        rest[2][i] = node.flux;
+        rest[2][i] = node.flux * scale;
         rest[3][i] = node.flux_deviation;
         rest[4][i] = node.turn;
     }

@@ -42,7 +42,7 @@ pub struct Sum {
     /// Nodes of the tree that were looked at.
     pub nodes: u64,
     /// A rough estimate of the radiance, summed over channels, that does not depend on what the cut picks; 0 of others.
-    pub predicted: f32,
+    pub predicted: f64,
 }
 
 impl Sum {

@@ -3,9 +3,13 @@
 use crate::support::{Bench, Limits, data};
 use formats::{
     atomic::Output,
-    cloud::{self, Cloud, Content, Meta},
+    cloud::{self, Cloud, Content, Group, Meta, Node, TILE},
 };
-use std::time::{Duration, Instant};
+use std::{
+    fs::OpenOptions,
+    io::{Seek, SeekFrom, Write},
+    time::{Duration, Instant},
+};
 
 /// A cloud that can be changed.
 #[derive(Clone)]
@@ -32,7 +36,7 @@ impl Parts {
 type Change = fn(&mut Parts);
 
 /// What a forger may write, and whether it must be refused.
-const FORGERIES: [(&str, bool, Change); 18] = [
+const FORGERIES: [(&str, bool, Change); 21] = [
     ("as it is", false, |_| ()),
     ("more samples than there are", true, |p| p.meta.materials[0].halves[0].samples += 1 << 40),
     ("all samples there could be", true, |p| p.meta.materials[0].halves[0].samples = u64::MAX),
@@ -44,11 +48,14 @@ const FORGERIES: [(&str, bool, Change); 18] = [
     ("no material", true, |p| p.meta.materials.clear()),
     ("another material", true, |p| p.meta.materials[0].index = u16::MAX),
     ("a name without end", true, |p| p.meta.materials[0].name = "x".repeat(900_000)),
-    ("negative area", false, |p| p.meta.materials[0].area_m2 = -1.0),
+    ("negative area", true, |p| p.meta.materials[0].area_m2 = -1.0),
+    ("a shard beyond the last", true, |p| p.meta.options.shard.index = 1),
+    ("a negative share", true, |p| p.meta.options.shares = vec![("Slab".into(), -0.5)]),
     ("nodes that are not numbers", true, |p| p.content.nodes.iter_mut().for_each(|n| n.radius = f32::NAN)),
     ("negative flux", true, |p| p.content.nodes.iter_mut().for_each(|n| n.flux = -1.0)),
     ("flux of nodes without samples", false, |p| p.content.nodes.iter_mut().for_each(|n| n.flux = 1e30)),
-    ("nodes without end", false, |p| p.content.nodes.iter_mut().for_each(|n| (n.spread, n.radius) = (1e38, 1e38))),
+    ("a negative size of nodes", true, |p| p.content.nodes.iter_mut().for_each(|n| n.spread = -1e-3)),
+    ("nodes without end", true, |p| p.content.nodes.iter_mut().for_each(|n| (n.spread, n.radius) = (1e38, 1e38))),
     ("samples far away", true, |p| p.content.tiles.iter_mut().flatten().for_each(|r| r.position = [3e38; 3])),
     ("samples of infinite light", true, |p| {
         p.content.tiles.iter_mut().flatten().for_each(|r| r.flux[0] = f32::INFINITY)
@@ -89,5 +96,83 @@ fn forged_clouds_do_no_harm() {
             assert!([Some(0), Some(3)].contains(&code), "{what}: {code:?} {message}");
         }
         assert!(start.elapsed() < Duration::from_secs(20), "{what} takes {:?}", start.elapsed());
+    }
+}
+
+/// Tiles of the first half of a large cloud: 64 MiB of them, and 8 MiB of nodes.
+const MANY_TILES: u64 = 1 << 17;
+
+/// A large cloud of the slab whose first half is the same tile over and over.
+fn large(bench: &Bench, scene: &str, name: &str) {
+    let mut parts = with_room(bench, scene);
+    let (tile, node) = (parts.content.tiles[0], parts.content.nodes[1]);
+    let halves = &mut parts.meta.materials[0].halves;
+    (halves[0].samples, halves[1]) = (MANY_TILES * TILE as u64, Group::default());
+    (halves[1].first_tile, halves[1].first_node) = (halves[0].tiles(), halves[0].nodes());
+    parts.content.samples = halves[0].samples;
+    parts.content.tiles = vec![tile; halves[0].tiles() as usize];
+    parts.content.nodes = vec![node; halves[0].nodes() as usize];
+    parts.meta.samples_drawn = 4 * parts.content.samples;
+    parts.write(bench, name);
+}
+
+/// The picture would take hours. Seen to catch: clouds of 64 MiB and more that are checked beside the work: the damaged
+/// tile is said when the picture is done, which these limits do not allow, and the negative flux ends it by a panic.
+#[test]
+fn damage_in_a_large_cloud_is_said_before_the_picture_is_made() {
+    let bench = Bench::new();
+    let slab = data("scenes/slab.glb");
+    large(&bench, &slab, "good.cloud");
+    let nodes = 2 * MANY_TILES * size_of::<Node>() as u64;
+    let length = std::fs::metadata(bench.path("good.cloud")).expect("is there").len();
+    let flux: Vec<u8> = (1..64).flat_map(|_| [[0; 4], (-1f32).to_le_bytes(), [0; 4], [0; 4]].concat()).collect();
+    let damages = [("tile", length - nodes - (20 << 20), vec![0x41]), ("node", length - nodes + 48, flux)];
+    for (section, at, bytes) in damages {
+        std::fs::copy(bench.path("good.cloud"), bench.path("bad.cloud")).expect("copies");
+        let mut file = OpenOptions::new().write(true).open(bench.path("bad.cloud")).expect("opens");
+        file.seek(SeekFrom::Start(at)).and_then(|_| file.write_all(&bytes)).expect("writes");
+        let size = ["--width", "1024", "--spp", "1024", "-o", "out.exr"];
+        let arguments = [&["bad.cloud", slab.as_str(), "--medium", "marble", "--quiet"][..], &size].concat();
+        let output = bench.run_within(Limits { kibibytes: 1 << 22, seconds: 5 }, "gather", &arguments);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{section}: {:?} {message}", output.status);
+        assert!(
+            message.contains("bad.cloud") && message.contains(&format!("section `{section}` is damaged")),
+            "{message}"
+        );
+        assert!(!bench.path("out.exr").exists() && message.lines().count() == 1, "{message}");
+    }
+}
+
+/// The same picture, however strong the sun is, as long as it is one of float32; and what is not known of it is the same
+/// share of it. Variances beyond float32 are its largest number.
+///
+/// Seen to catch: exit code 3 because of the variance, from 1e20 on.
+#[test]
+fn a_sun_of_any_strength_makes_the_same_picture() {
+    let bench = Bench::new();
+    let rendered = |strength: f64| {
+        let scene = bench.slab("sun.gltf", |root| {
+            root["extensions"]["KHR_lights_punctual"]["lights"][0]["intensity"] = strength.into();
+        });
+        bench.succeed("sample-surface", &[&scene, "-n", "500", "-o", "sun.cloud", "--quiet"]);
+        let size = ["--width", "6", "--spp", "4", "-o", "sun.exr", "--stats", "sun.json", "--preview", "sun.png"];
+        bench.succeed("gather", &[&["sun.cloud", &scene, "--medium", "marble", "--quiet"][..], &size].concat());
+        let error = bench.json("sun.json")["estimated_relative_error"].as_f64().expect("a number");
+        (bench.image("sun.exr"), error)
+    };
+    let (image, error) = rendered(1.0);
+    let channel = |image: &formats::Image, name: &str| image.channel(name).expect("a channel").to_vec();
+    for strength in [1e20, 1e25, 1e30] {
+        let (strong, same_error) = rendered(strength);
+        assert!((same_error / error - 1.0).abs() < 1e-3, "{strength:e}: {same_error} is not {error}");
+        for (a, b) in channel(&image, "G").into_iter().zip(channel(&strong, "G")) {
+            let ratio = f64::from(b) / f64::from(a) / strength;
+            assert!(a > 0.0 && (ratio - 1.0).abs() < 1e-4, "{strength:e}: {b:e} is not {a:e}");
+        }
+        for (a, b) in channel(&image, "variance.G").into_iter().zip(channel(&strong, "variance.G")) {
+            let expected = (f64::from(a) * strength * strength).min(f64::from(f32::MAX));
+            assert!((f64::from(b) / expected - 1.0).abs() < 0.05, "{strength:e}: {b:e} is not {expected:e}");
+        }
     }
 }

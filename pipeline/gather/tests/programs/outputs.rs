@@ -52,7 +52,7 @@ fn no_output_replaces_an_input() {
                 bench.program_refuses(name, &arguments, &[spelled, option, "would replace", "give another name"]);
             }
             assert_eq!(fs::read(bench.path(input)).expect("reads"), before, "{name}: {input}");
-            ["hard", "link"].map(|link| fs::remove_file(bench.path(link)).expect("removes"));
+            ["hard", "link"].iter().for_each(|link| fs::remove_file(bench.path(link)).expect("removes"));
         }
         let twice = [&words(line)[..], &["--output", "new", "--stats", "./new"]].concat();
         bench.program_refuses(name, &twice, &["--stats would replace --output"]);
