@@ -76,8 +76,8 @@ impl SceneArgs {
         Ok((scene, environment))
     }
 
-    /// Warns of what is not used on the surfaces of the translucent materials, and of their faults, or refuses those if
-    /// `--strict`.
+    /// Warns of what is not honoured of the scene, of what is not used on the surfaces of the translucent materials, and of
+    /// their faults, or refuses those if `--strict`.
     pub fn check_mesh(
         &self,
         scene: &mut Scene,
@@ -87,6 +87,7 @@ impl SceneArgs {
         common: &Common,
     ) -> Result<(), Failure> {
         let known = scene.warnings.len();
+        scene.warn_of_unhonoured(&translucent);
         scene.warn_of_colors(&translucent);
         scene.warnings[known..].iter().for_each(|w| common.warn(format_args!("{}: {w}", path.display())));
         let line = format!("{}: the translucent surfaces have {health}", path.display());

@@ -67,10 +67,12 @@ pub fn material_table(scene: &Scene) -> Result<String, Failure> {
         counts[usize::from(t.material)] += 1;
         areas[usize::from(t.material)] += scene.mesh.area(k);
     }
-    let (translucent, _) = scene.translucent();
+    let (lost, translucent) =
+        (scene.lost_volumes(), scene.translucent().map_or(Vec::new(), |(materials, _)| materials));
     for (index, material) in scene.materials.iter().enumerate() {
-        let bounds = u16::try_from(index).is_ok_and(|k| translucent.contains(&k));
-        let kind = match (bounds, material.emits()) {
+        let is_in = |list: &[u16]| u16::try_from(index).is_ok_and(|k| list.contains(&k));
+        let kind = match (is_in(&translucent), material.emits()) {
+            _ if is_in(&lost) => "translucent, no triangle left",
             (_, _) if counts[index] == 0 => "unused",
             (true, true) => "translucent, emits",
             (true, false) => "translucent",

@@ -1,6 +1,10 @@
 //! What can be wrong with a scene or a view.
 
-use std::path::PathBuf;
+use crate::{
+    Scene,
+    unhonoured::{quoted, rest},
+};
+use std::{collections::BTreeMap, path::PathBuf};
 
 /// A scene or view that cannot be used. The message names the file and the field and, where there is one, the way out.
 #[derive(Debug, thiserror::Error)]
@@ -9,4 +13,33 @@ pub enum SceneError {
     Read { path: PathBuf, source: std::io::Error },
     #[error("{}: {what}", path.display())]
     Invalid { path: PathBuf, what: String },
+}
+
+/// No surface that the file marks as a volume has a triangle left. The message names them, why, and the way out.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("no surface that the file marks as a volume is left ({names}): {why}, or say --translucent NAME")]
+pub struct LostVolumes {
+    names: String,
+    why: String,
+}
+
+impl LostVolumes {
+    /// Of these materials, one at least.
+    pub(crate) fn new(scene: &Scene, lost: &[u16]) -> LostVolumes {
+        const NAMED: usize = 3;
+        let names: Vec<String> =
+            lost.iter().take(NAMED).map(|k| quoted(&scene.materials[usize::from(*k)].name)).collect();
+        let names = format!("{}{}", names.join(", "), rest(lost.len() - names.len()));
+        let sum = |counts: &BTreeMap<u16, u64>| lost.iter().filter_map(|k| counts.get(k)).sum::<u64>();
+        let (count, rounded) = (sum(&scene.degenerate_triangles), sum(&scene.rounded_triangles));
+        let why = match (count, rounded) {
+            (0, _) => "it has no triangles; give it some".into(),
+            (_, 0) => format!("all {count} triangles have no area (scale 0?); repair the mesh and export again"),
+            _ => format!(
+                "{rounded} of {count} triangles have no area once positions are rounded to float32 about the middle of \
+                 so wide a scene; leave out what is far away"
+            ),
+        };
+        LostVolumes { names, why }
+    }
 }

@@ -2,7 +2,7 @@
 
 use crate::{Scene, mesh::Mesh};
 use glam::{DVec3, Vec3};
-use std::fmt;
+use std::{collections::BTreeMap, fmt};
 
 /// Faults of the surfaces that bound media. Vertices at the same place are one, whatever their normals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -13,7 +13,8 @@ pub struct Health {
     pub flipped_edges: u64,
     /// Closed parts that are wound inwards; cavities are meant to be.
     pub inward_parts: u64,
-    /// Triangles that are there already, wound either way: each is one more surface, and lets in light of its own.
+    /// Triangles that are there already, wound either way. Those of one material were left out; of two, each is one more
+    /// surface, and lets in light of its own.
     pub duplicate_triangles: u64,
     /// Triangles without area; they were left out.
     pub degenerate_triangles: u64,
@@ -55,9 +56,13 @@ impl fmt::Display for Health {
 impl Scene {
     /// Examines the surfaces of the materials that `belong`, as [`Mesh::health`] does, and counts what was left out.
     pub fn health(&self, belong: impl Fn(u16) -> bool) -> Health {
-        let degenerate = self.degenerate_triangles.iter().filter(|(material, _)| belong(**material));
-        let degenerate_triangles = degenerate.map(|(_, count)| count).sum();
-        Health { degenerate_triangles, ..self.mesh.health(&belong) }
+        let left_out = |counts: &BTreeMap<u16, u64>| -> u64 {
+            counts.iter().filter(|(material, _)| belong(**material)).map(|(_, count)| count).sum()
+        };
+        let mut health = self.mesh.health(&belong);
+        health.duplicate_triangles += left_out(&self.duplicate_triangles);
+        health.degenerate_triangles = left_out(&self.degenerate_triangles);
+        health
     }
 }
 

@@ -14,11 +14,12 @@ pub mod random;
 mod rays;
 pub mod sequence;
 pub mod texture;
+mod unhonoured;
 mod view;
 mod volume;
 pub mod warp;
 
-pub use error::SceneError;
+pub use error::{LostVolumes, SceneError};
 pub use glam::{DVec3, DVec4, Vec3};
 pub use health::Health;
 pub use import::{ImportOptions, LightUnit};
@@ -28,7 +29,10 @@ pub use rays::{Hit, Rays};
 pub use view::{Camera, Projection, View, ViewFile};
 pub use volume::{Draft, Scatter, Volume};
 
-use std::{collections::BTreeMap, path::PathBuf};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::PathBuf,
+};
 
 /// An imported scene, checked: indices in range, every number finite, no triangle without area.
 pub struct Scene {
@@ -44,21 +48,42 @@ pub struct Scene {
     pub warnings: Vec<String>,
     /// Triangles without area, left out: how many of which material.
     pub degenerate_triangles: BTreeMap<u16, u64>,
+    /// Those of them that have area until positions are rounded to float32.
+    pub rounded_triangles: BTreeMap<u16, u64>,
+    /// Triangles at the place of another of their material, left out: how many of which material.
+    pub duplicate_triangles: BTreeMap<u16, u64>,
+    /// Materials that a primitive in the scene names, though it may have no triangle left.
+    claimed: BTreeSet<u16>,
+    /// What the file asks for and the picture does not show.
+    unhonoured: Vec<unhonoured::Unhonoured>,
     /// Identity of the lights as the file gives them.
     pub light_digest: [u8; 32],
 }
 
 impl Scene {
     /// Materials whose surfaces bound media if nobody says which: those the file marks as volumes, or else all that do
-    /// not emit; those only that cover a triangle, by index. True with them if the file marks none.
-    pub fn translucent(&self) -> (Vec<u16>, bool) {
+    /// not emit; those only that cover a triangle, by index. True with them if the file marks none. A file whose marked
+    /// surfaces are lost marks some nonetheless: that is a fault.
+    pub fn translucent(&self) -> Result<(Vec<u16>, bool), LostVolumes> {
         let mut used = vec![false; self.materials.len()];
         self.mesh.triangles.iter().for_each(|t| used[t.material as usize] = true);
         let select = |accept: fn(&Material) -> bool| -> Vec<u16> {
             (0..used.len()).filter(|k| used[*k] && accept(&self.materials[*k])).map(|k| k as u16).collect()
         };
         let marked = select(|m| m.volume);
-        if marked.is_empty() { (select(|m| !m.emits()), true) } else { (marked, false) }
+        if !marked.is_empty() {
+            return Ok((marked, false));
+        }
+        let lost = self.lost_volumes();
+        if lost.is_empty() { Ok((select(|m| !m.emits()), true)) } else { Err(LostVolumes::new(self, &lost)) }
+    }
+
+    /// Materials that the file marks as volumes and places, and that cover no triangle, by index.
+    pub fn lost_volumes(&self) -> Vec<u16> {
+        let mut lost = self.claimed.clone();
+        lost.retain(|k| self.materials.get(usize::from(*k)).is_some_and(|m| m.volume));
+        self.mesh.triangles.iter().for_each(|t| _ = lost.remove(&t.material));
+        lost.into_iter().collect()
     }
 
     /// Adds light from all around; a mere colour is a constant radiance, W/(m² sr).

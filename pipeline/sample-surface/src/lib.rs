@@ -70,6 +70,8 @@ pub enum SampleError {
     ShareSum { sum: f64, wanted: &'static str },
     #[error("the scene has no light: give it one, or light it with --environment")]
     NoLight,
+    #[error(transparent)]
+    Lost(#[from] scene::LostVolumes),
     #[error("no surface to sample: all of them emit; name one with --translucent")]
     NoSurface,
     #[error("{} samples have an error of {error:.2e}; the target needs about {}, there is room for {}", count(*samples), count_up(*next as f64), count(*most))]
@@ -147,7 +149,7 @@ fn translucent_materials(scene: &Scene, names: &[String]) -> Result<(Vec<u16>, b
         let named: BTreeSet<u16> = named.collect::<Result<_, _>>()?;
         return Ok((named.into_iter().collect(), false));
     }
-    match scene.translucent() {
+    match scene.translucent()? {
         (none, _) if none.is_empty() => Err(SampleError::NoSurface),
         some => Ok(some),
     }

@@ -5,6 +5,7 @@ use super::{
     files::{self, Files},
     get,
     nodes::NodeTransform,
+    survey::Survey,
 };
 use crate::SceneError;
 use gltf::json::{self, Index, buffer::View};
@@ -20,6 +21,8 @@ pub(super) struct Document {
     pub transforms: Vec<NodeTransform>,
     /// Bytes of the file or of its longest buffer.
     pub longest: usize,
+    /// What of it is not honoured.
+    pub survey: Survey,
     bytes: Vec<u8>,
     buffers: Vec<Buffer>,
 }
@@ -61,6 +64,7 @@ impl Document {
         let not_gltf = |e: json::Error| format!("not a glTF file (.glb or .gltf): {e}");
         let root: json::Root = json::deserialize::from_slice(text).map_err(not_gltf)?;
         let transforms: Transforms = json::deserialize::from_slice(text).map_err(not_gltf)?;
+        let survey: Survey = json::deserialize::from_slice(text).map_err(not_gltf)?;
         check_version(&root.asset)?;
         let mut files = Files::new(path);
         let mut buffers = Vec::with_capacity(root.buffers.len());
@@ -69,7 +73,7 @@ impl Document {
         }
         let longest = buffers.iter().map(Buffer::len).fold(bytes.len(), usize::max);
         let files = RefCell::new(files);
-        Ok(Document { files, root, transforms: transforms.nodes, longest, bytes, buffers })
+        Ok(Document { files, root, transforms: transforms.nodes, survey, longest, bytes, buffers })
     }
 
     /// The bytes of a buffer, as many as its `byteLength` says.

@@ -1,6 +1,7 @@
 //! What a file asks for and we do not do: refused by name where the picture would be wrong, else a warning.
 
-use super::{Fault, nodes::Placed};
+use super::{Fault, container::Document, honoured, nodes::Placed};
+use crate::unhonoured::{Holder, Unhonoured, quoted, rest};
 use gltf::json;
 use std::collections::BTreeSet;
 
@@ -26,8 +27,9 @@ const GEOMETRY: &[(&str, &str)] = &[
     ("KHR_node_visibility", "delete what is hidden and export again"),
 ];
 
-/// Refuses what is required and unknown; returns warnings.
-pub(super) fn check(root: &json::Root) -> Result<Vec<String>, Fault> {
+/// Refuses what is required and unknown, and what is used and would change what is there, declared or not.
+pub(super) fn check(document: &Document) -> Result<(), Fault> {
+    let root = &document.root;
     for name in &root.extensions_required {
         if !SUPPORTED.contains(&name.as_str()) {
             let hint = GEOMETRY.iter().find(|(n, _)| n == name).map_or("export again without it", |(_, hint)| hint);
@@ -35,15 +37,32 @@ pub(super) fn check(root: &json::Root) -> Result<Vec<String>, Fault> {
         }
     }
     for (name, hint) in GEOMETRY {
-        if root.extensions_used.iter().any(|n| n == name) {
+        if root.extensions_used.iter().chain(&document.survey.extensions).any(|n| n == name) {
             return Err(format!("extensionsUsed: {name} is not supported; {hint}"));
         }
     }
-    let unknown: BTreeSet<&str> = root.extensions_used.iter().map(String::as_str).collect();
-    let unknown: Vec<&str> = unknown.into_iter().filter(|n| !SUPPORTED.contains(n)).collect();
-    let warning = || format!("of its extensions, these are not used: {}", unknown.join(", "));
-    Ok((!unknown.is_empty()).then(warning).into_iter().collect())
+    Ok(())
 }
+
+/// Unknown extensions that the file declares without a trace of them: nobody can tell what they are to change. Others
+/// are named where they are.
+pub(super) fn undeclared_effects(document: &Document) -> Vec<Unhonoured> {
+    let declared: BTreeSet<&String> = document.root.extensions_used.iter().collect();
+    let means_something = |name: &str| {
+        let place = honoured::look_up(honoured::DOCUMENT, &format!("extensions.{name}"));
+        !SUPPORTED.contains(&name) && place == honoured::Place::Unknown
+    };
+    let unseen = declared.into_iter().filter(|name| !document.survey.extensions.contains(*name));
+    let named = unseen.filter(|name| means_something(name)).map(|name| Unhonoured {
+        property: "extensionsUsed[]".into(),
+        holder: Some(Holder::Named(name.clone())),
+        on: [Some(&[]); 2],
+    });
+    named.collect()
+}
+
+/// So many animations are named.
+const NAMED: usize = 3;
 
 /// Refuses poses that are not in the mesh itself: skins, morph targets, animations of anything above a mesh.
 pub(super) fn check_nodes(root: &json::Root, nodes: &[Placed], warnings: &mut Vec<String>) -> Result<(), Fault> {
@@ -63,13 +82,19 @@ pub(super) fn check_nodes(root: &json::Root, nodes: &[Placed], warnings: &mut Ve
         }
     }
     let moves_a_mesh = above_meshes(root);
+    let mut unused = Vec::new();
     for (k, animation) in root.animations.iter().enumerate() {
         let name = animation.name.clone().unwrap_or_else(|| format!("animation{k}"));
         let targets = animation.channels.iter().map(|c| c.target.node.value());
         if let Some(node) = targets.into_iter().find(|n| moves_a_mesh.get(*n) == Some(&true)) {
             return Err(format!("animation `{name}` moves a mesh (node {node}), which is not supported; {BAKE}"));
         }
-        warnings.push(format!("animation `{name}` is not used: cameras and lights stay at rest"));
+        unused.push(name);
+    }
+    if !unused.is_empty() {
+        let first: Vec<String> = unused.iter().take(NAMED).map(|name| quoted(name)).collect();
+        let (names, more) = (first.join(", "), rest(unused.len() - first.len()));
+        warnings.push(format!("animations are not used, cameras and lights stay at rest: {names}{more}"));
     }
     Ok(())
 }

@@ -36,6 +36,8 @@ pub(super) struct Geometry {
     pub origin: DVec3,
     /// Triangles without area, left out: how many of which material.
     pub degenerate: BTreeMap<u16, u64>,
+    /// Those of them that have area until positions are rounded to float32.
+    pub rounded: BTreeMap<u16, u64>,
 }
 
 /// Joins all instances, in their order.
@@ -176,7 +178,7 @@ impl Builder {
             return Err("no triangles: nothing to light or to see".into());
         }
         let count = self.triangles.len();
-        let mut degenerate = BTreeMap::new();
+        let (mut degenerate, mut rounded) = (BTreeMap::new(), BTreeMap::new());
         drop_degenerate(
             &mut self.triangles,
             |corners| area_by_itself(corners.map(|i| self.positions[i as usize])),
@@ -190,13 +192,16 @@ impl Builder {
             let origin = self.centre()?;
             let (positions, before) = (self.about(origin)?, self.triangles.len());
             let placed = |corners: [u32; 3]| area(corners.map(|i| positions[i as usize].as_dvec3()));
-            drop_degenerate(&mut self.triangles, placed, &mut degenerate);
+            drop_degenerate(&mut self.triangles, placed, &mut rounded);
             if self.triangles.len() == before {
                 break (origin, positions);
             }
         };
+        for (material, count) in &rounded {
+            *degenerate.entry(*material).or_default() += count;
+        }
         let Builder { normals, triangles, coordinates, colors, .. } = self;
-        Ok(Geometry { mesh: Mesh { positions, normals, triangles, coordinates, colors }, origin, degenerate })
+        Ok(Geometry { mesh: Mesh { positions, normals, triangles, coordinates, colors }, origin, degenerate, rounded })
     }
 }
 

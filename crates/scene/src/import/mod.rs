@@ -6,26 +6,40 @@
 
 mod accessor;
 mod cameras;
+mod clipping;
+mod concerns;
 mod container;
+mod duplicates;
 mod features;
 pub(crate) mod files;
 mod geometry;
+mod honoured;
 mod jpeg;
 mod lights;
 mod materials;
 mod nodes;
 mod number;
 mod primitive;
+mod survey;
 mod textures;
 mod volumes;
 
-use crate::{Material, Scene, SceneError, light::Light};
+use crate::{
+    Material, Scene, SceneError,
+    light::Light,
+    mesh::Mesh,
+    unhonoured::{quoted, rest},
+};
+use concerns::Drawn;
 use container::Document;
 use geometry::{Geometry, Instance};
 use gltf::json::{Index, Root};
 use nodes::Placed;
 use primitive::MeshParts;
-use std::path::Path;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
 
 /// How to read the numbers of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,25 +85,40 @@ impl Scene {
 
 fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Fault> {
     let root = &document.root;
-    let mut warnings = features::check(root)?;
+    let mut warnings = Vec::new();
+    features::check(document)?;
     let nodes = nodes::place(document, options.metres_per_unit)?;
     features::check_nodes(root, &nodes, &mut warnings)?;
     let mut materials = materials::read(document, options, &mut warnings)?;
-    let Geometry { mesh, origin, degenerate } = geometry(document, &nodes, &mut warnings)?;
+    let Geometry { mut mesh, origin, degenerate, rounded } = geometry(document, &nodes, &mut warnings)?;
     if mesh.triangles.iter().any(|t| usize::from(t.material) == materials.len()) {
         materials.push(materials::default());
     }
+    tell_lost(&mesh, &materials, &degenerate, &mut warnings);
+    let duplicates = duplicates::drop_duplicates(&mut mesh, &materials);
+    if !duplicates.is_empty() {
+        let count: u64 = duplicates.values().sum();
+        warnings.push(format!("{count} triangles lie exactly on others of their material and are left out"));
+    }
     let mut lights = lights::punctual(root, &nodes, options, origin, &mut warnings)?;
     lights.add_emitters(&mesh, &materials);
+    let metres_per_unit = options.metres_per_unit;
+    let cameras = cameras::read(root, &nodes, metres_per_unit)?;
+    let drawn = Drawn { mesh: &mesh, nodes: &nodes, cameras: &cameras, origin, metres_per_unit };
+    let unhonoured = [features::undeclared_effects(document), concerns::of(document, &drawn)].concat();
     Ok(Scene {
         files: document.files.borrow().read().to_owned(),
+        claimed: claimed(root, &nodes),
         mesh,
         materials,
         lights: lights.list,
-        cameras: cameras::read(root, &nodes, options.metres_per_unit)?,
+        cameras,
         origin,
         warnings,
         degenerate_triangles: degenerate,
+        rounded_triangles: rounded,
+        duplicate_triangles: duplicates,
+        unhonoured,
         light_digest: *lights.digest.finalize().as_bytes(),
     })
 }
@@ -111,11 +140,33 @@ fn geometry(document: &Document, nodes: &[Placed], warnings: &mut Vec<String>) -
     let with_parts = |(k, placed): (usize, _)| Some(Instance { parts: parts[k].as_ref()?, placed });
     let instances: Vec<Instance> = instances.into_iter().filter_map(with_parts).collect();
     let geometry = geometry::join(&instances)?;
-    let degenerate: u64 = geometry.degenerate.values().sum();
-    if degenerate > 0 {
-        warnings.push(format!("{degenerate} triangles without area are left out"));
-    }
     Ok(geometry)
+}
+
+/// Says how many triangles had no area, and which materials have none left.
+fn tell_lost(mesh: &Mesh, materials: &[Material], degenerate: &BTreeMap<u16, u64>, warnings: &mut Vec<String>) {
+    const NAMED: usize = 3;
+    let count: u64 = degenerate.values().sum();
+    if count == 0 {
+        return;
+    }
+    let mut lost: BTreeSet<u16> = degenerate.keys().copied().collect();
+    mesh.triangles.iter().for_each(|t| _ = lost.remove(&t.material));
+    let names: Vec<String> = lost
+        .iter()
+        .take(NAMED)
+        .map(|k| quoted(materials.get(usize::from(*k)).map_or("default", |m| &m.name)))
+        .collect();
+    let all = if names.is_empty() { "" } else { ", all of " };
+    let (names, more) = (names.join(", "), rest(lost.len().saturating_sub(NAMED)));
+    warnings.push(format!("{count} triangles without area are left out{all}{names}{more}"));
+}
+
+/// Materials of the primitives that the scene places, whatever becomes of their triangles.
+fn claimed(root: &Root, nodes: &[Placed]) -> BTreeSet<u16> {
+    let meshes: BTreeSet<usize> = nodes.iter().filter_map(|placed| Some(placed.node.mesh.as_ref()?.value())).collect();
+    let primitives = meshes.into_iter().filter_map(|k| root.meshes.get(k)).flat_map(|mesh| &mesh.primitives);
+    primitives.filter_map(|p| u16::try_from(p.material.as_ref()?.value()).ok()).collect()
 }
 
 /// An element of a list of the file, by an index that the file gives.

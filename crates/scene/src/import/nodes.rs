@@ -17,6 +17,8 @@ pub(super) struct NodeTransform {
 /// A node placed in the world.
 pub(super) struct Placed<'a> {
     pub node: &'a json::Node,
+    /// In the file's list.
+    pub index: usize,
     pub name: String,
     /// To metres.
     pub transform: DMat4,
@@ -73,7 +75,7 @@ pub(super) fn place(document: &Document, metres_per_unit: f64) -> Result<Vec<Pla
             return Err(format!("node `{name}`: its transform is not finite"));
         }
         stack.extend(node.children.iter().flatten().rev().map(|child| (child.value(), transform)));
-        placed.push(Placed { node, name, transform });
+        placed.push(Placed { node, index, name, transform });
     }
     Ok(placed)
 }

@@ -22,10 +22,8 @@ const DRAFTS: [Draft; 2] = [Draft::Scatter, Draft::VolumeScatter];
 struct Fields {
     multiscatter_color_factor: Option<[f64; 3]>,
     multiscatter_color: Option<[f64; 3]>,
-    multiscatter_color_texture: Option<Value>,
     /// Of the newer draft only.
     scatter_strength_factor: Option<f64>,
-    scatter_strength_texture: Option<Value>,
     #[serde(default)]
     scatter_anisotropy: f64,
 }
@@ -75,7 +73,9 @@ pub(super) fn read(
         Some((draft, value)) => scatter(draft, value, &mut note).map_err(|e| format!("{}: {e}", draft.extension()))?,
         None => None,
     };
-    tell_unused(m, e, draft.is_some(), &mut note);
+    if draft.is_some() && volume.thickness_factor.0 <= 0.0 {
+        note("thicknessFactor is 0, yet it is a solid".into());
+    }
     let ior = e.ior.as_ref().map_or(IndexOfRefraction::default().0, |i| i.ior.0);
     // The decimal that the file has, not the float32 that was made of it.
     let ior = ior.to_string().parse().unwrap_or(f64::from(ior));
@@ -113,9 +113,6 @@ fn scatter(draft: Draft, value: &Value, note: &mut impl FnMut(String)) -> Result
     if !(asymmetry > -1.0 && asymmetry < 1.0) {
         return Err(format!("scatterAnisotropy {asymmetry} must lie between -1 and 1"));
     }
-    if fields.multiscatter_color_texture.is_some() || fields.scatter_strength_texture.is_some() {
-        note(format!("the textures of {} are not used, their factors are", draft.extension()));
-    }
     let color = color * strength;
     if color == DVec3::ZERO {
         let field = if strength == 0.0 { "scatterStrengthFactor" } else { "multiscatterColorFactor" };
@@ -128,21 +125,4 @@ fn scatter(draft: Draft, value: &Value, note: &mut impl FnMut(String)) -> Result
 fn check_color(field: &str, color: DVec3) -> Result<(), Fault> {
     let good = color.to_array().iter().all(|c| (0.0..=1.0).contains(c));
     if good { Ok(()) } else { Err(format!("{field} {color} must lie in [0, 1]")) }
-}
-
-/// What the picture does not show of a material whose medium is known.
-fn tell_unused(m: &json::Material, e: &material::Material, scatters: bool, note: &mut impl FnMut(String)) {
-    let volume = e.volume.as_ref();
-    let transmission = e.transmission.as_ref();
-    let base = &m.pbr_metallic_roughness.base_color_factor.0;
-    let factor = transmission.map_or(1.0, |t| t.transmission_factor.0);
-    let textured = volume.is_some_and(|v| v.thickness_texture.is_some())
-        || transmission.is_some_and(|t| t.transmission_texture.is_some());
-    let unused = [
-        (scatters && volume.is_some_and(|v| v.thickness_factor.0 <= 0.0), "thicknessFactor is 0, yet it is a solid"),
-        (factor != 1.0, "transmissionFactor is taken as 1"),
-        (textured, "the textures of transmission and thickness are not used"),
-        (base[..3] != [1.0; 3], "baseColorFactor does not tint what enters the medium"),
-    ];
-    unused.iter().filter(|u| u.0).for_each(|(_, what)| note((*what).to_owned()));
 }

@@ -190,7 +190,10 @@ fn vertex_colours_of_every_kind() {
         let mut asset = Asset::new();
         let factor = json!({ "baseColorFactor": [0.5, 1.0, 1.0, 1.0] });
         let mut primitive = square(&mut asset, json!({ "name": "Paint", "pbrMetallicRoughness": factor }));
-        let plain = primitive.clone();
+        // Of another material, or it would be a copy.
+        let mut plain = primitive.clone();
+        let other = asset.json["materials"][0].clone();
+        plain["material"] = json!(asset.push("materials", other));
         let colors = asset.accessor(bytes, kind, component, 4);
         asset.json["accessors"][colors]["normalized"] = json!(component != FLOAT);
         primitive["attributes"]["COLOR_0"] = json!(colors);

@@ -1,6 +1,6 @@
 //! What a file says of the medium below a surface: both drafts, both spellings, every default.
 
-use crate::asset::{OPTIONS, fault, import_bytes, tetrahedron};
+use crate::asset::{Asset, OPTIONS, fault, import_bytes, tetrahedron};
 use scene::{DVec3, Draft, ImportOptions, Material, Scatter, Volume};
 use serde_json::{Value, json};
 
@@ -101,7 +101,8 @@ fn what_is_missing_or_taken_otherwise_is_said() {
             json!({ "KHR_materials_volume": volume, "KHR_materials_transmission": transmission, extension: scatter });
         asset.set("/materials/0/extensions", extensions);
         asset.set("/materials/0/pbrMetallicRoughness", json!({ "baseColorFactor": base }));
-        let scene = asset.import().expect("a good file");
+        let mut scene = asset.import().expect("a good file");
+        scene.warn_of_unhonoured(|_| true);
         (scene.materials[0].medium.clone(), scene.warnings.join("; "))
     };
     let (white, older) = (json!([1, 1, 1, 1]), "KHR_materials_volume_scatter");
@@ -111,11 +112,13 @@ fn what_is_missing_or_taken_otherwise_is_said() {
     let thin = json!({ "attenuationDistance": 2, "attenuationColor": [0.5, 0, 1] });
     let (medium, text) = said(json!([1, 0.5, 1, 1]), thin, 0.5, older, color());
     assert_eq!(medium.map(|m| (m.extinction.y * 2.0 * 1e6).round()), Some(9_210_340.0), "-ln(1e-4)");
-    for word in ["no less than 0.0001", "thicknessFactor", "transmissionFactor is taken as 1", "tint"] {
+    for word in
+        ["no less than 0.0001", "thicknessFactor is 0", "transmissionFactor taken as 1", "baseColorFactor taken as 1"]
+    {
         assert!(text.contains(word), "{word}: {text}");
     }
     let textured = json!({ "multiscatterColorFactor": [1, 1, 1], "multiscatterColorTexture": { "index": 0 } });
-    assert!(said(white.clone(), volume(), 1.0, older, textured).1.contains("textures"));
+    assert!(said(white.clone(), volume(), 1.0, older, textured).1.contains("multiscatterColorTexture"));
     let (none, text) = material(json!({ older: color() }));
     assert!(none.medium.is_none() && text[0].contains("without KHR_materials_volume:"), "{text:?}");
     let (newer, text) = material(json!({
@@ -165,4 +168,56 @@ fn numbers_out_of_range_are_faults() {
     ] {
         assert!(text.contains("`wax`") && text.contains(word), "{word}: {text}");
     }
+}
+
+/// A body of a tenth of a millimetre, marked as a volume, and a floor that is not; both on nodes of their own.
+fn marked_body_and_floor() -> Asset {
+    let mut asset = tetrahedron();
+    asset.set("/materials/0/extensions", json!({ "KHR_materials_volume": { "thicknessFactor": 1 } }));
+    asset.set("/nodes/0/scale", json!([1e-4, 1e-4, 1e-4]));
+    let floor = asset.push("materials", json!({ "name": "floor" }));
+    let mesh = asset.mesh(json!({ "attributes": { "POSITION": 0 }, "indices": 2, "material": floor }));
+    asset.node(json!({ "name": "ground", "mesh": mesh }));
+    asset
+}
+
+/// The file says what is translucent, whatever is left of it: where nothing is, nothing else becomes translucent.
+///
+/// Seen to fail: the floor as the translucent surface of each of these files.
+#[test]
+fn marked_surfaces_that_are_lost_make_no_other_translucent() {
+    let whole = marked_body_and_floor().import().expect("a good file");
+    assert_eq!((whole.translucent(), whole.lost_volumes()), (Ok((vec![0], false)), vec![]));
+    let message = |pointer: &str, value: Value| {
+        let mut asset = marked_body_and_floor();
+        asset.set(pointer, value);
+        let scene = asset.import().expect("a good file");
+        assert_eq!(scene.lost_volumes(), [0], "{pointer}");
+        let message = scene.translucent().expect_err("it is a fault").to_string();
+        assert!(message.contains("`wax`") && message.contains("--translucent"), "{message}");
+        message
+    };
+    let far = message("/nodes/3/translation", json!([1e4, 1e4, 1e4]));
+    assert!(far.contains("4 of 4 triangles") && far.contains("rounded to float32"), "{far}");
+    let flat = message("/nodes/0/scale", json!([0, 0, 0]));
+    assert!(flat.contains("all 4 triangles have no area"), "{flat}");
+    for (field, value) in [("mode", json!(0)), ("mode", json!(3))] {
+        let none = message(&format!("/meshes/0/primitives/0/{field}"), value);
+        assert!(none.contains("no triangles"), "{none}");
+    }
+}
+
+/// What the scene does not place says nothing, and of several marked materials one that is left will do.
+#[test]
+fn other_marked_surfaces_are_left_as_they_are() {
+    let mut unplaced = marked_body_and_floor();
+    unplaced.set("/scenes/0/nodes", json!([1, 3]));
+    let scene = unplaced.import().expect("a good file");
+    assert_eq!((scene.translucent(), scene.lost_volumes()), (Ok((vec![1], true)), vec![]));
+    let mut two = marked_body_and_floor();
+    two.set("/materials/1/extensions", json!({ "KHR_materials_volume": { "thicknessFactor": 1 } }));
+    two.set("/nodes/0/scale", json!([0, 0, 0]));
+    let scene = two.import().expect("a good file");
+    assert_eq!((scene.translucent(), scene.lost_volumes()), (Ok((vec![1], false)), vec![0]));
+    assert!(scene.warnings.iter().any(|w| w.ends_with("left out, all of `wax`")), "{:?}", scene.warnings);
 }

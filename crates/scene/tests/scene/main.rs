@@ -1,6 +1,7 @@
 //! Import, rays and lights from outside the crate.
 
 mod asset;
+mod copies;
 mod cutouts;
 mod environment;
 mod exactness;
@@ -18,3 +19,4 @@ mod many_lights;
 mod meshes;
 mod rays;
 mod shadows;
+mod unhonoured;

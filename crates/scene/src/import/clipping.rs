@@ -1,0 +1,89 @@
+//! What a camera's near and far planes would cut off: they are not honoured, which matters only then.
+
+use crate::{Camera, Projection, mesh::Mesh};
+use glam::DVec3;
+
+/// So many triangles are asked for all cameras; of what is left, a plane is taken to cut.
+pub(super) const MOST_TESTS: usize = 1 << 26;
+
+/// What clipping a triangle costs, in triangles that are only asked for their depth.
+const COST_OF_CLIPPING: usize = 16;
+
+/// Whether something is seen nearer than the first, and farther than the second plane, m. `bounds` are the mesh's, and
+/// `room` is how many triangles may still be asked.
+pub(super) fn cuts(
+    (mesh, bounds): (&Mesh, (DVec3, DVec3)),
+    origin: DVec3,
+    camera: &Camera,
+    planes: [f64; 2],
+    room: &mut usize,
+) -> [bool; 2] {
+    let eye = camera.position - origin;
+    let depth = |p: DVec3| (p - eye).dot(camera.forward);
+    let (low, high) = bounds;
+    let corners = (0..8).map(|k| depth(DVec3::select(glam::BVec3::new(k & 1 > 0, k & 2 > 0, k & 4 > 0), high, low)));
+    let (nearest, farthest) = corners.fold((f64::INFINITY, 0.0f64), |(n, f), d| (n.min(d), f.max(d)));
+    let mut open = [nearest < planes[0] && planes[0] > 0.0, farthest > planes[1]];
+    let mut cut = [false; 2];
+    for k in 0..mesh.triangles.len() {
+        if open == [false; 2] {
+            return cut;
+        }
+        let Some(left) = room.checked_sub(1) else { return [cut[0] || open[0], cut[1] || open[1]] };
+        *room = left;
+        let corners = mesh.corners(k);
+        let depths = corners.map(depth);
+        for side in 0..2 {
+            let beyond = |d: f64| if side == 0 { d > 0.0 && d < planes[0] } else { d > planes[1] };
+            let spans = side == 0 && depths.iter().any(|d| *d < planes[0]) && depths.iter().any(|d| *d > 0.0);
+            if !(open[side] && (spans || depths.into_iter().any(beyond))) {
+                continue;
+            }
+            *room = room.saturating_sub(COST_OF_CLIPPING);
+            if is_seen(camera, corners.map(|p| p - eye), planes, side) {
+                (open[side], cut[side]) = (false, true);
+            }
+        }
+    }
+    cut
+}
+
+/// Some of the triangle lies within the frame, and before the near or behind the far plane.
+fn is_seen(camera: &Camera, corners: [DVec3; 3], [near, far]: [f64; 2], side: usize) -> bool {
+    let local = |p: DVec3| DVec3::new(p.dot(camera.right), p.dot(camera.up), p.dot(camera.forward));
+    let mut polygon = corners.map(local).to_vec();
+    // Half the frame's width and height: what they are at depth 0, and what they gain with depth.
+    let (fixed, slope) = match camera.projection {
+        Projection::Perspective { tangent } => (0.0, tangent),
+        Projection::Orthographic { half_height } => (half_height, 0.0),
+    };
+    // A camera without an aspect sees as wide as its image is; square, say.
+    let aspect = camera.aspect.unwrap_or(1.0);
+    let edge = |axis: DVec3, scale: f64| (DVec3::Z * (slope * scale) - axis, fixed * scale);
+    let frame = [edge(DVec3::X, aspect), edge(-DVec3::X, aspect), edge(DVec3::Y, 1.0), edge(-DVec3::Y, 1.0)];
+    let depth = if side == 0 { [(DVec3::Z, 0.0), (-DVec3::Z, near)] } else { [(DVec3::Z, -far), (DVec3::Z, 0.0)] };
+    for (normal, offset) in frame.into_iter().chain(depth) {
+        polygon = clip(&polygon, |p| normal.dot(p) + offset);
+    }
+    // What only touches a plane is not cut.
+    let margin = 1e-6;
+    polygon
+        .iter()
+        .any(|p| if side == 0 { p.z > 0.0 && p.z < near * (1.0 - margin) } else { p.z > far * (1.0 + margin) })
+}
+
+/// The part of a convex polygon where a linear function is not negative.
+fn clip(polygon: &[DVec3], height: impl Fn(DVec3) -> f64) -> Vec<DVec3> {
+    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    for (k, a) in polygon.iter().enumerate() {
+        let b = polygon[(k + 1) % polygon.len()];
+        let (above, next) = (height(*a), height(b));
+        if above >= 0.0 {
+            kept.push(*a);
+        }
+        if (above < 0.0) != (next < 0.0) {
+            kept.push(*a + (b - *a) * (above / (above - next)));
+        }
+    }
+    kept
+}

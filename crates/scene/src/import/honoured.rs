@@ -1,0 +1,234 @@
+//! The table of what is done with each property that glTF knows. What it does not have is not honoured, and is said.
+//!
+//! A path runs from an element of a list of the file; `[]` stands for each element of a list in it, and a `*` at the end
+//! for any end. `name`, `extras` and metadata mean nothing anywhere.
+
+/// What becomes of a property.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Fate {
+    /// The picture shows it.
+    Shown,
+    /// By itself it changes no picture.
+    Neutral,
+    /// An error or a warning of its own tells of it.
+    Told,
+    /// The picture is that of these numbers, the first of the property: others are named.
+    TakenAs(&'static [f64]),
+    /// Not shown; the same as absent if its first numbers are these.
+    Unless(&'static [f64]),
+    /// Not shown, and named where it would cut something off.
+    Cuts,
+    /// Not shown.
+    No,
+}
+
+/// Properties that have the same fate, on opaque and on translucent surfaces.
+pub(super) struct Row {
+    pub list: &'static str,
+    pub paths: &'static [&'static str],
+    pub opaque: Fate,
+    pub translucent: Fate,
+}
+
+/// Lists of the file whose elements have properties; an element counts only if what is drawn or lights uses it.
+pub(super) const LISTS: &[&str] =
+    &[MATERIALS, TEXTURES, SAMPLERS, IMAGES, MESHES, NODES, LIGHTS, CAMERAS, SCENES, ACCESSORS, VIEWS, BUFFERS];
+
+pub(super) const MATERIALS: &str = "materials";
+pub(super) const TEXTURES: &str = "textures";
+pub(super) const SAMPLERS: &str = "samplers";
+pub(super) const IMAGES: &str = "images";
+pub(super) const MESHES: &str = "meshes";
+pub(super) const NODES: &str = "nodes";
+pub(super) const LIGHTS: &str = "extensions.KHR_lights_punctual.lights";
+pub(super) const CAMERAS: &str = "cameras";
+pub(super) const SCENES: &str = "scenes";
+pub(super) const ACCESSORS: &str = "accessors";
+pub(super) const VIEWS: &str = "bufferViews";
+pub(super) const BUFFERS: &str = "buffers";
+/// The document itself.
+pub(super) const DOCUMENT: &str = "";
+
+/// What means nothing wherever it is.
+pub(super) const ANYWHERE: &[&str] = &["name", "extras", "extensions.KHR_xmp", "extensions.KHR_xmp_json_ld"];
+
+const fn row(list: &'static str, fate: Fate, paths: &'static [&'static str]) -> Row {
+    Row { list, paths, opaque: fate, translucent: fate }
+}
+
+const fn material(opaque: Fate, translucent: Fate, paths: &'static [&'static str]) -> Row {
+    Row { list: MATERIALS, paths, opaque, translucent }
+}
+
+use Fate::{Cuts, Neutral, No, Shown, TakenAs, Told, Unless};
+
+#[rustfmt::skip] // as the table that it is
+pub(super) const TABLE: &[Row] = &[
+    material(Shown, Shown, &["emissiveFactor", "extensions.KHR_materials_emissive_strength.emissiveStrength", "doubleSided"]),
+    material(Shown, TakenAs(&[1.0, 1.0, 1.0]), &["pbrMetallicRoughness.baseColorFactor"]),
+    material(Shown, Told, &["pbrMetallicRoughness.baseColorTexture.index", "pbrMetallicRoughness.baseColorTexture.texCoord",
+        "pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform.offset",
+        "pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform.rotation",
+        "pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform.scale",
+        "pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform.texCoord", "alphaCutoff"]),
+    material(Told, Told, &["alphaMode", "emissiveTexture"]),
+    material(TakenAs(&[0.0]), TakenAs(&[0.0]), &["pbrMetallicRoughness.metallicFactor"]),
+    material(Unless(&[1.0]), TakenAs(&[0.0]), &["pbrMetallicRoughness.roughnessFactor"]),
+    material(No, No, &["pbrMetallicRoughness.metallicRoughnessTexture", "normalTexture", "occlusionTexture"]),
+    material(Unless(&[1.5]), Shown, &["extensions.KHR_materials_ior.ior"]),
+    material(Unless(&[0.0]), TakenAs(&[1.0]), &["extensions.KHR_materials_transmission.transmissionFactor"]),
+    material(No, No, &["extensions.KHR_materials_transmission.transmissionTexture"]),
+    material(Unless(&[0.0]), Shown, &["extensions.KHR_materials_volume.thicknessFactor"]),
+    material(Neutral, Shown, &["extensions.KHR_materials_volume.attenuationDistance", "extensions.KHR_materials_volume.attenuationColor"]),
+    material(Neutral, No, &["extensions.KHR_materials_volume.thicknessTexture"]),
+    material(No, Shown, &["extensions.KHR_materials_volume_scatter.multiscatterColorFactor",
+        "extensions.KHR_materials_volume_scatter.multiscatterColor", "extensions.KHR_materials_scatter.multiscatterColorFactor",
+        "extensions.KHR_materials_scatter.multiscatterColor"]),
+    material(Neutral, Shown, &["extensions.KHR_materials_volume_scatter.scatterAnisotropy",
+        "extensions.KHR_materials_scatter.scatterAnisotropy", "extensions.KHR_materials_scatter.scatterStrengthFactor"]),
+    material(Neutral, Neutral, &["extensions.KHR_materials_volume_scatter.scatterStrengthFactor"]),
+    material(Neutral, No, &["extensions.KHR_materials_volume_scatter.multiscatterColorTexture",
+        "extensions.KHR_materials_scatter.multiscatterColorTexture", "extensions.KHR_materials_scatter.scatterStrengthTexture"]),
+    material(Unless(&[0.0]), Unless(&[0.0]), &["extensions.KHR_materials_anisotropy.anisotropyStrength",
+        "extensions.KHR_materials_clearcoat.clearcoatFactor", "extensions.KHR_materials_diffuse_transmission.diffuseTransmissionFactor",
+        "extensions.KHR_materials_dispersion.dispersion", "extensions.KHR_materials_iridescence.iridescenceFactor"]),
+    material(Unless(&[0.0, 0.0, 0.0]), Unless(&[0.0, 0.0, 0.0]), &["extensions.KHR_materials_sheen.sheenColorFactor"]),
+    material(Unless(&[1.0]), Unless(&[1.0]), &["extensions.KHR_materials_specular.specularFactor"]),
+    material(Unless(&[1.0, 1.0, 1.0]), Unless(&[1.0, 1.0, 1.0]), &["extensions.KHR_materials_specular.specularColorFactor"]),
+    material(No, No, &["extensions.KHR_materials_specular.specularTexture", "extensions.KHR_materials_specular.specularColorTexture"]),
+    // They do nothing where the factor of their extension is 0.
+    material(Neutral, Neutral, &["extensions.KHR_materials_anisotropy.*", "extensions.KHR_materials_clearcoat.*",
+        "extensions.KHR_materials_diffuse_transmission.*", "extensions.KHR_materials_iridescence.*", "extensions.KHR_materials_sheen.*"]),
+    row(TEXTURES, Shown, &["source", "sampler"]),
+    row(SAMPLERS, Shown, &["magFilter", "wrapS", "wrapT"]),
+    row(SAMPLERS, Neutral, &["minFilter"]),
+    row(IMAGES, Shown, &["uri", "bufferView"]),
+    row(IMAGES, Neutral, &["mimeType"]),
+    Row { list: MESHES, paths: &["primitives[].attributes.COLOR_0"], opaque: Shown, translucent: Told },
+    row(MESHES, Shown, &["primitives[].attributes.POSITION", "primitives[].attributes.NORMAL", "primitives[].attributes.TEXCOORD_*",
+        "primitives[].indices", "primitives[].material", "primitives[].mode"]),
+    row(MESHES, Told, &["primitives[].targets"]),
+    // Tangents serve normal maps, the others skins, targets, and what a program makes of them.
+    row(MESHES, Neutral, &["primitives[].attributes.TANGENT", "primitives[].attributes.COLOR_*", "primitives[].attributes.JOINTS_*",
+        "primitives[].attributes.WEIGHTS_*", "primitives[].attributes._*", "weights"]),
+    row(NODES, Shown, &["mesh", "camera", "children", "matrix", "translation", "rotation", "scale", "extensions.KHR_lights_punctual.light"]),
+    row(NODES, Told, &["skin"]),
+    row(NODES, Neutral, &["weights"]),
+    row(LIGHTS, Shown, &["type", "color", "intensity", "range", "spot.innerConeAngle", "spot.outerConeAngle"]),
+    row(CAMERAS, Shown, &["type", "perspective.yfov", "perspective.aspectRatio", "orthographic.xmag", "orthographic.ymag"]),
+    row(CAMERAS, Cuts, &["perspective.znear", "perspective.zfar", "orthographic.znear", "orthographic.zfar"]),
+    row(SCENES, Shown, &["nodes"]),
+    row(ACCESSORS, Shown, &["bufferView", "byteOffset", "componentType", "normalized", "count", "type", "sparse.count",
+        "sparse.indices.bufferView", "sparse.indices.byteOffset", "sparse.indices.componentType", "sparse.values.bufferView",
+        "sparse.values.byteOffset"]),
+    row(ACCESSORS, Neutral, &["min", "max"]),
+    row(VIEWS, Shown, &["buffer", "byteOffset", "byteLength", "byteStride"]),
+    row(VIEWS, Neutral, &["target"]),
+    row(BUFFERS, Shown, &["uri", "byteLength"]),
+    row(DOCUMENT, Shown, &["scene"]),
+    row(DOCUMENT, Neutral, &["asset"]),
+    row(DOCUMENT, Told, &["animations", "skins", "extensionsUsed", "extensionsRequired"]),
+];
+
+/// What the table says of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Place {
+    /// One of [`LISTS`].
+    List(&'static str),
+    /// What lies in it has rows of its own.
+    Inside,
+    /// On opaque, and on translucent surfaces.
+    Property([Fate; 2]),
+    Unknown,
+}
+
+/// Looks a path up; the first row counts.
+pub(super) fn look_up(list: &str, path: &str) -> Place {
+    if list == DOCUMENT
+        && let Some(known) = LISTS.iter().find(|known| **known == path)
+    {
+        return Place::List(known);
+    }
+    let ends = |with: &&str| path.strip_suffix(*with).is_some_and(|rest| rest.is_empty() || rest.ends_with('.'));
+    if ANYWHERE.iter().any(ends) {
+        return Place::Property([Neutral; 2]);
+    }
+    let fits = |known: &&str| known.strip_suffix('*').map_or(*known == path, |start| path.starts_with(start));
+    let rows = || TABLE.iter().filter(|row| row.list == list);
+    if let Some(row) = rows().find(|row| row.paths.iter().any(fits)) {
+        return Place::Property([row.opaque, row.translucent]);
+    }
+    let below = |known: &&str| known.strip_prefix(path).is_some_and(|rest| rest.starts_with(['.', '[']));
+    let inside = |paths: &[&str]| paths.iter().any(below);
+    // Extensions are told one by one.
+    let opens = ends(&"extensions") || list == DOCUMENT && inside(LISTS) || rows().any(|row| inside(row.paths));
+    if opens { Place::Inside } else { Place::Unknown }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Paths, with what neighbours begin with said once; extensions begin with their own names.
+    fn brief(paths: &[&'static str]) -> String {
+        let split = |path: &&'static str| path.rsplit_once('.').unwrap_or(("", path));
+        let parts: Vec<(&str, &str)> = paths.iter().map(split).collect();
+        let group = |group: &[(&str, &str)]| {
+            let ends: Vec<&str> = group.iter().map(|(_, end)| *end).collect();
+            let (start, ends) = (group[0].0.replace("extensions.", ""), ends.join(", "));
+            match (start.is_empty(), group.len()) {
+                (true, _) => ends,
+                (false, 1) => format!("{start}.{ends}"),
+                (false, _) => format!("{start}.{{{ends}}}"),
+            }
+        };
+        let groups: Vec<String> = parts.chunk_by(|a, b| a.0 == b.0).map(group).collect();
+        format!("`{}`", groups.join(", "))
+    }
+
+    /// The table as the documentation has it.
+    fn text() -> String {
+        let numbers = |v: &[f64]| if v.iter().all(|x| *x == v[0]) { v[0].to_string() } else { format!("{v:?}") };
+        let cell = |fate: Fate| match fate {
+            Shown => "yes".to_owned(),
+            Neutral => "means nothing here".into(),
+            Told => "told by itself".into(),
+            TakenAs(v) => format!("taken as {}", numbers(v)),
+            Unless(v) => format!("no, unless {}", numbers(v)),
+            Cuts => "no, where it cuts".into(),
+            No => "no".into(),
+        };
+        let mut text = String::from("| of | property | opaque surfaces | translucent surfaces |\n|---|---|---|---|\n");
+        for row in TABLE {
+            let of = if row.list == DOCUMENT { "the file".to_owned() } else { format!("`{}[]`", row.list) };
+            let (opaque, translucent) = (cell(row.opaque), cell(row.translucent));
+            text += &format!("| {of} | {} | {opaque} | {translucent} |\n", brief(row.paths));
+        }
+        text
+    }
+
+    /// `docs/scenes.md` has the table as the program has it; where it differs, this prints what it should have.
+    #[test]
+    fn the_documentation_has_this_table() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes.md");
+        let documented = std::fs::read_to_string(file).expect("docs/scenes.md");
+        assert!(documented.contains(&text()), "docs/scenes.md should have:\n{}", text());
+    }
+
+    #[test]
+    fn paths_are_looked_up() {
+        assert_eq!(look_up(DOCUMENT, "materials"), Place::List(MATERIALS));
+        assert_eq!(look_up(DOCUMENT, "extensions"), Place::Inside);
+        assert_eq!(look_up(DOCUMENT, LIGHTS), Place::List(LIGHTS));
+        assert_eq!(look_up(DOCUMENT, "extensions.EXT_lights_ies"), Place::Unknown);
+        assert_eq!(look_up(MATERIALS, "extensions.KHR_materials_volume"), Place::Inside);
+        assert_eq!(look_up(MATERIALS, "extensions.KHR_materials_volume.extras"), Place::Property([Neutral; 2]));
+        assert_eq!(look_up(MATERIALS, "extensions.KHR_materials_unlit"), Place::Unknown);
+        assert_eq!(look_up(MATERIALS, "pbrMetallicRoughness.extensions"), Place::Inside);
+        assert_eq!(look_up(MESHES, "primitives[].attributes.TEXCOORD_3"), Place::Property([Shown; 2]));
+        assert_eq!(look_up(MESHES, "primitives[].attributes.COLOR_0"), Place::Property([Shown, Told]));
+        assert_eq!(look_up(MESHES, "primitives[].attributes.KHR_x:ROTATION"), Place::Unknown);
+        assert_eq!(look_up(NODES, "surname"), Place::Unknown);
+        assert_eq!(look_up(CAMERAS, "perspective.znear"), Place::Property([Cuts; 2]));
+    }
+}

@@ -1,0 +1,195 @@
+//! What a file says that is not honoured: its JSON, walked along the table of what is.
+//!
+//! Nothing is built of what is skipped, so that the walk needs no more memory than it finds.
+
+use super::honoured::{DOCUMENT, Fate, Place, look_up};
+use crate::unhonoured::cut;
+use serde::de::{Deserialize, DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde_json::Value;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fmt,
+};
+
+/// Bytes of a property's name; a longer one is cut.
+const LONGEST_KEY: usize = 60;
+
+/// What is not honoured of the elements of each list, used or not.
+#[derive(Default)]
+pub(super) struct Survey {
+    lists: BTreeMap<&'static str, Vec<Vec<Find>>>,
+    /// Names of all extensions whose objects were met.
+    pub extensions: BTreeSet<String>,
+}
+
+/// A property that is not honoured.
+pub(super) struct Find {
+    /// From its element on.
+    pub path: String,
+    /// On opaque, and on translucent surfaces; none if the picture shows it there.
+    pub on: [Option<Fate>; 2],
+}
+
+impl Survey {
+    /// What was found of an element of a list.
+    pub fn of(&self, list: &str, index: usize) -> &[Find] {
+        self.lists.get(list).and_then(|elements| elements.get(index)).map_or(&[], Vec::as_slice)
+    }
+
+    /// How many elements a list has.
+    pub fn len(&self, list: &str) -> usize {
+        self.lists.get(list).map_or(0, Vec::len)
+    }
+}
+
+impl<'de> Deserialize<'de> for Survey {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Survey, D::Error> {
+        let mut survey = Survey::default();
+        survey.lists.insert(DOCUMENT, vec![Vec::new()]);
+        deserializer.deserialize_any(Walk { survey: &mut survey, list: DOCUMENT, path: "" })?;
+        Ok(survey)
+    }
+}
+
+/// Walks what lies at a path.
+struct Walk<'a> {
+    survey: &'a mut Survey,
+    list: &'static str,
+    path: &'a str,
+}
+
+impl Walk<'_> {
+    /// Notes what is not honoured at a path.
+    fn find(&mut self, path: String, on: [Option<Fate>; 2]) {
+        if let Some(finds) = self.survey.lists.get_mut(self.list).and_then(|elements| elements.last_mut()) {
+            finds.push(Find { path, on });
+        }
+    }
+
+    /// Reads a property whose fates are known.
+    fn property<'de, A: MapAccess<'de>>(&mut self, map: &mut A, path: String, on: [Fate; 2]) -> Result<(), A::Error> {
+        let by_value = on.iter().any(|fate| matches!(fate, Fate::TakenAs(_) | Fate::Unless(_)));
+        let (numbers, is_there) = if by_value {
+            let value: Value = map.next_value()?;
+            (numbers(&value), !value.is_null())
+        } else {
+            (Vec::new(), map.next_value::<Option<IgnoredAny>>()?.is_some())
+        };
+        let differs = |expected: &[f64]| !numbers.starts_with(expected);
+        let named = |fate: Fate| match fate {
+            Fate::Shown | Fate::Neutral | Fate::Told => None,
+            Fate::TakenAs(expected) | Fate::Unless(expected) => differs(expected).then_some(fate),
+            Fate::Cuts | Fate::No => Some(fate),
+        };
+        let on = on.map(named);
+        if is_there && on.iter().any(Option::is_some) {
+            self.find(path, on);
+        }
+        Ok(())
+    }
+}
+
+/// A number, or the numbers of a list.
+fn numbers(value: &Value) -> Vec<f64> {
+    // As the import reads them: in float32.
+    let number = |v: &Value| v.as_f64().map_or(f64::NAN, |x| f64::from(x as f32));
+    value.as_array().map_or_else(|| vec![number(value)], |list| list.iter().map(number).collect())
+}
+
+impl<'de> DeserializeSeed<'de> for Walk<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Walk<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("JSON")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(mut self, mut map: A) -> Result<(), A::Error> {
+        while let Some(key) = map.next_key::<String>()? {
+            if self.path == "extensions" || self.path.ends_with(".extensions") {
+                self.survey.extensions.insert(key.clone());
+            }
+            let path = if self.path.is_empty() { key } else { format!("{}.{key}", self.path) };
+            match look_up(self.list, &path) {
+                Place::List(list) => map.next_value_seed(Elements { survey: self.survey, list })?,
+                Place::Inside => map.next_value_seed(Walk { survey: self.survey, list: self.list, path: &path })?,
+                Place::Property(on) => self.property(&mut map, path, on)?,
+                Place::Unknown => {
+                    map.next_value::<IgnoredAny>()?;
+                    self.find(cut(&path, self.path.len() + LONGEST_KEY), [Some(Fate::No); 2]);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
+        let path = format!("{}[]", self.path);
+        while list.next_element_seed(Walk { survey: self.survey, list: self.list, path: &path })?.is_some() {}
+        Ok(())
+    }
+
+    fn visit_bool<E: Error>(self, _: bool) -> Result<(), E> {
+        Ok(())
+    }
+
+    fn visit_i64<E: Error>(self, _: i64) -> Result<(), E> {
+        Ok(())
+    }
+
+    fn visit_u64<E: Error>(self, _: u64) -> Result<(), E> {
+        Ok(())
+    }
+
+    fn visit_f64<E: Error>(self, _: f64) -> Result<(), E> {
+        Ok(())
+    }
+
+    fn visit_str<E: Error>(self, _: &str) -> Result<(), E> {
+        Ok(())
+    }
+
+    fn visit_unit<E: Error>(self) -> Result<(), E> {
+        Ok(())
+    }
+}
+
+/// Walks the elements of a list, each by itself.
+struct Elements<'a> {
+    survey: &'a mut Survey,
+    list: &'static str,
+}
+
+impl<'de> DeserializeSeed<'de> for Elements<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_seq(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Elements<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "a list of {}", self.list)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
+        loop {
+            self.survey.lists.entry(self.list).or_default().push(Vec::new());
+            if list.next_element_seed(Walk { survey: self.survey, list: self.list, path: "" })?.is_none() {
+                break;
+            }
+        }
+        self.survey.lists.entry(self.list).or_default().pop();
+        Ok(())
+    }
+}
