@@ -182,18 +182,19 @@ fn samples_and_nodes_that_were_never_checked_do_no_harm() {
     let (tiles, nodes) = cloud.group(&group);
     let numbers = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -1.0, -1e30, 0.0, 1e-45];
     let (mut random, scatterer) = (Random(3), Scatterer::new(Model::StandardDipole, &milky()));
-    for round in 0..400 {
+    for round in 0..500 {
         let (mut tiles, mut nodes) = (tiles.to_vec(), nodes.to_vec());
         let mut number = || numbers[random.bits() as usize % numbers.len()];
-        match round % 4 {
-            0 => nodes.iter_mut().for_each(|n| n.flux = -n.flux),
+        match round % 5 {
+            0 => tiles.iter_mut().flatten().for_each(|r| r.flux = r.flux.map(|x| -1e6 * x)),
+            4 => nodes.iter_mut().for_each(|n| n.flux = -n.flux),
             1 => tiles.iter_mut().flatten().for_each(|r| r.flux = [number(); 3]),
             2 => nodes.iter_mut().for_each(|n| (n.flux, n.radius) = (number(), number())),
             _ => nodes.iter_mut().for_each(|n| (n.centre[0], n.spread, n.turn) = (number(), number(), number())),
         }
         for len in [group.samples as usize, usize::MAX] {
             let samples = LitSamples::of(&tiles, &nodes, len, 1.3);
-            let exit = Exit::new(DVec3::new(1e-3, 0.0, 0.0), DVec3::Z, round);
+            let exit = Exit::new(DVec3::X * random.between(-5e-3, 5e-3), DVec3::Z, round);
             for estimator in ESTIMATORS {
                 let sum = scatterer.sum(&samples, &exit, estimator);
                 assert!(sum.evaluations <= 16 * tiles.len() as u64);

@@ -141,17 +141,21 @@ impl Errors {
         (power > 0.0).then_some(Errors { total, paths, cloud, cloud_freedom, paths_freedom, half, scattered })
     }
 
-    /// The error that is compared with a target. Two halves may agree by luck, well-spread paths are not that much better
-    /// than independent ones: their variance falls as their number to the power 3/2 where edges cross a pixel. None if no
-    /// two paths differ, which tells nothing.
+    /// The error that is compared with a target. Where it has few degrees of freedom the halves may agree by luck, and
+    /// well-spread paths are not that much better than independent ones: their variance falls as their number to the
+    /// power 3/2 where edges cross a pixel. None if no two paths differ, which tells nothing.
     pub fn estimate(&self) -> Option<Estimate> {
-        let least = self.paths / self.half.max(1.0).powf(0.25);
         let (paths, cloud) = (self.paths.min(self.total), self.cloud);
         let parts = [(paths * paths, self.paths_freedom), (cloud * cloud, self.cloud_freedom)];
-        let error = self.total.max(least);
-        (error > 0.0).then(|| Estimate { error, freedom: freedom::of_sum(parts) })
+        let freedom = freedom::of_sum(parts);
+        let least = self.paths / self.half.max(1.0).powf(0.25);
+        let error = if freedom < MANY { self.total.max(least) } else { self.total };
+        (error > 0.0).then_some(Estimate { error, freedom })
     }
 }
+
+/// Degrees of freedom with which an error is known to an eighth of itself.
+const MANY: f64 = 32.0;
 
 /// What the ray through the pixel's centre meets first; zero where it meets nothing.
 #[derive(Clone, Copy, Debug, Default)]
@@ -269,7 +273,7 @@ pub fn covers(paths_per_pixel: u32, second_half: u64) -> &'static str {
 mod tests {
     use super::*;
 
-    /// Positions are relative to what they should be, and 0 where nothing is met. Seen to catch: minus the origin there.
+    /// Positions are relative to what they should be, and 0 where nothing is met.
     #[test]
     fn positions_relative_to_an_origin() {
         let met = Guide { normal: DVec3::Y, position: DVec3::new(1e6 + 0.25, 2.0, 3.0), depth: 1.0 };

@@ -91,7 +91,8 @@ impl Round<'_> {
         }
         if few > CLOUD_LIMITS * self.target {
             let (lit, percent) = (self.lit(), 100.0 * few);
-            let why = format!("{lit} samples of the cloud carry light, which may have an error of {percent:.2} %");
+            let why =
+                format!("the cloud alone may have an error of {percent:.2} %, as {lit} of its samples carry light");
             return Verdict::Never(format!("{why}: {}", self.way_out(few)));
         }
         self.judge_cloud(errors, &estimate, settings)

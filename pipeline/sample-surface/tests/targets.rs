@@ -137,7 +137,7 @@ fn a_small_hole_is_no_luck() {
         assert_met(2e-3, 50e-3, 0.05, 0..200);
     } else {
         // A smaller cube, of which a larger share is lit.
-        assert_met(2e-3, 35e-3, 0.1, 0..8);
+        assert_met(2e-3, 35e-3, 0.1, 0..5);
     }
 }
 

@@ -7,7 +7,7 @@ use std::{collections::BTreeMap, fmt};
 /// The struct of this version; the number is checked before this is read.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Versioned {
-    V5(Meta),
+    V6(Meta),
 }
 
 /// Facts of a cloud. Holds no time, host or path: the same inputs give the same bytes.

@@ -33,7 +33,7 @@ pub(super) fn meta(count: u64) -> Meta {
     }
 }
 
-/// Seen to catch: a limit in metres; the rounding of the centre without half of the object.
+/// It depends on the ratio of distance and size, not on metres.
 #[test]
 fn what_positions_for_others_are_relative_to() {
     let about = |scale: f64, x: f64| {

@@ -7,7 +7,7 @@ use glam::DVec3;
 pub(super) const MOST_TESTS: usize = 1 << 26;
 
 /// What clipping a triangle costs, in triangles that are only asked for their depth.
-const COST_OF_CLIPPING: usize = 16;
+const COST_OF_CLIPPING: usize = 4;
 
 /// Whether something is seen nearer than the first, and farther than the second plane, m. `bounds` are the mesh's, and
 /// `room` is how many triangles may still be asked.
@@ -51,7 +51,7 @@ pub(super) fn cuts(
 /// Some of the triangle lies within the frame, and before the near or behind the far plane.
 fn is_seen(camera: &Camera, corners: [DVec3; 3], [near, far]: [f64; 2], side: usize) -> bool {
     let local = |p: DVec3| DVec3::new(p.dot(camera.right), p.dot(camera.up), p.dot(camera.forward));
-    let mut polygon = corners.map(local).to_vec();
+    let corners = corners.map(local);
     // Half the frame's width and height: what they are at depth 0, and what they gain with depth.
     let (fixed, slope) = match camera.projection {
         Projection::Perspective { tangent } => (0.0, tangent),
@@ -62,9 +62,12 @@ fn is_seen(camera: &Camera, corners: [DVec3; 3], [near, far]: [f64; 2], side: us
     let edge = |axis: DVec3, scale: f64| (DVec3::Z * (slope * scale) - axis, fixed * scale);
     let frame = [edge(DVec3::X, aspect), edge(-DVec3::X, aspect), edge(DVec3::Y, 1.0), edge(-DVec3::Y, 1.0)];
     let depth = if side == 0 { [(DVec3::Z, 0.0), (-DVec3::Z, near)] } else { [(DVec3::Z, -far), (DVec3::Z, 0.0)] };
-    for (normal, offset) in frame.into_iter().chain(depth) {
-        polygon = clip(&polygon, |p| normal.dot(p) + offset);
+    let bounds = || frame.into_iter().chain(depth);
+    if bounds().any(|(normal, offset)| corners.iter().all(|p| normal.dot(*p) + offset < 0.0)) {
+        return false; // most are, at once
     }
+    let polygon =
+        bounds().fold(corners.to_vec(), |polygon, (normal, offset)| clip(&polygon, |p| normal.dot(p) + offset));
     // What only touches a plane is not cut.
     let margin = 1e-6;
     polygon

@@ -194,8 +194,7 @@ impl Coordinates {
 mod tests {
     use super::*;
 
-    /// Seen to catch: the chunk after one that is left out lost; lengths without the twelve bytes around the content; a
-    /// length beyond the end taken for that of the file.
+    /// Seen to catch: lengths that are too short for the twelve bytes around the content.
     #[test]
     fn packed_chunks_of_a_png_are_left_out() {
         let chunk = |name: &str, content: &[u8]| {

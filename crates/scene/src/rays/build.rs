@@ -92,6 +92,18 @@ fn crowding(tree: &Bvh2) -> f64 {
     sum / leaves
 }
 
+/// The box of triangle `k`, larger by [`LEAST_PADDING`] to [`PADDING`].
+fn padded_box(k: usize, corners: &[Vec3; 3], diagonal: f32) -> Aabb {
+    let bits = crate::random::mix(k as u64 + 1);
+    let share = |i: u32| (bits >> (10 * i) & 1023) as f32 / 1024.0;
+    let pad = |i| {
+        let share = Vec3A::new(share(i), share(i + 1), share(i + 2));
+        (share * (PADDING - LEAST_PADDING) + LEAST_PADDING) * diagonal
+    };
+    let [a, b, c] = corners.map(Vec3A::from);
+    Aabb::new(a.min(b).min(c) - pad(0), a.max(b).max(c) + pad(3))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -110,7 +122,7 @@ mod tests {
     }
 
     /// Boxes that lie over each other are told from those that do not, all together or in one corner. Seen to catch: the
-    /// node at the top alone, which does not see the corner; the best of the nodes instead of the worst.
+    /// node at the top alone, which does not see the corner.
     #[test]
     fn crowding_counts_the_boxes_over_each_other() {
         let of = |triangles: &[[Vec3; 3]]| {
@@ -128,16 +140,4 @@ mod tests {
         let corner = [&apart[..], &same].concat();
         assert!((1500.0..3000.0).contains(&of(&corner)), "{}", of(&corner));
     }
-}
-
-/// The box of triangle `k`, larger by [`LEAST_PADDING`] to [`PADDING`].
-fn padded_box(k: usize, corners: &[Vec3; 3], diagonal: f32) -> Aabb {
-    let bits = crate::random::mix(k as u64 + 1);
-    let share = |i: u32| (bits >> (10 * i) & 1023) as f32 / 1024.0;
-    let pad = |i| {
-        let share = Vec3A::new(share(i), share(i + 1), share(i + 2));
-        (share * (PADDING - LEAST_PADDING) + LEAST_PADDING) * diagonal
-    };
-    let [a, b, c] = corners.map(Vec3A::from);
-    Aabb::new(a.min(b).min(c) - pad(0), a.max(b).max(c) + pad(3))
 }

@@ -155,8 +155,7 @@ fn links_are_followed_and_messages_do_not_show_what_is_there() {
     }
 }
 
-/// Programs refuse to write over what they read: each file is there, once, by the path that it was opened by. Seen to
-/// catch: the pictures left out, which had a record of their own; a file there again for the second that names it.
+/// Programs refuse to write over what they read: each file is there, once, by the path that it was opened by.
 #[test]
 fn every_file_that_was_read_is_told() {
     let folder = Folder::new();

@@ -41,8 +41,7 @@ fn light_units() {
     bench.refuses(&wrong, &["--light-unit is radiometric"]);
 }
 
-/// Emission has a unit of its own, by default that of the lights; clouds of other units are refused. Seen to catch: the
-/// lights' unit for both; the cloud's options without it.
+/// Emission has a unit of its own, by default that of the lights; clouds of other units are refused.
 #[test]
 fn emission_units() {
     let bench = Bench::new();
@@ -69,7 +68,6 @@ fn emission_units() {
 
 /// Positions in float32 have 3 values where an object of 0.2 m is 1000 km away, and so many as there are elsewhere if
 /// they are relative to what the header says. Where the object is at home, they are positions in the world.
-/// Seen to catch: world positions everywhere; the origin forgotten, or taken twice.
 #[test]
 fn positions_far_from_the_origin() {
     const FAR: f64 = 1e6;
