@@ -19,6 +19,8 @@ use std::{
         Mutex, PoisonError,
         atomic::{AtomicU64, Ordering},
     },
+    thread,
+    time::{Duration, Instant},
 };
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -54,12 +56,28 @@ impl Output {
         self.finish().map_err(|source| Error::write(&path, source))
     }
 
+    /// Writes out what is buffered, and the path under which it can be read until it is committed.
+    pub fn written(&mut self) -> Result<&Path, Error> {
+        self.settle().map_err(|source| Error::write(&self.target, source))?;
+        Ok(self.temporary.as_deref().unwrap_or(&self.target))
+    }
+
     fn finish(&mut self) -> io::Result<()> {
+        self.settle()?;
+        self.take_place()
+    }
+
+    /// Writes all bytes to the disk.
+    fn settle(&mut self) -> io::Result<()> {
         self.file.flush()?;
+        if self.temporary.is_some() { self.file.get_ref().sync_all() } else { Ok(()) }
+    }
+
+    /// Puts a file in its place whose bytes are on the disk.
+    fn take_place(&mut self) -> io::Result<()> {
         let Some(temporary) = self.temporary.as_ref() else {
             return Ok(());
         };
-        self.file.get_ref().sync_all()?;
         fs::rename(temporary, &self.target)?;
         registered().retain(|p| p != temporary);
         self.temporary = None;
@@ -89,6 +107,55 @@ impl Drop for Output {
         }
     }
 }
+
+/// Files of one run that belong together, as an image and its preview. They take their places while no other group does
+/// whose first file lies in the same folder, so that of two runs at once all files are those of one.
+#[derive(Debug, Default)]
+pub struct Group(Vec<Output>);
+
+impl Group {
+    /// Adds a file that was written and not committed.
+    pub fn add(&mut self, output: Output) {
+        self.0.push(output);
+    }
+
+    /// Adds a file of these bytes.
+    pub fn write(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Error> {
+        let mut output = Output::create(path)?;
+        output.write_all(bytes).map_err(|source| Error::write(path, source))?;
+        self.add(output);
+        Ok(())
+    }
+
+    /// Puts all files in their places. None is if one cannot be written out.
+    pub fn commit(mut self) -> Result<(), Error> {
+        for output in &mut self.0 {
+            output.written()?;
+        }
+        let _turn = self.0.first().and_then(|first| wait_for_turn(folder_of(&first.target)));
+        for output in &mut self.0 {
+            output.take_place().map_err(|source| Error::write(&output.target, source))?;
+        }
+        Ok(())
+    }
+}
+
+/// Locks a folder, which is held for as long as some files are renamed. Where there are no locks, or somebody else holds
+/// this one for long, there is no turn to wait for.
+fn wait_for_turn(folder: &Path) -> Option<File> {
+    let file = File::open(folder).ok()?;
+    let start = Instant::now();
+    while let Err(TryLockError::WouldBlock) = file.try_lock() {
+        if start.elapsed() > PATIENCE {
+            return None;
+        }
+        thread::sleep(Duration::from_millis(1));
+    }
+    Some(file)
+}
+
+/// Longest time that a group waits for others.
+const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Refuses a target that can be seen not to be writable.
 pub fn check(target: &Path) -> Result<(), Error> {
@@ -250,132 +317,4 @@ fn temporary_stem(name: &OsStr) -> OsString {
 const LONG_NAME: usize = 100;
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_dropped_output_leaves_the_old_file_and_no_other() {
-        let folder = tempfile::tempdir().expect("folder");
-        let path = folder.path().join("file");
-        write(&path, b"old").expect("writes");
-        let mut output = Output::create(&path).expect("creates");
-        output.write_all(b"new").expect("buffers");
-        drop(output);
-        assert_eq!(fs::read(&path).expect("reads"), b"old");
-        assert_eq!(fs::read_dir(folder.path()).expect("lists").count(), 1);
-    }
-
-    #[test]
-    fn a_committed_output_replaces_the_file() {
-        let folder = tempfile::tempdir().expect("folder");
-        let path = folder.path().join("file");
-        write(&path, b"old").expect("writes");
-        write(&path, b"new").expect("writes");
-        assert_eq!(fs::read(&path).expect("reads"), b"new");
-        assert_eq!(fs::read_dir(folder.path()).expect("lists").count(), 1);
-    }
-
-    /// Planted errors that this caught: the lock left out, every temporary file of the folder taken.
-    #[test]
-    fn what_a_killed_process_left_is_removed_and_what_a_live_one_writes_is_not() {
-        let folder = tempfile::tempdir().expect("folder");
-        let path = |name: &str| folder.path().join(name);
-        let names = || {
-            let list = fs::read_dir(folder.path()).expect("lists");
-            let mut names: Vec<_> = list.map(|e| e.expect("entry").file_name().into_string().expect("UTF-8")).collect();
-            names.sort();
-            names
-        };
-        let strangers = [".a.cloud.1-.tmp", ".a.cloud.1-2-3.tmp", ".a.cloud.old.tmp", ".b.cloud.1-2.tmp"];
-        for name in strangers.iter().chain(&[".a.cloud.99-0.tmp", ".a.cloud.99-1.tmp"]) {
-            fs::write(path(name), b"half").expect("writes");
-        }
-        let live = Output::create(&path("a.cloud")).expect("creates");
-        write(&path("a.cloud"), b"whole").expect("writes beside a live one");
-        assert_eq!(names().len(), strangers.len() + 2, "{:?}", names());
-        live.commit().expect("is still there");
-        let mut expected = strangers.map(str::to_owned).to_vec();
-        expected.push("a.cloud".into());
-        assert_eq!(names(), expected);
-    }
-
-    #[test]
-    fn a_full_device_is_an_error_and_stays_a_device() {
-        let full = Path::new("/dev/full");
-        if full.exists() {
-            let message = write(full, &[0; 100]).expect_err("no space").to_string();
-            assert!(message.contains("/dev/full"), "{message}");
-            assert!(!fs::metadata(full).expect("still there").is_file());
-        }
-    }
-
-    #[test]
-    fn a_target_in_no_folder_is_an_error_at_once() {
-        assert!(Output::create(Path::new("no/such/folder/file")).is_err());
-        assert!(Output::create(Path::new(".")).is_err());
-    }
-
-    /// Planted errors that this caught: no permissions kept, permissions kept under the umask, the link replaced.
-    #[test]
-    fn a_replaced_file_keeps_its_permissions_and_links_stay_links() {
-        let folder = tempfile::tempdir().expect("folder");
-        let path = |name: &str| folder.path().join(name);
-        let mode = |name: &str| fs::metadata(path(name)).expect("there").permissions().mode() & 0o7777;
-        for wanted in [0o664, 0o600, 0o666, 0o755] {
-            fs::write(path("file"), b"old").expect("writes");
-            fs::set_permissions(path("file"), fs::Permissions::from_mode(wanted)).expect("sets");
-            let output = Output::create(&path("file")).expect("creates");
-            let temporary = output.temporary.clone().expect("a regular file has one");
-            let during = fs::metadata(&temporary).expect("there").permissions().mode() & 0o777;
-            assert_eq!(during & !wanted, 0, "{during:o} while a file of {wanted:o} is written");
-            output.commit().expect("replaces");
-            assert_eq!(mode("file"), wanted, "{:o} instead of {wanted:o}", mode("file"));
-        }
-        fs::create_dir(path("real")).expect("makes");
-        std::os::unix::fs::symlink("real/one", path("link")).expect("links");
-        std::os::unix::fs::symlink("link", path("chain")).expect("links");
-        for content in [b"1", b"2"] {
-            // The first time the links lead to no file.
-            write(&path("chain"), content).expect("writes");
-            assert_eq!(fs::read(path("real/one")).expect("reads"), content);
-        }
-        for link in ["link", "chain"] {
-            assert!(fs::symlink_metadata(path(link)).expect("there").is_symlink(), "{link}");
-        }
-        std::os::unix::fs::symlink("circle", path("circle")).expect("links");
-        write(&path("circle"), b"").expect_err("leads to itself");
-    }
-
-    /// Planted error that this caught: the whole name in the temporary one, which then has 266 bytes.
-    #[test]
-    fn any_name_that_the_file_system_takes_is_taken() {
-        let folder = tempfile::tempdir().expect("folder");
-        for length in [LONG_NAME, LONG_NAME + 1, 200, 255] {
-            let path = folder.path().join("n".repeat(length));
-            write(&path, b"content").expect("writes");
-            // What a killed process left of a long name is found again.
-            let left = temporary_name(&path).expect("a name");
-            fs::write(&left, b"half").expect("writes");
-            write(&path, b"again").expect("writes");
-            assert!(!left.exists(), "{length}");
-        }
-        let message = check(&folder.path().join("n".repeat(256))).expect_err("too long").to_string();
-        assert!(message.contains("too long"), "{message}");
-    }
-
-    /// Each of these waited for ever. Planted errors that this caught: the look at the file's kind left out.
-    #[test]
-    fn pipes_are_refused_and_not_waited_for() {
-        let folder = tempfile::tempdir().expect("folder");
-        let pipe = |name: &str| {
-            let path = folder.path().join(name);
-            assert!(std::process::Command::new("mkfifo").arg(&path).status().expect("starts").success());
-            path
-        };
-        let message = write(&pipe("fifo"), b"").expect_err("refused").to_string();
-        assert!(message.contains("fifo: cannot write: is a pipe"), "{message}");
-        let left = pipe(".file.99-0.tmp");
-        write(&folder.path().join("file"), b"content").expect("writes");
-        assert!(left.exists());
-    }
-}
+mod tests;

@@ -3,9 +3,10 @@
 use crate::{Error, atomic::Output, cloud::Cloud};
 use std::{io::Write, path::Path};
 
-/// Writes position (m), normal, direction to the light and flux (W) of every stored sample. Positions are those in the
-/// world, or relative to [`crate::cloud::Meta::exchange_origin_m`], which a comment of the header then states.
-pub fn write_ply(path: &Path, cloud: &Cloud) -> Result<(), Error> {
+/// Writes position (m), normal, direction to the light and flux (W) of every stored sample to a file, which is left to be
+/// committed. Positions are those in the world, or relative to [`crate::cloud::Meta::exchange_origin_m`], which a comment of
+/// the header then states.
+pub fn write_ply(path: &Path, cloud: &Cloud) -> Result<Output, Error> {
     let mut output = Output::create(path)?;
     let fail = |source| Error::write(path, source);
     let names = ["x", "y", "z", "nx", "ny", "nz", "wx", "wy", "wz", "flux_r", "flux_g", "flux_b"];
@@ -28,5 +29,5 @@ pub fn write_ply(path: &Path, cloud: &Cloud) -> Result<(), Error> {
             }
         }
     }
-    output.commit()
+    Ok(output)
 }

@@ -3,7 +3,7 @@
 use cli::{Failure, Files};
 use compare::heatmap::heatmap;
 use compare::{Report, Settings, difference, html};
-use formats::atomic;
+use formats::atomic::Group;
 use formats::image::Image;
 use serde::Serialize;
 
@@ -51,25 +51,26 @@ pub(crate) fn write(
     let difference = arguments.diff_exr.is_some().then(|| difference(reference, test));
     let path = arguments.diff_exr.as_deref().unwrap_or(&arguments.test).display();
     let difference = difference.transpose().map_err(|error| Failure::numerical(format!("{path}: {error}")))?;
+    let mut group = Group::default();
     let document = document(arguments, report, verdict);
     if let Some(path) = &arguments.json {
-        atomic::write(path, (serde_json::to_string_pretty(&document)? + "\n").as_bytes())?;
+        group.write(path, (serde_json::to_string_pretty(&document)? + "\n").as_bytes())?;
     }
     if let Some(path) = &arguments.html {
         let page = arguments.common.in_pool(|| html::page(&document, report, reference, test))??;
-        atomic::write(path, &page)?;
+        group.write(path, &page)?;
     }
     if let (Some(path), Some(difference)) = (&arguments.diff_exr, difference) {
         let fail = |error| Failure::usage(format!("{}: {error}", path.display()));
         let bytes = difference.encode_with(arguments.threads()).map_err(fail)?;
-        atomic::write(path, &bytes)?;
+        group.write(path, &bytes)?;
     }
     if let Some(path) = &arguments.heatmap {
         let fail = |error| Failure::usage(format!("{}: {error}", path.display()));
         let bytes = heatmap(reference, test, &settings.choice, arguments.heatmap_max).map_err(fail)?;
-        atomic::write(path, &bytes)?;
+        group.write(path, &bytes)?;
     }
-    Ok(())
+    Ok(group.commit()?)
 }
 
 fn document<'a>(arguments: &Arguments, report: &'a Report, verdict: &'a str) -> Document<'a> {

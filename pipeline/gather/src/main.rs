@@ -14,7 +14,7 @@ use choices::{cameras, estimator, settings};
 use clap::Parser;
 use cli::{Failure, Need, camera_table, count, material_table};
 use formats::{
-    atomic::{self, Output},
+    atomic::{Group, Output},
     cloud::Cloud,
 };
 use gather::{Input, Rendered, Settings, clouds, film, media, preview};
@@ -88,15 +88,17 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             health,
         };
         let write = Instant::now();
+        let mut group = Group::default();
         if rendered.non_finite_count == 0 {
-            write_image(arguments, shot, &facts, &rendered, output, &path)?;
+            write_image(arguments, shot, &facts, &rendered, (output, &path), &mut group)?;
         }
         seconds.0.push(("write", write.elapsed().as_secs_f64()));
         seconds.0.push(("total", start.elapsed().as_secs_f64()));
         if let Some(path) = &arguments.stats {
             let seconds = (!arguments.no_timings).then_some(&seconds);
-            atomic::write(&shot.file(path), &facts.statistics(&rendered, seconds, common.thread_count()))?;
+            group.write(&shot.file(path), &facts.statistics(&rendered, seconds, common.thread_count()))?;
         }
+        group.commit()?;
         finish(arguments, &facts, &rendered).map_err(|e| shot.failure(e))?;
         if let Some(warning) = outlook::warning(&rendered.counts, settings) {
             common.warn(shot.line(&warning));
@@ -162,8 +164,8 @@ fn write_image(
     shot: &Shot,
     facts: &Facts,
     rendered: &Rendered,
-    mut output: Output,
-    path: &Path,
+    (mut output, path): (Output, &Path),
+    group: &mut Group,
 ) -> Result<(), Failure> {
     let (settings, part) = (facts.settings, facts.settings.part());
     let origin = facts.clouds[0].meta().exchange_origin_m().map(f64::from).into();
@@ -171,11 +173,11 @@ fn write_image(
     image.attributes = facts.attributes(arguments);
     let bytes = image.encode_with(threads(arguments))?;
     output.write_all(&bytes).map_err(|source| formats::Error::write(path, source))?;
+    group.add(output);
     if let Some(preview_path) = &arguments.preview {
         let png = preview::png(&rendered.pixels, part.width, part.height, arguments.exposure)?;
-        atomic::write(&shot.file(preview_path), &png)?;
+        group.write(&shot.file(preview_path), &png)?;
     }
-    output.commit()?;
     Ok(())
 }
 

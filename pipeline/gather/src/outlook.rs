@@ -14,7 +14,7 @@ pub fn warning(counts: &Counts, settings: &Settings) -> Option<String> {
     let met = counts.from_outside + counts.from_inside;
     if met == 0 {
         return Some(format!(
-            "{what} sees no translucent surface: does it look where they are, and is it in the scene's units \
+            "{what} sees no translucent surface: does it look towards one, and is its position in the scene's units \
              (--list-cameras, --metres-per-unit)?"
         ));
     }

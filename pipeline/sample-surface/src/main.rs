@@ -8,7 +8,7 @@ use cli::{
     read_medium,
 };
 use formats::{
-    atomic::{self, Output},
+    atomic::{Group, Output},
     cloud::{self, Cloud, Options, Shard},
     write_ply,
 };
@@ -155,25 +155,30 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         common.say("no material is marked as a volume: all surfaces that do not emit are translucent");
     }
     let kept = is_current(output_path, &plan);
-    if kept {
+    let mut group = Group::default();
+    let cloud = if kept {
         touch(output_path);
         common.say(format_args!("{}: up to date, kept", output_path.display()));
+        Cloud::open(output_path)?
     } else {
-        let output = Output::create(output_path)?;
+        let mut output = Output::create(output_path)?;
         common.in_pool(|| {
             let work =
                 Work { arguments, output_path, settings: &settings, scene: &scene, plan: &plan, goal: goal.as_ref() };
-            work.sample_and_write(output, &mut seconds)
+            work.sample_and_write(&mut output, &mut seconds)
         })??;
-    }
-    let cloud = Cloud::open(output_path)?;
+        let cloud = Cloud::open(output.written()?)?;
+        group.add(output);
+        cloud
+    };
     if let Some(path) = &arguments.ply {
-        write_ply(path, &cloud)?;
+        group.add(write_ply(path, &cloud)?);
     }
     seconds.add("total", start);
     if let Some(path) = &arguments.stats {
-        atomic::write(path, &statistics(&cloud, &plan.health, &seconds, common, kept))?;
+        group.write(path, &statistics(&cloud, &plan.health, &seconds, common, kept))?;
     }
+    group.commit()?;
     report(&cloud, common);
     Ok(())
 }
@@ -259,7 +264,7 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    fn sample_and_write(&self, mut output: Output, seconds: &mut Seconds) -> Result<(), Failure> {
+    fn sample_and_write(&self, output: &mut Output, seconds: &mut Seconds) -> Result<(), Failure> {
         let start = Instant::now();
         let rays = Rays::of_scene(self.scene, |m| self.plan.samples(m));
         seconds.add("ray_tree", start);
@@ -267,8 +272,7 @@ impl Work<'_> {
         let sampled = self.sample(&rays).map_err(|e| named(&self.arguments.scene, &e))?;
         seconds.add("sample", start);
         let start = Instant::now();
-        cloud::write(&mut output, self.output_path, &sampled.content, &sampled.meta)?;
-        output.commit()?;
+        cloud::write(output, self.output_path, &sampled.content, &sampled.meta)?;
         seconds.add("write", start);
         Ok(())
     }
