@@ -1,5 +1,7 @@
-//! The equations of method.md against independent numbers, closed forms and quadrature.
+//! The equations of docs/method.md against independent numbers, closed forms and quadrature.
 
+#[path = "equations/citations.rs"]
+mod citations;
 #[path = "equations/fits.rs"]
 mod fits;
 #[path = "equations/media.rs"]

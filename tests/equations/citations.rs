@@ -1,0 +1,55 @@
+//! Equations are cited by the numbers of docs/method.md.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+/// The sources under a folder.
+fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).expect("lists") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            sources(&path, found);
+        } else if path.extension().is_some_and(|end| end == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+/// The numbers that follow a citation: `5.8`, `(6.7)`, `5.2, 5.3`, `9.1 to 9.5`, `5.10 by 9.5`.
+fn numbers(after: &str) -> Vec<&str> {
+    let end = after.find(|c: char| !(c.is_ascii_digit() || " .,()\n/!tobyand".contains(c))).unwrap_or(after.len());
+    let words = after[..end].split(|c: char| !(c.is_ascii_digit() || c == '.')).map(|word| word.trim_matches('.'));
+    words
+        .filter(|word| word.split_once('.').is_some_and(|(a, b)| a.parse::<u32>().is_ok() && b.parse::<u32>().is_ok()))
+        .collect()
+}
+
+#[test]
+fn numbers_are_found_in_citations() {
+    assert_eq!(numbers(" 5.8) and a cross product"), ["5.8"]);
+    assert_eq!(numbers(" (6.7):"), ["6.7"]);
+    assert_eq!(numbers(" 2.1 to\n//! 2.3)."), ["2.1", "2.3"]);
+    assert_eq!(numbers(" 5.10 by 9.5), and 1"), ["5.10", "9.5"]);
+}
+
+/// Seen to catch: an equation renumbered in the document, and one cited that it lacks.
+#[test]
+fn every_equation_that_is_cited_is_in_the_document() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let document = fs::read_to_string(root.join("docs/method.md")).expect("reads");
+    let mut files = Vec::new();
+    ["crates", "pipeline", "tests", "data"].iter().for_each(|folder| sources(&root.join(folder), &mut files));
+    let mut cited = 0;
+    for file in files.iter().filter(|path| !path.ends_with("citations.rs")) {
+        let text = fs::read_to_string(file).expect("reads");
+        for (at, name) in text.match_indices("method.md") {
+            for number in numbers(&text[at + name.len()..]) {
+                assert!(document.contains(&format!("({number})")), "{}: method.md has no {number}", file.display());
+                cited += 1;
+            }
+        }
+    }
+    assert!(cited > 40, "only {cited} citations were found");
+}
