@@ -3,7 +3,7 @@
 mod sheet;
 
 use clap::Parser;
-use cli::Failure;
+use cli::{Failure, Files, file_name};
 use formats::atomic;
 use picture::Picture;
 use sheet::{Cell, Sheet};
@@ -17,7 +17,7 @@ struct Arguments {
     #[arg(value_name = "TITLE=FILE.png", required = true)]
     pictures: Vec<String>,
     /// PNG file to write
-    #[arg(short, long, value_name = "SHEET.png")]
+    #[arg(short, long, value_name = "SHEET.png", value_parser = file_name())]
     output: PathBuf,
     /// Pictures in a column
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u16).range(1..=64))]
@@ -39,16 +39,25 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.pictures.len() > MOST {
         return Err(Failure::usage(format!("{} pictures; a sheet takes {MOST}", arguments.pictures.len())));
     }
-    let cells: Vec<Cell> = arguments.pictures.iter().map(|text| cell(text, arguments)).collect::<Result<_, _>>()?;
-    let sheet = Sheet::new(&cells, usize::from(arguments.rows), usize::from(arguments.side));
+    let pictures: Vec<_> = arguments.pictures.iter().map(|text| titled(text)).collect::<Result<_, _>>()?;
+    let mut files = Files::default();
+    pictures.iter().try_for_each(|(_, file)| files.reads("FILE.png", file))?;
+    files.writes("--output", &arguments.output)?;
+    let side = usize::from(arguments.side);
+    let cells: Vec<Cell> = pictures.iter().map(|picture| cell(*picture, side)).collect::<Result<_, _>>()?;
+    let sheet = Sheet::new(&cells, usize::from(arguments.rows), side);
     atomic::write(&arguments.output, &sheet.encode()?)?;
     Ok(())
 }
 
-fn cell(text: &str, arguments: &Arguments) -> Result<Cell, Failure> {
+fn titled(text: &str) -> Result<(&str, &Path), Failure> {
     let (title, file) = text
         .split_once('=')
         .ok_or_else(|| Failure::usage(format!("`{text}`: give TITLE=FILE.png; a title may be empty")))?;
-    let picture = Picture::read(Path::new(file))?.fit(usize::from(arguments.side));
+    Ok((title, Path::new(file)))
+}
+
+fn cell((title, file): (&str, &Path), side: usize) -> Result<Cell, Failure> {
+    let picture = Picture::read(file)?.fit(side);
     Ok(Cell { title: title.split('/').map(String::from).collect(), picture })
 }
