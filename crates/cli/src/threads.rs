@@ -5,6 +5,8 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::{
     num::NonZeroUsize,
     sync::{Mutex, PoisonError},
+    thread,
+    time::Duration,
 };
 
 /// The pool of the process, once it is needed, and how many threads were asked for.
@@ -50,6 +52,8 @@ fn start(count: usize, warn: impl Fn(String)) -> Result<ThreadPool, Failure> {
             }
             Err(fault) => failure = Some(fault),
         }
+        // Those that were started end by themselves, and count until they have.
+        thread::sleep(Duration::from_millis(20));
         wanted /= 2;
     }
     let pool = ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();

@@ -3,7 +3,7 @@
 use crate::support::{Bench, data, program};
 use std::{
     fs,
-    os::unix::fs::{PermissionsExt, symlink},
+    os::unix::fs::{MetadataExt, PermissionsExt, symlink},
     path::Path,
     process::{Command, Output},
     time::{Duration, Instant},
@@ -138,17 +138,19 @@ fn a_file_that_may_not_grow_leaves_no_half_behind() {
 }
 
 /// Runs a program as a user who may have `processes` processes, which threads count as. Root is bound by no such limit,
-/// so it becomes another user first; who is neither root nor bound sees nothing of it.
+/// so it becomes another user first.
 fn with_few_threads(bench: &Bench, processes: u32, name: &str, arguments: &[&str]) -> Output {
-    // The other user must be able to read the program.
+    // The other user must be able to read the program. This process must not have it open for writing, even for a moment:
+    // what another test starts just then would have it too, and it could not be run.
     let copy = bench.path(name);
-    fs::copy(program(name), &copy).expect("copies");
-    fs::set_permissions(bench.folder(), fs::Permissions::from_mode(0o777)).expect("sets");
-    fs::set_permissions(&copy, fs::Permissions::from_mode(0o755)).expect("sets");
-    let mut command = Command::new("/bin/sh");
-    let become_nobody =
-        "if [ \"$(id -u)\" = 0 ]; then exec setpriv --reuid 64321 --clear-groups \"$@\"; fi; exec \"$@\"";
-    command.args(["-c", &format!("ulimit -u {processes}; {become_nobody}"), "sh"]).arg(copy);
+    assert!(Command::new("cp").arg(program(name)).arg(&copy).status().expect("starts").success());
+    [(bench.folder(), 0o777), (&copy, 0o755)]
+        .iter()
+        .for_each(|(path, mode)| fs::set_permissions(path, fs::Permissions::from_mode(*mode)).expect("sets"));
+    let mut command = Command::new("prlimit");
+    command.arg(format!("--nproc={processes}"));
+    let is_root = fs::metadata("/proc/self").is_ok_and(|meta| meta.uid() == 0);
+    command.args(if is_root { &["setpriv", "--reuid", "64321", "--clear-groups"][..] } else { &[] }).arg(copy);
     command.current_dir(bench.folder()).args(arguments).output().expect("starts")
 }
 
@@ -160,10 +162,11 @@ fn few_threads_or_none_give_the_same_bytes() {
     let bench = bench();
     let expected = fs::read(bench.path("slab.cloud")).expect("reads");
     let line = words("scene.gltf -n 1000 --environment sky.hdr -o few.cloud -j 8");
-    for processes in [1, 4] {
+    for (processes, said) in [(1, "none of 8 threads"), (4, "of 8 threads"), (1000, "sampling")] {
         let output = with_few_threads(&bench, processes, "sample-surface", &line);
         let message = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(0), "{processes} processes: {message}");
+        assert!(message.contains(said), "{processes} processes: {message}");
         assert_eq!(fs::read(bench.path("few.cloud")).expect("reads"), expected);
         fs::remove_file(bench.path("few.cloud")).expect("removes");
     }
