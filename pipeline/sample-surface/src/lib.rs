@@ -8,14 +8,16 @@ mod curve;
 mod enough;
 pub mod hierarchy;
 mod pattern;
+mod points;
 mod ribbon;
 mod sample;
 mod trials;
 
 pub use bounce::Bounce;
 pub use choice::{Choice, Chosen, TriangleChoice};
-pub use enough::{Enough, Goal, Round, sample_enough};
+pub use enough::{Enough, Round, sample_enough};
 pub use pattern::{Numbers, Pattern, Place};
+pub use points::Goal;
 pub use sample::{Drawn, LitSurface, draw};
 pub use trials::{TRIALS, Trials};
 

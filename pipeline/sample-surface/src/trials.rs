@@ -6,7 +6,11 @@
 //! `ν = (tr C)²/tr C²` degrees of freedom (Satterthwaite 1946). Here `tr C` is the mean of `|d|²`, and `tr C²` that of
 //! `(d · d')²` over pairs of trials. Light that is rare makes `|d|²` scatter more: the smaller of both counts.
 
-use crate::{Goal, Plan, SampleError, Settings, enough::Points, sample};
+use crate::{
+    Plan, SampleError, Settings,
+    points::{Goal, Points},
+    sample,
+};
 use rayon::prelude::*;
 use scene::{Rays, Scene, random};
 use sums::confidence::Estimate;
