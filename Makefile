@@ -249,7 +249,7 @@ CHECK_SPP     := 12
 CHECK_SIZE    := 48
 # Light from a flame inside a hollow takes many samples before its means are near normal.
 CHECK_SAMPLES_candle := 500k
-# The one medium that absorbs in all colours, and thus tells most about coefficients, is worth more.
+# The one medium that absorbs in all colors, and thus tells most about coefficients, is worth more.
 CHECK_SAMPLES_piglet := 200k
 CHECK_SPP_piglet     := 24
 REFERENCE_SEED  := 1

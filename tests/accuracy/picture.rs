@@ -76,7 +76,7 @@ fn ratios(setting: &Setting, model: Model, exact: &[Plane; 3], shown: &[Plane; 3
 /// Enlargement of a pixel.
 const ZOOM: usize = 4;
 
-/// Brute force, model, and their relative difference (red: the model is brighter, blue: darker; full colour at 50 %).
+/// Brute force, model, and their relative difference (red: the model is brighter, blue: darker; full color at 50 %).
 fn panels(exact: &[Plane; 3], shown: &[Plane; 3]) -> Result<Vec<u8>, png::EncodingError> {
     let tone = |x: f64| (255.0 * (1.0 - (-1.5 * x.max(0.0)).exp()).powf(1.0 / 2.2)).round() as u8;
     let picture = |planes: &[Plane; 3], k: usize| [0, 1, 2].map(|c| tone(planes[c][k]));

@@ -161,7 +161,7 @@ fn sphere(text: &mut String, spheres: &[Ratios]) -> Result<(), Error> {
     )?;
     writeln!(
         text,
-        "full colour at 50 %. The ratios are of the means where the surface turns to or from the light by more"
+        "full color at 50 %. The ratios are of the means where the surface turns to or from the light by more"
     )?;
     writeln!(text, "than 30 degrees, red, green and blue.\n")?;
     writeln!(text, "| model | | lit side | dark side |\n|---|---|---|---|")?;

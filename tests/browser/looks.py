@@ -4,10 +4,10 @@ import check
 
 CONTRAST = """(() => {
   const canvas = new OffscreenCanvas(1, 1).getContext('2d', { willReadFrequently: true });
-  const rgb = (colour) => { canvas.fillStyle = colour; canvas.fillRect(0, 0, 1, 1); return [...canvas.getImageData(0, 0, 1, 1).data]; };
+  const rgb = (color) => { canvas.fillStyle = color; canvas.fillRect(0, 0, 1, 1); return [...canvas.getImageData(0, 0, 1, 1).data]; };
   const linear = (code) => (code /= 255) <= 0.04045 ? code / 12.92 : ((code + 0.055) / 1.055) ** 2.4;
   const luminance = ([r, g, b]) => 0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b);
-  const ground = (node) => { for (; node; node = node.parentElement) { const colour = rgb(getComputedStyle(node).backgroundColor); if (getComputedStyle(node).backgroundColor !== 'rgba(0, 0, 0, 0)') return colour; } return [255, 255, 255]; };
+  const ground = (node) => { for (; node; node = node.parentElement) { const color = rgb(getComputedStyle(node).backgroundColor); if (getComputedStyle(node).backgroundColor !== 'rgba(0, 0, 0, 0)') return color; } return [255, 255, 255]; };
   const low = [];
   for (const node of document.querySelectorAll('h1, h2, h3, p, th, td, label, button, span, output, a, summary')) {
     if (!node.textContent.trim() || !node.checkVisibility() || node.classList.contains('tag')) continue;

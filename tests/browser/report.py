@@ -32,7 +32,7 @@ class Report:
             const [x, y] = toStage(pane, {x - WINDOW[0] + 0.5}, {y - WINDOW[1] + 0.5});
             return [box.left + x / density(), box.top + y / density()]; }})()""")
 
-    def colour(self, x, y, shift=0.25):
+    def color(self, x, y, shift=0.25):
         """What the canvas shows in a pixel, beside its middle, where no value is written."""
         return self.browser.run(f"""(() => {{ const pane = panes().at(-1);
             const place = toStage(pane, {x - WINDOW[0]} + {shift}, {y - WINDOW[1]} + {shift}).map(Math.round);
@@ -67,7 +67,7 @@ def slider(report):
     at = lambda part: [box["left"] + part * box["width"], box["top"] + box["height"] * 0.4]
     browser.drag(at(0.5), at(0.25))
     check.true("dragging moves the split", abs(browser.run("state.split") - 0.25) < 0.02, browser.run("state.split"))
-    check.equal("right of it is the test image", report.colour(20, -12), report.expected(report.test, 20, -12))
+    check.equal("right of it is the test image", report.color(20, -12), report.expected(report.test, 20, -12))
     browser.run("byId('split').focus()")
     before = browser.run("state.split")
     browser.key("ArrowRight", times=4)
@@ -75,7 +75,7 @@ def slider(report):
     browser.key("[")
     check.true("and so does [", abs(browser.run("state.split") - before) < 1e-9)
     report.split_of(1)
-    check.equal("left of it is the reference", report.colour(20, -12), report.expected(report.reference, 20, -12))
+    check.equal("left of it is the reference", report.color(20, -12), report.expected(report.reference, 20, -12))
     report.split_of(0)
 
 
@@ -125,7 +125,7 @@ def exposure(report):
     for stops in [0, 1, -2.5]:
         browser.run(f"byId('stops').value = '{stops}'; byId('stops').dispatchEvent(new Event('change'))")
         browser.settle()
-        check.equal(f"sRGB at {stops} stops", report.colour(11, -19), report.expected(report.test, 11, -19, stops))
+        check.equal(f"sRGB at {stops} stops", report.color(11, -19), report.expected(report.test, 11, -19, stops))
     codes = browser.run("Array.from({ length: 4001 }, (_, i) => srgbCode(i / 4000))")
     check.equal("the whole curve", codes, [srgb(i / 4000) for i in range(4001)])
     browser.run("stage.focus()")
@@ -133,7 +133,7 @@ def exposure(report):
     check.equal("a key lowers it", browser.run("byId('stops').value"), "-3")
     browser.run("setStops(0)")
     browser.settle()
-    check.equal("NaN in a colour of its own", report.colour(12, -18), MAGENTA)
+    check.equal("NaN in a color of its own", report.color(12, -18), MAGENTA)
 
 
 def flicker(report):
@@ -142,7 +142,7 @@ def flicker(report):
     browser.run("byId('fit').click()")
     browser.key("2")
     for _ in range(2):
-        shown.append((report.text("#tag-left"), report.colour(14, -15)))
+        shown.append((report.text("#tag-left"), report.color(14, -15)))
         browser.key(" ")
     expected = [("reference", report.expected(report.reference, 14, -15)), ("test", report.expected(report.test, 14, -15))]
     check.equal("flicker shows both in turn", shown, expected)
@@ -160,16 +160,16 @@ def errors(report):
     browser.key("4")
     browser.run("byId('scale').value = '0.05'; byId('scale').dispatchEvent(new Event('change'))")
     browser.settle()
-    maps = browser.run("picture.colours")
-    check.equal("signed: brighter beyond the scale", report.colour(20, -12), [*maps["signed"][-1], 255])
-    check.equal("signed: darker", report.colour(15, -12), [*maps["signed"][0], 255])
-    check.equal("signed: NaN", report.colour(12, -18), MAGENTA)
+    maps = browser.run("picture.colors")
+    check.equal("signed: brighter beyond the scale", report.color(20, -12), [*maps["signed"][-1], 255])
+    check.equal("signed: darker", report.color(15, -12), [*maps["signed"][0], 255])
+    check.equal("signed: NaN", report.color(12, -18), MAGENTA)
     browser.run("chooseLayer(0, 1)")
     browser.settle()
-    check.equal("signed: equal", report.colour(20, -12), [*maps["signed"][3], 255])
+    check.equal("signed: equal", report.color(20, -12), [*maps["signed"][3], 255])
     browser.key("5")
-    check.equal("absolute: equal", report.colour(20, -12), [*maps["absolute"][0], 255])
-    check.equal("absolute: beyond the scale", report.colour(15, -12), [*maps["absolute"][-1], 255])
+    check.equal("absolute: equal", report.color(20, -12), [*maps["absolute"][0], 255])
+    check.equal("absolute: beyond the scale", report.color(15, -12), [*maps["absolute"][-1], 255])
     check.true("the scale is written", "0.05" in report.text("#legend"), report.text("#legend"))
     browser.run("chooseLayer(0)")
 
@@ -182,13 +182,13 @@ def layers(report):
     browser.wait("state.data.name === 'Z'")
     browser.settle()
     check.true("depth: its range is written", all(part in report.text("#legend") for part in ["1", "6.75"]), report.text("#legend"))
-    check.equal("depth: the nearest is black", report.colour(10, -20), [0, 0, 0, 255])
+    check.equal("depth: the nearest is black", report.color(10, -20), [0, 0, 0, 255])
     check.true("depth has no exposure", browser.run("byId('exposure-group').hidden"))
     pick("N")
     browser.wait("state.data.name === 'N'")
     browser.settle()
     # Pixel 0: sin 0, cos 0 and 0, as parts of -1 to 1.
-    check.equal("vectors from -1 to 1", report.colour(10, -20), [128, 255, 128, 255])
+    check.equal("vectors from -1 to 1", report.color(10, -20), [128, 255, 128, 255])
     browser.run("stage.focus()")
     name = browser.run("state.data.name")
     browser.key("l")

@@ -9,7 +9,7 @@ use crate::{
 
 /// Rounds end after two that took this long together, s: the times of short runs vary most.
 const ENOUGH: f64 = 3.0;
-const MOST_ROUNDS: u32 = 6;
+const MAX_ROUNDS: u32 = 6;
 
 /// Every scene, medium and number of samples.
 pub fn everywhere(bench: &mut Bench, subjects: &[Subject]) -> Result<Findings, Error> {
@@ -43,7 +43,7 @@ pub fn everywhere(bench: &mut Bench, subjects: &[Subject]) -> Result<Findings, E
 /// Seconds of both programs, sampling anew each time, of two configurations in turn: the least of several rounds.
 fn shortest(bench: &mut Bench, shot: &Shot, rivals: [Configuration; 2]) -> Result<[f64; 2], Error> {
     let (mut least, mut spent) = ([f64::INFINITY; 2], 0.0);
-    for round in 0..MOST_ROUNDS {
+    for round in 0..MAX_ROUNDS {
         bench.forget_clouds();
         for (least, configuration) in least.iter_mut().zip(rivals) {
             let seconds = bench.take(&Shot { configuration, ..shot.clone() })?.seconds();

@@ -116,7 +116,7 @@ pub struct Spending {
 }
 
 /// The most paths a pixel that `gather` takes.
-const MOST_PATHS: f64 = 1_048_576.0;
+const MAX_PATHS: f64 = 1_048_576.0;
 
 impl Behaviour {
     /// Seconds and error of a cloud of `samples` under `spp` paths a pixel.
@@ -133,15 +133,15 @@ impl Behaviour {
         let one = |samples: f64| {
             let left = error * error - self.cloud.at(samples).powi(2);
             let spp = (self.paths.at(1.0 / samples) / left).powf(1.0 / self.falls).max(1.0);
-            (left > 0.0 && spp <= MOST_PATHS).then(|| self.spending(samples, spp))
+            (left > 0.0 && spp <= MAX_PATHS).then(|| self.spending(samples, spp))
         };
         all.filter_map(one).min_by(|a, b| a.seconds.total_cmp(&b.seconds))
     }
 
     /// The least error within a time and up to a number of samples.
-    pub fn best_within(&self, seconds: f64, most_samples: f64) -> Option<Spending> {
+    pub fn best_within(&self, seconds: f64, max_samples: f64) -> Option<Spending> {
         let errors = (0..=300).map(|step| 10f64.powf(-3.0 + f64::from(step) / 100.0));
-        errors.filter_map(|e| self.cheapest(e)).find(|s| s.seconds <= seconds && s.samples <= most_samples)
+        errors.filter_map(|e| self.cheapest(e)).find(|s| s.seconds <= seconds && s.samples <= max_samples)
     }
 }
 

@@ -25,8 +25,8 @@ const HEIGHT: f64 = 440.0;
 const AREA: [f64; 4] = [70.0, 40.0, 560.0, 385.0];
 /// Text and axes: contrast above 4 on white and on the dark grey of code hosts alike.
 const INK: &str = "#7b8087";
-/// Distinct for most colour-blind eyes, and neither very dark nor very light.
-const COLOURS: [&str; 8] = ["#8c8c8c", "#d98b00", "#2f9bd6", "#00a077", "#b9a400", "#d5557f", "#8d6bd1", "#d9582b"];
+/// Distinct for most color-blind eyes, and neither very dark nor very light.
+const COLORS: [&str; 8] = ["#8c8c8c", "#d98b00", "#2f9bd6", "#00a077", "#b9a400", "#d5557f", "#8d6bd1", "#d9582b"];
 
 /// Decades or parts of one, on one axis.
 struct Axis {
@@ -109,10 +109,10 @@ fn axes(svg: &mut String, x: &Axis, y: &Axis) {
 
 /// A curve and its line of the legend.
 fn draw(svg: &mut String, curve: &Curve, index: usize, [x, y]: [&Axis; 2]) {
-    let colour = COLOURS[index % COLOURS.len()];
+    let color = COLORS[index % COLORS.len()];
     let dash = ["", "7 3", "2 3"][index % 3];
     let place = |p: &(f64, f64)| (x.at(p.0), y.at(p.1));
-    let stroke = format!("stroke=\"{colour}\" stroke-width=\"2\" stroke-dasharray=\"{dash}\" fill=\"none\"");
+    let stroke = format!("stroke=\"{color}\" stroke-width=\"2\" stroke-dasharray=\"{dash}\" fill=\"none\"");
     let points: Vec<String> = curve.line.iter().map(place).map(|(a, b)| format!("{a:.1},{b:.1}")).collect();
     let row = AREA[1] + 10.0 + 20.0 * index as f64;
     let from = AREA[2] + 12.0;
@@ -121,7 +121,7 @@ fn draw(svg: &mut String, curve: &Curve, index: usize, [x, y]: [&Axis; 2]) {
         out(format!("<polyline points=\"{}\" {stroke}/>", points.join(" ")));
         out(format!("<path d=\"M{from} {row}h24\" {stroke}/>"));
     }
-    let dot = |(a, b): (f64, f64)| format!("<circle cx=\"{a:.1}\" cy=\"{b:.1}\" r=\"4\" fill=\"{colour}\"/>");
+    let dot = |(a, b): (f64, f64)| format!("<circle cx=\"{a:.1}\" cy=\"{b:.1}\" r=\"4\" fill=\"{color}\"/>");
     curve.dots.iter().map(place).for_each(|p| out(dot(p)));
     if !curve.dots.is_empty() {
         out(dot((from + 12.0, row)));

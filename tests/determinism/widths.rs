@@ -7,7 +7,7 @@ use bssrdf::{
     simd::{self, Kernel, Level},
 };
 use gather::{
-    estimator::{Calibration, Cut, Estimator, Exhaustive, Radial, Roulette, Scratch, Sum},
+    estimator::{Calibration, Cut, Estimator, Exhaustive, FalloffTables, Roulette, Scratch, Sum},
     samples::{Exit, LitSamples},
 };
 use glam::DVec3;
@@ -16,7 +16,7 @@ use support::pipeline::{ESTIMATORS, MODELS, by_area, cloud};
 /// Sums by the plain body and by every kind of vectors that this processor has.
 fn each_way<M: LaneModel>(
     (medium, kind): (&Medium, Model),
-    radial: &Radial,
+    tables: &FalloffTables,
     samples: &LitSamples,
     exit: &Exit,
     estimator: Estimator,
@@ -33,7 +33,7 @@ fn each_way<M: LaneModel>(
             levels()
                 .map(|level| {
                     let scratch = &mut Scratch::default();
-                    simd::run_as(level, Cut { model, samples, radial, exit, accuracy, calibration, scratch })
+                    simd::run_as(level, Cut { model, samples, tables, exit, accuracy, calibration, scratch })
                 })
                 .collect()
         }
@@ -56,7 +56,7 @@ fn sums_have_the_same_bits_for_any_vector_width() {
     for medium in ["skin1", "marble", "espresso"].map(|name| built_in(name).expect("a built-in medium")) {
         let samples = LitSamples::new(&cloud, &cloud.meta().materials[0].halves[0], medium.eta);
         for model in MODELS {
-            let radial = Radial::new(&medium, &*model.of(&medium), 5e-3);
+            let tables = FalloffTables::new(&medium, &*model.of(&medium), 5e-3);
             let sums = match model {
                 Model::DirectionalDipole => each_way::<DirectionalLanes>,
                 Model::BetterDipole => each_way::<BetterLanes>,
@@ -67,7 +67,7 @@ fn sums_have_the_same_bits_for_any_vector_width() {
                 .flat_map(|e| [DVec3::Z, DVec3::NEG_X, DVec3::new(0.6, -0.8, 0.0)].map(|n| (e, n)))
             {
                 let exit = Exit::new(normal * 4e-3, normal, 77);
-                let sums = sums((&medium, model), &radial, &samples, &exit, estimator);
+                let sums = sums((&medium, model), &tables, &samples, &exit, estimator);
                 let bits = |s: &Sum| (s.radiance.to_array().map(f64::to_bits), s.evaluations, s.nodes);
                 let same = sums.iter().all(|s| bits(s) == bits(&sums[0]));
                 assert!(same, "{} {} {estimator:?}: {sums:?}", medium.name, model.name());

@@ -34,21 +34,21 @@ fn media_have_their_tabulated_reflectance() {
     }
 }
 
-/// A medium from the colour that it is to show, mm.
+/// A medium from the color that it is to show, mm.
 fn colored(color: [f64; 3], radius: [f64; 3], rest: &str) -> Result<Medium, MediumError> {
     Medium::from_json(&format!(r#"{{"name":"test","unit":"mm","color":{color:?},"radius":{radius:?}{rest}}}"#))
 }
 
-/// The half-space of that medium reflects the colour asked for: by the closed form (3.5), and by the integral of the
-/// model itself over a plane. Planted: one index for all media (10 % in a dark colour).
+/// The half-space of that medium reflects the color asked for: by the closed form (3.5), and by the integral of the
+/// model itself over a plane. Planted: one index for all media (10 % in a dark color).
 #[test]
-fn a_medium_shows_the_colour_asked_for() {
+fn a_medium_shows_the_color_asked_for() {
     for (eta, g) in [(1.0, 0.0), (1.3, 0.0), (1.5, 0.8), (0.7, -0.5)] {
         for color in [[0.0, 1e-4, 0.02], [0.2, 0.5, 0.8], [0.9, 0.99, 0.9999]] {
             let radius = [0.1, 1.0, 30.0];
             let medium = colored(color, radius, &format!(r#","eta":{eta},"g":{g}"#)).expect("a medium");
             for (c, value) in diffuse_reflectance(&medium).into_iter().enumerate() {
-                // A colour near 1 leaves few digits of 1 - albedo.
+                // A color near 1 leaves few digits of 1 - albedo.
                 assert!((value - color[c]).abs() < 1e-10, "{value} for {}", color[c]);
                 let transport = medium.channels[c].transport();
                 assert!((transport * radius[c] * 1e-3 - 1.0).abs() < 1e-9, "1/{transport} for {} mm", radius[c]);
@@ -107,10 +107,10 @@ fn the_albedo_of_the_gltf_drafts() {
     assert!((single_scattering_albedo(0.5, 0.5) - 0.9117 / (1.0 - 0.5 * 0.0883)).abs() < 1e-4);
 }
 
-/// What the drafts' formula is for: without a reflecting boundary, the medium shows the colour under light from all
+/// What the drafts' formula is for: without a reflecting boundary, the medium shows the color under light from all
 /// around, to the 1 % that the fit is good for. Random walks, false alarms 1 in 10⁵. Planted: the albedo 2 % too low.
 #[test]
-fn the_drafts_colour_is_that_of_random_walks() {
+fn the_drafts_color_is_that_of_random_walks() {
     let walks = if cfg!(feature = "slow") { 1_000_000 } else { 50_000 };
     for color in [0.1, 0.5, 0.9] {
         let matter = Matter { albedo: single_scattering_albedo(color, 0.0), asymmetry: 0.0, eta: 1.0 };

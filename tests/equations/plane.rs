@@ -17,7 +17,7 @@ fn extent(medium: &Medium) -> Extent {
     Extent { inner: 1e-6 * path, outer }
 }
 
-struct Entry {
+struct ReferenceValue {
     name: String,
     medium: Medium,
     /// `I` of each model at 0° and, if tabulated, 60°.
@@ -26,14 +26,14 @@ struct Entry {
     reflectances: [f64; 2],
 }
 
-fn entries() -> Vec<Entry> {
+fn entries() -> Vec<ReferenceValue> {
     let file: Value =
         serde_json::from_str(include_str!("../reference/plane_reflectance.json")).expect("the reference file is JSON");
     let read = |entry: &Value| {
         let number = |value: &Value| value.as_f64().expect("a number");
         let coefficient = |key: &str| number(&entry[key]);
         let tabulated = |name: &str, key: &str| number(&entry[name][key]);
-        Entry {
+        ReferenceValue {
             name: format!("{} {}", entry["material"], entry["channel"]),
             medium: grey(coefficient("sigma_a"), coefficient("sigma_s"), coefficient("g"), coefficient("eta")),
             integrals: vec![

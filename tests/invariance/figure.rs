@@ -80,7 +80,7 @@ impl Figure {
         self
     }
 
-    /// One more light in the place of a node's light, with a colour of its own.
+    /// One more light in the place of a node's light, with a color of its own.
     pub fn with_copy_of(mut self, name: &str, color: DVec3) -> Figure {
         let node = self.node(name).clone();
         let lights = &mut self.document["extensions"]["KHR_lights_punctual"]["lights"];

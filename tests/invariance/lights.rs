@@ -68,11 +68,11 @@ fn lights_add_up() {
 #[test]
 fn red_green_and_blue_make_white() {
     let white = Figure::read().with_copy_of("Key", DVec3::ONE).unlit_by(&["Key", "Back", "Rim"]).world();
-    let colours = [DVec3::X, DVec3::Y, DVec3::Z];
-    let figure = colours.into_iter().fold(Figure::read(), |figure, c| figure.with_copy_of("Key", c));
-    let coloured = figure.unlit_by(&["Key", "Back", "Rim"]).world();
-    assert_eq!((white.scene.lights.len(), coloured.scene.lights.len()), (1, 3));
-    assert_paired("colours", 400, 1e-2, |seed| {
-        [&white, &coloured].map(|world| sum(&Shot::smooth(seed).of(world), SUBSURFACE))
+    let colors = [DVec3::X, DVec3::Y, DVec3::Z];
+    let figure = colors.into_iter().fold(Figure::read(), |figure, c| figure.with_copy_of("Key", c));
+    let colored = figure.unlit_by(&["Key", "Back", "Rim"]).world();
+    assert_eq!((white.scene.lights.len(), colored.scene.lights.len()), (1, 3));
+    assert_paired("colors", 400, 1e-2, |seed| {
+        [&white, &colored].map(|world| sum(&Shot::smooth(seed).of(world), SUBSURFACE))
     });
 }

@@ -7,7 +7,7 @@ use crate::{
 use formats::cloud::Cloud;
 use gather::estimator::{Estimator, Rule};
 use glam::{DQuat, DVec3};
-use sample_surface::{Bounce, Drawn, LitSurface, Numbers, TriangleChoice, draw};
+use sample_surface::{Bounce, LitSurface, Numbers, SampleOutcome, TriangleChoice, draw};
 use scene::light::LightTree;
 use serde_json::json;
 use support::{
@@ -59,7 +59,7 @@ fn placed_as(original: &World, world: &World, shot: &Shot) -> Cloud {
     let mut halves = Halves::default();
     for (half, place) in numbers.places(&choice, 0..sampling.samples) {
         draw(&surface, &[(half, place)], &mut 0, |half, drawn| {
-            if let Drawn::Lit { sample, .. } = drawn {
+            if let SampleOutcome::Lit { sample, .. } = drawn {
                 halves[half].push(sample);
             }
         });

@@ -17,7 +17,7 @@ def hashed(shape, seed):
 
 
 def scene(width, height):
-    """A gradient of colours, a dark half, two highlights far above 1 and a grid of fine lines."""
+    """A gradient of colors, a dark half, two highlights far above 1 and a grid of fine lines."""
     x, y = numpy.meshgrid(numpy.arange(width) / width, numpy.arange(height) / height)
     picture = numpy.stack([0.1 + 0.8 * x, 0.3 + 0.4 * y, 0.9 - 0.7 * x * y], -1)
     picture[y > 0.6] *= 0.08

@@ -6,7 +6,7 @@ use gather::{Filter, Settings};
 use glam::DVec3;
 use scene::{
     SurfacePoint,
-    light::{Light as _, LightChoice, LightTree, Lit as Lighting, PointLight, Region, Spot, light_at},
+    light::{Light as _, LightChoice, LightTree, Lit as Lighting, PointLight, ReceiverBounds, Spot, light_at},
 };
 use support::{
     meshes::{Light, Part, World, quad, rectangle, slab, world},
@@ -40,7 +40,7 @@ fn light_a_millionth_above_the_surface() {
     for height in [1e-6, 1e-7] {
         let world = under(height);
         let tree = LightTree::new(&world.scene.lights);
-        let choice = LightChoice::new(&tree, &Region::point(&middle()), 1);
+        let choice = LightChoice::new(&tree, &ReceiverBounds::point(&middle()), 1);
         let Lighting::Light { direction, irradiance } = light_at(&choice, &world.rays, &middle(), [0.5; 3], &mut 0)
         else {
             panic!("the light is hidden {height} m above the surface");

@@ -18,7 +18,7 @@ use support::{
     z_test::{Estimate, assert_equal},
 };
 
-/// A picture of one colour.
+/// A picture of one color.
 fn even(color: DVec3) -> Environment {
     let map = EnvironmentMap::new((24, 12), vec![color.as_vec3(); 288], 1.0, 10.0).expect("good pixels");
     Environment::Map(map.into())
@@ -41,12 +41,12 @@ fn render(environment: Environment, sigma_s: f64, seed: u64) -> Rendered {
     gather::render(&input, &Settings { environment, filter: Filter::Box, paths_per_pixel: 2, ..settings }, |_| ())
 }
 
-/// A picture of one colour is that colour: what rays see is the same to the last bit, and the light on the body is on
+/// A picture of one color is that color: what rays see is the same to the last bit, and the light on the body is on
 /// average.
 ///
 /// Seen to catch: the probability of a pixel without that of its window.
 #[test]
-fn a_picture_of_one_colour_is_a_constant_environment() {
+fn a_picture_of_one_color_is_a_constant_environment() {
     let color = DVec3::new(0.5, 0.25, 2.0);
     let both = || [Environment::Constant(color), even(color)];
     let clear = both().map(|e| render(e, 0.0, 1).pixels.iter().map(|p| p.beauty()).collect::<Vec<_>>());

@@ -67,7 +67,7 @@ fn estimate(world: &World, camera: &Camera, first: u64, sampling: impl Fn(u64) -
     })
 }
 
-/// The mean of one colour for each seed, each channel.
+/// The mean of one color for each seed, each channel.
 pub fn over_seeds(seeds: Range<u64>, run: impl Fn(u64) -> DVec3 + Sync + Send) -> [Estimate; 3] {
     let runs: Vec<DVec3> = seeds.into_par_iter().map(run).collect();
     [0, 1, 2].map(|c| Estimate::of(&runs.iter().map(|r| r[c]).collect::<Vec<_>>()))
@@ -102,10 +102,10 @@ fn more_samples_do_not_move_the_mean() {
 #[test]
 fn red_green_and_blue_light_make_white() {
     let white = estimate(&lit_by(&[sun(DVec3::ONE)]), &corner(), 500, |seed| by_area(SAMPLES, seed));
-    let colours = [DVec3::X, DVec3::Y, DVec3::Z].map(sun);
-    let coloured = estimate(&lit_by(&colours), &corner(), 600, |seed| by_area(SAMPLES, seed));
+    let colors = [DVec3::X, DVec3::Y, DVec3::Z].map(sun);
+    let colored = estimate(&lit_by(&colors), &corner(), 600, |seed| by_area(SAMPLES, seed));
     for c in 0..3 {
-        assert_equal(&format!("three colours and white, channel {c}"), coloured[c], white[c]);
+        assert_equal(&format!("three colors and white, channel {c}"), colored[c], white[c]);
     }
 }
 

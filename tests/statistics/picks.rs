@@ -19,9 +19,9 @@ use support::{
 const LOOSE: Estimator = Estimator::Cut { accuracy: 1e9 };
 
 /// Samples in a point, each known by its flux: 1, 2, 3 and so on.
-fn numbered(x: f32, count: usize, colour: Vec3) -> impl Iterator<Item = Sample> {
+fn numbered(x: f32, count: usize, color: Vec3) -> impl Iterator<Item = Sample> {
     let position = Vec3::new(x, 0.0, 0.0);
-    (1..=count).map(move |k| Sample { position, normal: DVec3::Z, direction: DVec3::Z, flux: colour * k as f32 })
+    (1..=count).map(move |k| Sample { position, normal: DVec3::Z, direction: DVec3::Z, flux: color * k as f32 })
 }
 
 /// All samples in the first half of a cloud.

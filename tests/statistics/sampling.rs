@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 use sample_surface::{Choice, TriangleChoice};
 use scene::{
     NormalKind, SurfacePoint,
-    light::{LightChoice, LightTree, Region},
+    light::{LightChoice, LightTree, ReceiverBounds},
     random::{Item, Purpose, Stream},
     warp,
 };
@@ -120,7 +120,7 @@ fn lights_are_picked_with_the_probability_returned() {
     for triangle in [0, 12, 26, 34, 42] {
         let point: SurfacePoint = world.scene.mesh.point(triangle, [0.2, 0.5, 0.3], NormalKind::Geometric);
         let (mut observed, mut probability) = (vec![0; count], vec![0.0; count]);
-        let choice = LightChoice::new(&lights, &Region::point(&point), 1);
+        let choice = LightChoice::new(&lights, &ReceiverBounds::point(&point), 1);
         for item in items(u64::from(triangle)).take(DRAWS as usize / 4) {
             let pick = choice.pick(&point, item.uniform(3)).expect("the environment reaches every point");
             observed[pick.index] += 1;

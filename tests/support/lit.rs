@@ -7,7 +7,7 @@ use bssrdf::{
 };
 use formats::cloud::Cloud;
 use gather::{
-    estimator::{Calibration, Cut, Estimator, Exhaustive, Radial, Roulette, Scratch, Sum},
+    estimator::{Calibration, Cut, Estimator, Exhaustive, FalloffTables, Roulette, Scratch, Sum},
     samples::{Exit, LitSamples},
 };
 use glam::DVec3;
@@ -18,17 +18,17 @@ pub struct Scatterer {
     model: Model,
     medium: Medium,
     /// Only the cut needs it.
-    radial: OnceLock<Radial>,
+    tables: OnceLock<FalloffTables>,
 }
 
 impl Scatterer {
     pub fn new(model: Model, medium: &Medium) -> Scatterer {
-        Scatterer { model, medium: medium.clone(), radial: OnceLock::new() }
+        Scatterer { model, medium: medium.clone(), tables: OnceLock::new() }
     }
 
     /// The tables that the cut decides by.
-    pub fn radial(&self) -> &Radial {
-        self.radial.get_or_init(|| Radial::new(&self.medium, &*self.model.of(&self.medium), f64::INFINITY))
+    pub fn tables(&self) -> &FalloffTables {
+        self.tables.get_or_init(|| FalloffTables::new(&self.medium, &*self.model.of(&self.medium), f64::INFINITY))
     }
 
     /// The sum over samples, with the widest vectors there are.
@@ -49,9 +49,9 @@ impl Scatterer {
                 simd::dispatch(Roulette { model, samples, exit, rates })
             }
             Estimator::Cut { accuracy } => {
-                let (radial, accuracy, scratch) = (self.radial(), accuracy as f32, &mut Scratch::default());
+                let (tables, accuracy, scratch) = (self.tables(), accuracy as f32, &mut Scratch::default());
                 let calibration = &Calibration::default();
-                simd::dispatch(Cut { model, samples, radial, exit, accuracy, calibration, scratch })
+                simd::dispatch(Cut { model, samples, tables, exit, accuracy, calibration, scratch })
             }
         }
     }

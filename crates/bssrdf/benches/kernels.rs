@@ -9,7 +9,7 @@
 
 use bssrdf::{
     DVec3, Medium, built_in, fresnel,
-    lanes::{BetterLanes, Block, DirectionalLanes, Entry, LANES, Lane, LaneModel, StandardLanes},
+    lanes::{BetterLanes, Block, DirectionalLanes, EntryRefraction, LANES, Lane, LaneModel, StandardLanes},
     simd::{self, Kernel, Level},
 };
 use divan::{Bencher, black_box, counter::ItemsCount};
@@ -103,7 +103,7 @@ fn model<M: LaneModel>(bencher: Bencher, level: Level) {
 
 /// The entry of packed samples, reduced to one number.
 struct Enter<'a> {
-    entry: Entry,
+    entry: EntryRefraction,
     codes: &'a [[[u32; LANES]; 2]],
 }
 
@@ -130,7 +130,7 @@ fn entry(bencher: Bencher, level: Level) {
     let codes: Vec<_> = (0..BLOCKS).map(|_| [0; 2].map(|_| [0; LANES].map(|_| random.bits() as u32))).collect();
     bencher
         .counter(ItemsCount::new(BLOCKS * LANES))
-        .bench(|| simd::run_as(level, Enter { entry: black_box(Entry::new(1.3)), codes: black_box(&codes) }));
+        .bench(|| simd::run_as(level, Enter { entry: black_box(EntryRefraction::new(1.3)), codes: black_box(&codes) }));
 }
 
 /// Multiplications and additions that wait for nothing: what the core could do if all else were free.

@@ -1,4 +1,4 @@
-//! Which albedo a medium has by the colour that it shows: the inverse of multiple scattering.
+//! Which albedo a medium has by the color that it shows: the inverse of multiple scattering.
 
 /// `q = σ_tr/σ_t' = √(3(1 − α'))` of the half-space whose standard dipole reflects the share `color` of the light that
 /// enters it, by bisection of the closed form (method.md 3.5), which falls as `q` grows:
@@ -9,7 +9,7 @@ pub(crate) fn transport_ratio(color: f64, diffuse_fresnel: f64) -> f64 {
     let reflection = (1.0 + diffuse_fresnel) / (1.0 - diffuse_fresnel);
     let reflectance = |q: f64| 0.5 * (1.0 - q * q / 3.0) * (1.0 + (-4.0 / 3.0 * reflection * q).exp()) * (-q).exp();
     let (mut low, mut high) = (0.0, 3f64.sqrt());
-    // As many halvings as a float64 has digits, and those that a colour near 1 needs more.
+    // As many halvings as a float64 has digits, and those that a color near 1 needs more.
     for _ in 0..100 {
         let middle = 0.5 * (low + high);
         if reflectance(middle) > color { low = middle } else { high = middle }

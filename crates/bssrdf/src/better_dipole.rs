@@ -15,7 +15,7 @@ struct Channel {
     /// `C_E`.
     vector: f64,
     /// α'²/(4π) over the exit normalisation `4π C_φ(1/η)`.
-    strength: f64,
+    prefactor: f64,
 }
 
 /// The better dipole of one medium.
@@ -36,7 +36,7 @@ impl BetterDipole {
                 virtual_depth: real_depth + 4.0 * boundary.reflection * diffusion,
                 fluence: boundary.c_phi / diffusion,
                 vector: boundary.c_e,
-                strength: c.reduced_albedo().powi(2) / (4.0 * PI) / (PI * boundary.exit_norm),
+                prefactor: c.reduced_albedo().powi(2) / (4.0 * PI) / (PI * boundary.exit_norm),
             }
         });
         BetterDipole { channels }
@@ -47,7 +47,7 @@ impl Bssrdf for BetterDipole {
     /// `R_d(r)/(4π C_φ(1/η))` (method.md 4.3, 4.5).
     fn bare(&self, channel: usize, separation: &Separation) -> f64 {
         let c = &self.channels[channel];
-        if c.strength == 0.0 {
+        if c.prefactor == 0.0 {
             return 0.0; // σ_s' = 0: nothing scatters, and a vacuum has no depth
         }
         let r2 = separation.offset.length_squared();
@@ -58,7 +58,7 @@ impl Bssrdf for BetterDipole {
             (c.vector * depth * (1.0 + q) / d2 + sign * c.fluence) * (-q).exp() / d
         };
         // Rounding can leave a difference of equal terms below zero far away.
-        (c.strength * (source(c.real_depth, 1.0) + source(c.virtual_depth, -1.0))).max(0.0)
+        (c.prefactor * (source(c.real_depth, 1.0) + source(c.virtual_depth, -1.0))).max(0.0)
     }
 
     fn transport(&self) -> [f64; 3] {

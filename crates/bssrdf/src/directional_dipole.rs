@@ -36,7 +36,7 @@ pub struct DirectionalDipole {
     c_phi: f64,
     c_e: f64,
     /// `1/(4π² · 4C_φ(1/η))`.
-    strength: f64,
+    prefactor: f64,
 }
 
 /// Projections of one source (method.md 5.8).
@@ -62,8 +62,8 @@ impl DirectionalDipole {
                 scatters: c.scatters(),
             }
         });
-        let strength = 1.0 / (4.0 * PI * PI * boundary.exit_norm);
-        DirectionalDipole { channels, c_phi: boundary.c_phi, c_e: boundary.c_e, strength }
+        let prefactor = 1.0 / (4.0 * PI * PI * boundary.exit_norm);
+        DirectionalDipole { channels, c_phi: boundary.c_phi, c_e: boundary.c_e, prefactor }
     }
 
     /// `K(X, W, N, d)` (method.md 5.9).
@@ -128,7 +128,7 @@ impl Bssrdf for DirectionalDipole {
         };
         let difference = self.kernel(c, &real) - self.kernel(c, &virtual_source);
         debug_assert!(difference.is_finite(), "{s:?}");
-        difference.max(0.0) * self.strength
+        difference.max(0.0) * self.prefactor
     }
 
     fn transport(&self) -> [f64; 3] {

@@ -34,7 +34,7 @@ fn refracted_cosine(cosine: f64, eta_ratio: f64) -> Option<f64> {
 
 /// Light that entered a medium.
 #[derive(Clone, Copy, Debug)]
-pub struct Entry {
+pub struct Refraction {
     /// Unit direction of the refracted light, pointing into the medium.
     pub direction: DVec3,
     /// Power transmittance of the crossing.
@@ -44,18 +44,18 @@ pub struct Entry {
 /// Refracts light that arrives from `direction` (unit, pointing away from the surface, back along the light) through
 /// a surface with unit `normal` on its side; `eta_ratio` is transmitted over incident index (method.md 2.2, 2.3).
 /// None if the light comes from behind or is totally reflected.
-pub fn enter(normal: DVec3, direction: DVec3, eta_ratio: f64) -> Option<Entry> {
+pub fn enter(normal: DVec3, direction: DVec3, eta_ratio: f64) -> Option<Refraction> {
     let cosine = normal.dot(direction).min(1.0);
     let transmittance = transmittance(cosine, eta_ratio);
     if transmittance <= 0.0 {
         return None;
     }
     if eta_ratio == 1.0 {
-        return Some(Entry { direction: -direction, transmittance });
+        return Some(Refraction { direction: -direction, transmittance });
     }
     let t = refracted_cosine(cosine, eta_ratio)?;
     let refracted = (cosine * normal - direction) / eta_ratio - t * normal;
-    Some(Entry { direction: refracted.normalize(), transmittance })
+    Some(Refraction { direction: refracted.normalize(), transmittance })
 }
 
 /// Mirrors `direction` (pointing away from the surface) about the unit `normal`.

@@ -67,7 +67,7 @@ pub struct Separation {
 
 /// A BSSRDF of one medium, in float64: the reference that faster evaluations are tested against.
 pub trait Bssrdf: Sync {
-    /// `S_bare` of one colour channel, 1/(m² sr): finite and never negative.
+    /// `S_bare` of one color channel, 1/(m² sr): finite and never negative.
     fn bare(&self, channel: usize, separation: &Separation) -> f64;
 
     /// `σ_tr` of the three channels as this model defines it, 1/m: what the roulette's rules are made of.
@@ -117,9 +117,9 @@ impl Model {
 /// The values of the BSSRDF at one pair of points, one channel (method.md 1.1, 1.2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Values {
-    /// Entry and exit transmittance included, 1/(m² sr).
+    /// EntryRefraction and exit transmittance included, 1/(m² sr).
     pub full: f64,
-    /// Entry transmittance included, 1/(m² sr).
+    /// EntryRefraction transmittance included, 1/(m² sr).
     pub gather: f64,
     /// Neither, 1/(m² sr).
     pub bare: f64,

@@ -11,7 +11,7 @@ pub const ETA_MIN: f64 = 0.4;
 /// Largest relative index the Fresnel fits hold for: beyond it `A_C` turns negative (method.md section 2).
 pub const ETA_MAX: f64 = 2.5;
 
-/// Coefficients of one colour channel, 1/m.
+/// Coefficients of one color channel, 1/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients {
     /// Absorption, 1/m.

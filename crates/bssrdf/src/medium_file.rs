@@ -1,4 +1,4 @@
-//! A medium as a JSON file gives it: by its coefficients, by albedo and mean free path, or by the colour that it shows.
+//! A medium as a JSON file gives it: by its coefficients, by albedo and mean free path, or by the color that it shows.
 
 use crate::{albedo, error::MediumError, fresnel};
 use serde::Deserialize;
@@ -117,7 +117,7 @@ impl MediumFile {
         Ok((sigma_a, sigma_s))
     }
 
-    /// Inverts the standard dipole as Jensen and Buhler 2002 do: with `q = σ_tr/σ_t'` from the colour, `σ_t' = σ_tr/q`,
+    /// Inverts the standard dipole as Jensen and Buhler 2002 do: with `q = σ_tr/σ_t'` from the color, `σ_t' = σ_tr/q`,
     /// `σ_a = q σ_tr/3`, and `σ_s' = σ_t' − σ_a`.
     fn of_color(&self, color: f64, radius: f64, g: f64) -> Result<(f64, f64), MediumError> {
         let fault = "outside [0, 1); what reflects all light has no finite radius";

@@ -13,7 +13,7 @@ struct Channel {
     real_depth: f64,
     virtual_depth: f64,
     /// α'/(4π²): the albedo, the dipole's 1/(4π), and the 1/π of a Lambertian exit.
-    strength: f64,
+    prefactor: f64,
 }
 
 /// The standard dipole of one medium.
@@ -31,7 +31,7 @@ impl StandardDipole {
                 transport: c.transport(),
                 real_depth,
                 virtual_depth: real_depth + 4.0 * reflection * c.diffusion(),
-                strength: c.reduced_albedo() / (4.0 * PI * PI),
+                prefactor: c.reduced_albedo() / (4.0 * PI * PI),
             }
         });
         StandardDipole { channels }
@@ -49,11 +49,11 @@ impl Bssrdf for StandardDipole {
     /// `R_d(r)/π` (method.md 3.4, 3.6).
     fn bare(&self, channel: usize, separation: &Separation) -> f64 {
         let c = &self.channels[channel];
-        if c.strength == 0.0 {
+        if c.prefactor == 0.0 {
             return 0.0; // σ_s' = 0: nothing scatters, and a vacuum has no depth
         }
         let r2 = separation.offset.length_squared();
-        c.strength * (source(r2, c.real_depth, c.transport) + source(r2, c.virtual_depth, c.transport))
+        c.prefactor * (source(r2, c.real_depth, c.transport) + source(r2, c.virtual_depth, c.transport))
     }
 
     fn transport(&self) -> [f64; 3] {

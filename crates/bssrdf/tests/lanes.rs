@@ -3,7 +3,7 @@
 
 use bssrdf::{
     Bssrdf, Coefficients, DVec3, Interface, Medium, Model, Separation, fresnel,
-    lanes::{BetterLanes, Block, DirectionalLanes, Entered, Entry, LANES, Lane, LaneModel, StandardLanes},
+    lanes::{BetterLanes, Block, DirectionalLanes, Entered, EntryRefraction, LANES, Lane, LaneModel, StandardLanes},
     simd::{self, Kernel, Level},
 };
 use std::f64::consts::TAU;
@@ -222,7 +222,7 @@ fn all_vector_widths_give_the_same_bits() {
 
 /// Sixteen samples enter.
 struct Enter {
-    entry: Entry,
+    entry: EntryRefraction,
     codes: [[u32; LANES]; 2],
 }
 
@@ -240,7 +240,7 @@ fn all_vector_widths_let_the_same_light_enter() {
     let mut random = Random(8);
     for _ in 0..BLOCKS {
         let codes = [0; 2].map(|_| [0; LANES].map(|_| random.between(0.0, 4_294_967_296.0) as u32));
-        let enter = Enter { entry: Entry::new(random.between(0.41, 2.5)), codes };
+        let enter = Enter { entry: EntryRefraction::new(random.between(0.41, 2.5)), codes };
         let bits =
             |entered: Entered| (bits(entered.normal), bits(entered.refracted), entered.transmittance.map(f32::to_bits));
         let plain = bits(simd::run_plain(&enter));

@@ -19,7 +19,7 @@ pub enum EnvironmentSource {
     File(PathBuf),
 }
 
-/// A file by the end of its name, else a colour.
+/// A file by the end of its name, else a color.
 pub fn parse_environment(text: &str) -> Result<EnvironmentSource, String> {
     if [".exr", ".hdr"].iter().any(|end| text.to_lowercase().ends_with(end)) {
         return Ok(EnvironmentSource::File(text.into()));

@@ -1,7 +1,7 @@
 //! Media as they are named on a command line, or described by a scene's file.
 
 use bssrdf::{Medium, MediumError, MediumFile, Optics, Unit, built_in, single_scattering_albedo};
-use scene::{Draft, Material};
+use scene::{Material, ScatterExtension};
 use std::{fs, io};
 
 /// Why there is no such medium.
@@ -48,7 +48,7 @@ pub fn scene_medium(material: &Material) -> Result<Option<Medium>, ReadMediumErr
         None => ("KHR_materials_volume", [0.0; 3]),
         Some(s) => {
             // The older draft leaves g out of its albedo.
-            let g = if s.draft == Draft::Scatter { asymmetry } else { 0.0 };
+            let g = if s.draft == ScatterExtension::Scatter { asymmetry } else { 0.0 };
             (s.draft.extension(), s.color.to_array().map(|color| single_scattering_albedo(color, g)))
         }
     };

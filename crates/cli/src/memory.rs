@@ -67,7 +67,7 @@ fn group_headroom(memberships: &str, root: &Path) -> Option<u64> {
         }
     };
     let groups = memberships.lines().filter_map(memory);
-    groups.filter_map(|(mount, path, files)| least_headroom(&mount, mount.join(path), files)).min()
+    groups.filter_map(|(mount, path, files)| min_headroom(&mount, mount.join(path), files)).min()
 }
 
 /// Names of the files with limit and use, and of the entries with pages of files, which are given back when needed.
@@ -77,7 +77,7 @@ const VERSION_1: Files = ["memory.limit_in_bytes", "memory.usage_in_bytes", "tot
 
 /// A group may be limited, and so may any that it lies in. Inside a container the path is that of the host, and only the
 /// mount's own group is seen.
-fn least_headroom(mount: &Path, group: PathBuf, files: Files) -> Option<u64> {
+fn min_headroom(mount: &Path, group: PathBuf, files: Files) -> Option<u64> {
     let groups = group.ancestors().take_while(|folder| folder.starts_with(mount));
     groups.filter_map(|folder| headroom(folder, files)).min()
 }

@@ -1,4 +1,4 @@
-//! Colours on the command line.
+//! Colors on the command line.
 
 /// Parses `R,G,B`: three finite numbers that are not negative.
 pub fn parse_rgb(text: &str) -> Result<[f64; 3], String> {
@@ -16,7 +16,7 @@ mod tests {
     use super::parse_rgb;
 
     #[test]
-    fn colours_are_three_numbers() {
+    fn colors_are_three_numbers() {
         assert_eq!(parse_rgb("1,0.5, 2"), Ok([1.0, 0.5, 2.0]));
         for text in ["1,2", "1,2,3,4", "a,b,c", "-1,0,0", "nan,0,0", "map.exr"] {
             assert!(parse_rgb(text).is_err(), "{text}");

@@ -5,7 +5,7 @@ use crate::{
     environment::{EnvironmentSource, parse_environment},
 };
 use clap::{Args, ValueEnum};
-use scene::{DVec3, Health, ImportOptions, NormalKind, Scene, light::Environment};
+use scene::{DVec3, ImportOptions, MeshDefects, NormalKind, Scene, light::Environment};
 use std::path::Path;
 
 /// Arguments about the scene.
@@ -82,7 +82,7 @@ impl SceneArgs {
         &self,
         scene: &mut Scene,
         translucent: impl Fn(u16) -> bool,
-        health: Health,
+        defects: MeshDefects,
         path: &Path,
         common: &Common,
     ) -> Result<(), Failure> {
@@ -90,8 +90,8 @@ impl SceneArgs {
         scene.warn_of_unhonoured(&translucent);
         scene.warn_of_colors(&translucent);
         scene.warnings[known..].iter().for_each(|w| common.warn(format_args!("{}: {w}", path.display())));
-        let line = format!("{}: the translucent surfaces have {health}", path.display());
-        match (health.is_good(), self.strict) {
+        let line = format!("{}: the translucent surfaces have {defects}", path.display());
+        match (defects.is_good(), self.strict) {
             (true, _) => {}
             (false, true) => return Err(Failure::usage(format!("{line}; repair the mesh, or leave out --strict"))),
             (false, false) => common.warn(format_args!("{line}; a medium wants a closed surface wound outwards")),

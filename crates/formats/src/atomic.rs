@@ -195,7 +195,7 @@ pub fn destination(path: &Path) -> io::Result<PathBuf> {
         return Ok(file);
     }
     let mut here = path.to_owned();
-    for _ in 0..MOST_LINKS {
+    for _ in 0..MAX_LINKS {
         match fs::read_link(&here) {
             Ok(next) => here = folder_of(&here).join(next),
             Err(_) => return Ok(here),
@@ -205,7 +205,7 @@ pub fn destination(path: &Path) -> io::Result<PathBuf> {
 }
 
 /// Most links from one to the next that are followed, as of the system.
-const MOST_LINKS: usize = 40;
+const MAX_LINKS: usize = 40;
 
 /// The folder that a file lies in.
 pub fn folder_of(path: &Path) -> &Path {

@@ -29,7 +29,7 @@ pub enum Attribute {
     Double(f64),
     /// `int`.
     Int(i32),
-    /// Three floats, as of a colour (`v3f`).
+    /// Three floats, as of a color (`v3f`).
     Vector([f32; 3]),
     /// Row after row, for points as row vectors: a translation lies in elements 12 to 14 (`m44f`).
     Matrix([f32; 16]),

@@ -2,7 +2,7 @@
 
 use crate::{
     Error, Image, ImageError,
-    image::decode::{Outline, most_unpacked, outline, outline_of_file},
+    image::decode::{Outline, max_unpacked, outline, outline_of_file},
     memory::has_room,
 };
 use std::{fs::File, io::Read, path::Path};
@@ -102,7 +102,7 @@ fn size(outline: &Outline, length: u64) -> Result<PanoramaSize, String> {
     [outline.data.size, outline.display.size].into_iter().try_for_each(check_size)?;
     let bytes = PIXEL_BYTES.saturating_mul(width as u64).saturating_mul(height as u64);
     // A few bytes could ask for much black.
-    if bytes / 3 > most_unpacked(length) {
+    if bytes / 3 > max_unpacked(length) {
         return Err(format!(
             "{width} x {height} pixels of display window are more than a file of {length} bytes can hold"
         ));

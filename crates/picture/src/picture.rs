@@ -33,7 +33,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// A picture of one colour.
+    /// A picture of one color.
     pub fn new(width: usize, height: usize, color: [u8; 3]) -> Picture {
         Picture { width, height, pixels: vec![color; width * height] }
     }

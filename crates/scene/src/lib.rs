@@ -5,11 +5,11 @@
 
 mod cutouts;
 mod error;
-mod health;
 pub mod import;
 pub mod light;
 mod material;
 mod mesh;
+mod mesh_defects;
 pub mod random;
 mod rays;
 pub mod sequence;
@@ -21,13 +21,13 @@ pub mod warp;
 
 pub use error::{LostVolumes, SceneError};
 pub use glam::{DVec3, DVec4, Vec3};
-pub use health::Health;
 pub use import::{ImportOptions, LightUnit};
 pub use material::Material;
 pub use mesh::{Mesh, NormalKind, SurfacePoint, Triangle};
+pub use mesh_defects::MeshDefects;
 pub use rays::{Hit, Rays};
 pub use view::{Camera, Projection, View, ViewFile};
-pub use volume::{Draft, Scatter, Volume};
+pub use volume::{Scatter, ScatterExtension, Volume};
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -86,7 +86,7 @@ impl Scene {
         lost.into_iter().collect()
     }
 
-    /// Adds light from all around; a mere colour is a constant radiance, W/(m² sr).
+    /// Adds light from all around; a mere color is a constant radiance, W/(m² sr).
     pub fn add_environment(&mut self, environment: impl Into<light::Environment>) {
         let environment = environment.into();
         if !environment.is_black() {
@@ -94,7 +94,7 @@ impl Scene {
         }
     }
 
-    /// Identity of the geometry, of which material covers which triangle, and of its colours and holes, as a BLAKE3 digest.
+    /// Identity of the geometry, of which material covers which triangle, and of its colors and holes, as a BLAKE3 digest.
     pub fn geometry_digest(&self) -> [u8; 32] {
         let mut hasher = blake3::Hasher::new();
         let mut put = |bytes: &[u8]| {

@@ -39,7 +39,7 @@ impl Scene {
         material.base_color * seen * self.mesh.color(triangle, weights)
     }
 
-    /// Tells `put` all that colours and holes depend on: they light and shadow what is sampled.
+    /// Tells `put` all that colors and holes depend on: they light and shadow what is sampled.
     pub(crate) fn note_colors(&self, put: &mut impl FnMut(&[u8])) {
         // A picture of many materials is noted once, and then by its number.
         let mut numbers = BTreeMap::new();
@@ -64,7 +64,7 @@ impl Scene {
         self.mesh.colors.as_flattened().iter().for_each(|x| put(&x.to_le_bytes()));
     }
 
-    /// Adds a warning for each translucent material whose texture, alpha or vertex colours are not used.
+    /// Adds a warning for each translucent material whose texture, alpha or vertex colors are not used.
     pub fn warn_of_colors(&mut self, translucent: impl Fn(u16) -> bool) {
         let mut colored = vec![false; self.materials.len()];
         for t in &self.mesh.triangles {
@@ -72,9 +72,9 @@ impl Scene {
         }
         for (k, material) in self.materials.iter().enumerate() {
             let unused = [
-                (material.base_texture.is_some(), "base colour texture"),
+                (material.base_texture.is_some(), "base color texture"),
                 (material.cutoff.is_some(), "alphaMode MASK"),
-                (colored[k], "vertex colours"),
+                (colored[k], "vertex colors"),
             ];
             let unused: Vec<&str> = unused.iter().filter(|u| u.0).map(|u| u.1).collect();
             if translucent(k as u16) && !unused.is_empty() {

@@ -18,7 +18,7 @@ pub struct Mesh {
     /// Unit normals, or zero where the file has none: the triangle's own normal is meant then.
     pub normals: Vec<Vec3>,
     pub triangles: Vec<Triangle>,
-    /// Texture coordinates of the base colour, as its picture has them; none if no vertex has any.
+    /// Texture coordinates of the base color, as its picture has them; none if no vertex has any.
     pub coordinates: Vec<[f32; 2]>,
     /// Linear red, green and blue, and alpha; none if no vertex has any.
     pub colors: Vec<[f32; 4]>,
@@ -97,7 +97,7 @@ impl Mesh {
         self.interpolated(triangle, weights, of).to_array()
     }
 
-    /// Colour of the vertices at the point with barycentric `weights`.
+    /// Color of the vertices at the point with barycentric `weights`.
     pub fn color(&self, triangle: u32, weights: [f64; 3]) -> DVec4 {
         if self.colors.is_empty() {
             return DVec4::ONE;

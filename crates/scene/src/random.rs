@@ -23,7 +23,7 @@ pub enum Purpose {
     /// Light of surfaces that light the samples of phase one.
     Bounce,
     /// Which of several clouds the paths of a pixel gather from.
-    Turn,
+    ShardPick,
     /// What one of those sequences leaves open.
     Remainder(u64),
 }
@@ -39,7 +39,7 @@ impl Purpose {
             Purpose::Pixel => 5,
             Purpose::Calibration => 6,
             Purpose::Bounce => u64::MAX,
-            Purpose::Turn => u64::MAX - 1,
+            Purpose::ShardPick => u64::MAX - 1,
             Purpose::Remainder(k) => 7 + k,
         }
     }

@@ -166,7 +166,7 @@ pub enum ViewFile {
 }
 
 /// Most views of a list.
-const MOST_VIEWS: usize = 10_000;
+const MAX_VIEWS: usize = 10_000;
 
 /// Longest name of a view, bytes.
 const LONGEST_NAME: usize = 100;
@@ -196,8 +196,8 @@ impl ViewFile {
                 return view.with_camera(stem).map(|one| ViewFile::One(one.into()));
             }
         };
-        if !(1..=MOST_VIEWS).contains(&list.len()) {
-            return Err(format!("not a view: a list of {} views; there may be 1 to {MOST_VIEWS}", list.len()));
+        if !(1..=MAX_VIEWS).contains(&list.len()) {
+            return Err(format!("not a view: a list of {} views; there may be 1 to {MAX_VIEWS}", list.len()));
         }
         let mut names = HashSet::new();
         let mut read = |index: usize, view: View| {

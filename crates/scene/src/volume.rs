@@ -17,8 +17,8 @@ pub struct Volume {
 /// How much of what is met scatters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scatter {
-    pub draft: Draft,
-    /// The colour after multiple scattering, 0 to 1.
+    pub draft: ScatterExtension,
+    /// The color after multiple scattering, 0 to 1.
     pub color: DVec3,
     /// Mean cosine of the phase function, between -1 and 1.
     pub asymmetry: f64,
@@ -26,17 +26,17 @@ pub struct Scatter {
 
 /// The two drafts give different albedos for the same numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Draft {
+pub enum ScatterExtension {
     VolumeScatter,
     Scatter,
 }
 
-impl Draft {
+impl ScatterExtension {
     /// The extension's name.
     pub fn extension(self) -> &'static str {
         match self {
-            Draft::VolumeScatter => "KHR_materials_volume_scatter",
-            Draft::Scatter => "KHR_materials_scatter",
+            ScatterExtension::VolumeScatter => "KHR_materials_volume_scatter",
+            ScatterExtension::Scatter => "KHR_materials_scatter",
         }
     }
 }

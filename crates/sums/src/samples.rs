@@ -1,7 +1,7 @@
 //! The lit samples of one material and half as the estimators read them: tiles as they lie in the file.
 
 use bssrdf::{
-    lanes::{Block, Entry, LANES, Lane},
+    lanes::{Block, EntryRefraction, LANES, Lane},
     simd,
 };
 use formats::cloud::{Cloud, Group, Node, Record, TILE, Tile};
@@ -15,7 +15,7 @@ pub struct LitSamples<'a> {
     tiles: &'a [Tile],
     nodes: &'a [Node],
     len: usize,
-    entry: Entry,
+    entry: EntryRefraction,
     /// See [`LitSamples::scale`].
     scale: f32,
 }
@@ -66,7 +66,7 @@ impl<'a> LitSamples<'a> {
     /// `len` samples in tiles with the tree over them: as many as the tiles hold, if that is less.
     pub fn of(tiles: &'a [Tile], nodes: &'a [Node], len: usize, eta: f64) -> LitSamples<'a> {
         let scale = nodes.get(1).map_or(1.0, |root| unit_of(root.flux));
-        LitSamples { tiles, nodes, len: len.min(tiles.len() * TILE), entry: Entry::new(eta), scale }
+        LitSamples { tiles, nodes, len: len.min(tiles.len() * TILE), entry: EntryRefraction::new(eta), scale }
     }
 
     /// What makes the flux of all samples together about 1: a power of two, so that nothing is rounded by it. Squares and

@@ -44,7 +44,7 @@ impl Sheet {
 mod tests {
     use super::*;
 
-    /// Five pictures of one colour each in columns of two. Seen to catch: cells along the rows.
+    /// Five pictures of one color each in columns of two. Seen to catch: cells along the rows.
     #[test]
     fn cells_go_down_the_columns() {
         let cell = |k: u8| Cell { title: vec!["a".into()], picture: Picture::new(20, 20, [k, 0, 0]) };

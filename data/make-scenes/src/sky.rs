@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_are_kept_to_a_part_in_128() {
+    fn colors_are_kept_to_a_part_in_128() {
         let color = DVec3::new(3.0, 0.75, 1.5);
         let [r, g, b, e] = rgbe(color);
         let scale = (f64::from(e) - 136.0).exp2();

@@ -19,7 +19,7 @@ const SCHEMA: u32 = 1;
 
 /// One line of the log.
 #[derive(Serialize)]
-struct Entry<'a> {
+struct LogEntry<'a> {
     schema: u32,
     /// Seconds since 1970, or SOURCE_DATE_EPOCH.
     time: u64,
@@ -123,10 +123,10 @@ fn entry<'a>(
     verdict: &'a str,
     old: &[u8],
     new: &[u8],
-) -> Result<Entry<'a>, Failure> {
+) -> Result<LogEntry<'a>, Failure> {
     let digest = |bytes: &[u8]| blake3::hash(bytes).to_hex().to_string();
     let changes = |layer: &'a LayerReport| layer.channels.iter().map(|channel| change(&layer.name, channel));
-    Ok(Entry {
+    Ok(LogEntry {
         schema: SCHEMA,
         time: now()?,
         reason: arguments.reason.as_deref().unwrap_or_default(),

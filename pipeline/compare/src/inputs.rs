@@ -77,7 +77,7 @@ const HEATMAP_BYTES: u64 = 8;
 const DIFFERENCE_BYTES: u64 = 8;
 /// Bytes for each sample of the page, and the most of all: it has 100 MB, and is put together of copies.
 const PAGE_BYTES: u64 = 8;
-const MOST_PAGE_BYTES: u64 = 400 << 20;
+const MAX_PAGE_BYTES: u64 = 400 << 20;
 
 /// Bytes at the worst moment: both images, and what they are read from or what is made of them.
 fn need(arguments: &Arguments, reference: Dimensions, test: Dimensions) -> u64 {
@@ -92,7 +92,7 @@ fn need(arguments: &Arguments, reference: Dimensions, test: Dimensions) -> u64 {
         (may_need_flip, product(&[FLIP_BYTES, pixels(test)])),
         (arguments.heatmap.is_some(), product(&[HEATMAP_BYTES, pixels(test)])),
         (arguments.diff_exr.is_some(), product(&[DIFFERENCE_BYTES, samples(test)])),
-        (arguments.html.is_some(), product(&[PAGE_BYTES, samples(test)]).min(MOST_PAGE_BYTES)),
+        (arguments.html.is_some(), product(&[PAGE_BYTES, samples(test)]).min(MAX_PAGE_BYTES)),
     ];
     let made = made.into_iter().filter(|(asked, _)| *asked).map(|(_, bytes)| bytes).max().unwrap_or(0);
     let beside = if arguments.accept { reading.saturating_add(made) } else { reading.max(made) };

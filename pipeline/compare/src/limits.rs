@@ -49,12 +49,12 @@ pub enum LimitsError {
 #[serde(deny_unknown_fields)]
 struct Document {
     schema: u32,
-    limits: Vec<Entry>,
+    limits: Vec<LimitEntry>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Entry {
+struct LimitEntry {
     gate: String,
     limit: f64,
     threshold: Option<f64>,
@@ -104,7 +104,7 @@ fn parse(text: &str) -> Result<Vec<Limit>, String> {
     Ok(limits)
 }
 
-fn check(entry: Entry) -> Result<Limit, String> {
+fn check(entry: LimitEntry) -> Result<Limit, String> {
     if entry.reason.trim().is_empty() {
         return Err("`reason` is empty; say why this limit is right".to_owned());
     }

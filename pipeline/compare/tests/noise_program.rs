@@ -102,7 +102,7 @@ fn sound_images_pass_and_brighter_or_darker_ones_fail() {
 fn values_that_are_no_numbers_fail() {
     Bench::with(|image| image.channels[3].samples[40] = f32::NAN).judge(&[]).fails("1 samples are not finite");
     Bench::with(|image| image.channels[2].samples[0] = f32::INFINITY).judge(&[]).fails("not finite");
-    // Depth is no colour, and of no statistic.
+    // Depth is no color, and of no statistic.
     Bench::with(|image| channel(image, "Z").fill(f32::NAN)).judge(&[]).fails("81 samples are not finite");
     let bench = Bench::new(SOUND);
     let mut image = replicate(1, SOUND);

@@ -16,8 +16,8 @@ fn folder() -> tempfile::TempDir {
 }
 
 /// An image of 8 x 4 pixels with these values in R, G and B.
-fn write(folder: &Path, name: &str, colour: &[f32; 3]) {
-    let channels = ["R", "G", "B"].iter().zip(colour);
+fn write(folder: &Path, name: &str, color: &[f32; 3]) {
+    let channels = ["R", "G", "B"].iter().zip(color);
     let channels = channels.map(|(name, value)| Channel { name: (*name).to_owned(), samples: vec![*value; 32] });
     let image = Image { width: 8, height: 4, channels: channels.collect(), ..Image::default() };
     std::fs::write(folder.join(name), image.encode().unwrap()).unwrap();

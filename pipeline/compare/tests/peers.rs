@@ -3,7 +3,7 @@
 //!
 //! Planted errors that this test caught: another constant or width of SSIM's window, its border counted, light taken for
 //! display values, a natural logarithm; of FLIP another white, no adjustment after Hunt, a Euclidean distance, filtered
-//! colours not clamped, the terms of the blue and yellow filter with other weights or one of them left out, points left
+//! colors not clamped, the terms of the blue and yellow filter with other weights or one of them left out, points left
 //! out, features not divided by the root of 2, the last exposure left out; a tile's margin of black.
 
 use std::path::PathBuf;

@@ -3,9 +3,9 @@
 
 use crate::{
     estimator::{Calibration, Estimator, Sum},
-    gathering::Body,
-    path::{Renderer, Worker},
+    path::{Renderer, ThreadContext},
     samples::Exit,
+    subsurface::TranslucentObject,
 };
 use bssrdf::lanes::LaneModel;
 use glam::DVec2;
@@ -33,7 +33,7 @@ const DARKEST: f64 = 1e-6;
 /// The factors stay within these. With the smallest every sample is summed, which costs hardly more than to do so at once.
 const RANGE: (f64, f64) = (0.01, 8.0);
 
-/// Sets the factors of each body by which the accuracy asked of its sums is multiplied. `size` is the image's, pixels.
+/// Sets the factors of each object by which the accuracy asked of its sums is multiplied. `size` is the image's, pixels.
 pub fn calibrate<M: LaneModel>(renderer: &mut Renderer<M>, size: DVec2, seed: u64) {
     let Estimator::Cut { .. } = renderer.estimator else {
         return;
@@ -43,11 +43,11 @@ pub fn calibrate<M: LaneModel>(renderer: &mut Renderer<M>, size: DVec2, seed: u6
     for (material, points) in points.iter().enumerate() {
         let mut measured = Vec::new();
         for round in 0..ROUNDS {
-            if let Some(body) = &renderer.bodies[material] {
-                measured.extend(measure(renderer, body, material, points, stream, round));
+            if let Some(object) = &renderer.objects[material] {
+                measured.extend(measure(renderer, object, material, points, stream, round));
             }
-            if let Some(body) = &mut renderer.bodies[material] {
-                body.calibration = fit(&measured);
+            if let Some(object) = &mut renderer.objects[material] {
+                object.calibration = fit(&measured);
             }
         }
     }
@@ -72,7 +72,7 @@ fn fit(measured: &[Measured]) -> Calibration {
 
 /// Points of each material that the camera sees, with the normals there.
 fn points<M: LaneModel>(renderer: &Renderer<M>, size: DVec2, stream: Stream) -> Vec<Vec<(DVec3, DVec3)>> {
-    let mut points = vec![Vec::new(); renderer.bodies.len()];
+    let mut points = vec![Vec::new(); renderer.objects.len()];
     let spread = Sequence::new(stream.item(0), stream);
     for index in 0..RAYS {
         let [x, y, ..] = spread.point(index);
@@ -91,7 +91,7 @@ fn points<M: LaneModel>(renderer: &Renderer<M>, size: DVec2, stream: Stream) -> 
 
 /// What the sums at one point were in one round.
 struct Measured {
-    /// Length of the mean colour, and what the cut predicts of it.
+    /// Length of the mean color, and what the cut predicts of it.
     mean: f64,
     predicted: f64,
     /// Relative variance of one sum over the square of the accuracy that was asked of it.
@@ -101,29 +101,29 @@ struct Measured {
 /// At each point.
 fn measure<M: LaneModel>(
     renderer: &Renderer<M>,
-    body: &Body<M>,
+    object: &TranslucentObject<M>,
     material: usize,
     points: &[(DVec3, DVec3)],
     stream: Stream,
     round: u64,
 ) -> Vec<Measured> {
     let at = |(index, (position, normal)): (usize, &(DVec3, DVec3))| {
-        let mut worker = Worker::new(renderer.bodies.len());
+        let mut context = ThreadContext::new(renderer.objects.len());
         let item = stream.item(1 + (material * POINTS + index) as u64);
         let sum = |replicate: u64| {
             let exit = Exit::new(*position, *normal, item.bits(round * REPLICATES + replicate));
-            renderer.sum(body, index % 2, index / 2 % body.parts.len(), &exit, 1.0, worker.scratch(material))
+            renderer.sum(object, index % 2, index / 2 % object.parts.len(), &exit, 1.0, context.scratch(material))
         };
         let sums: Vec<Sum> = (0..REPLICATES).map(sum).collect();
         let (mean, variance) = moments(&sums);
         let predicted = sums[0].predicted;
-        let asked = renderer.accuracy(1.0) * f64::from(body.calibration.factor(predicted));
+        let asked = renderer.accuracy(1.0) * f64::from(object.calibration.factor(predicted));
         Measured { mean, predicted, worse: variance / (mean * asked).powi(2) }
     };
     points.par_iter().enumerate().map(at).collect()
 }
 
-/// Length of the mean colour, and the variance of one.
+/// Length of the mean color, and the variance of one.
 fn moments(sums: &[Sum]) -> (f64, f64) {
     let n = sums.len() as f64;
     let mean = sums.iter().map(|s| s.radiance).sum::<DVec3>() / n;

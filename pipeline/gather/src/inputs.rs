@@ -1,10 +1,10 @@
 //! The files that an image is made from: clouds and their scene, and whether they belong together.
 
-use crate::{arguments::Arguments, shots::Shot};
+use crate::{arguments::Arguments, image_jobs::Shot};
 use cli::{Failure, Files, is_file};
 use formats::cloud::Cloud;
-use gather::clouds::{self, JoinError};
-use scene::{Health, Scene, light::Environment};
+use gather::shards::{self, JoinError};
+use scene::{MeshDefects, Scene, light::Environment};
 use std::{
     num::NonZeroUsize,
     path::{Path, PathBuf},
@@ -69,7 +69,7 @@ impl CloudFiles {
     pub fn open(paths: &[PathBuf]) -> Result<CloudFiles, Failure> {
         let open = |path: &PathBuf| Ok((path.clone(), Cloud::open(path)?));
         let files: Vec<(PathBuf, Cloud)> = paths.iter().map(open).collect::<Result<_, formats::Error>>()?;
-        let (paths, clouds) = clouds::join(files).map_err(|e: JoinError| Failure::usage(e.to_string()))?;
+        let (paths, clouds) = shards::join(files).map_err(|e: JoinError| Failure::usage(e.to_string()))?;
         Ok(CloudFiles { paths, clouds })
     }
 
@@ -79,8 +79,8 @@ impl CloudFiles {
     }
 
     /// Of the sampled surfaces, as phase one found them.
-    pub fn health(&self) -> Health {
-        Health::from_counts(|name| self.clouds[0].meta().mesh_faults.get(name).copied())
+    pub fn defects(&self) -> MeshDefects {
+        MeshDefects::from_counts(|name| self.clouds[0].meta().mesh_faults.get(name).copied())
     }
 
     /// Checks all of each file, by so many threads. Before the work: it takes a hundredth of what the smallest picture

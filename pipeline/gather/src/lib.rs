@@ -4,16 +4,16 @@
 //! sum, so the image is the same for any number of threads.
 
 mod calibration;
-pub mod clouds;
 pub mod counts;
 mod edge;
 pub mod film;
 mod freedom;
-mod gathering;
 pub mod media;
 mod passes;
 pub mod path;
 pub mod preview;
+pub mod shards;
+mod subsurface;
 
 pub use sums::{estimator, samples};
 
@@ -87,7 +87,7 @@ impl Crop {
 pub struct Input<'a> {
     pub scene: &'a Scene,
     pub rays: &'a Rays<'a>,
-    /// One or more of this scene, see [`clouds::join`].
+    /// One or more of this scene, see [`shards::join`].
     pub clouds: &'a [Cloud],
     /// The medium of each material that the clouds sampled, in their order.
     pub media: &'a [Medium],

@@ -1,28 +1,28 @@
 //! `gather CLOUD... SCENE -o IMAGE.exr`: arguments and files; the phase itself is the library.
 
+mod adaptive;
 mod arguments;
-mod choices;
+mod image_jobs;
 mod inputs;
 mod outlook;
 mod report;
-mod rounds;
-mod shots;
+mod settings;
 
+use adaptive::{render_all, render_to};
 use arguments::Arguments;
 use bssrdf::{Medium, Model, built_in, built_in_names};
-use choices::{cameras, estimator, settings};
 use clap::Parser;
 use cli::{Failure, Need, camera_table, count, material_table};
 use formats::{
     atomic::{Group, Output},
     cloud::Cloud,
 };
-use gather::{Input, Rendered, Settings, clouds, film, media, preview};
+use gather::{Input, Rendered, Settings, film, media, preview, shards};
+use image_jobs::{Shot, shots, warn_of_aspects};
 use inputs::CloudFiles;
 use report::{Facts, Seconds};
-use rounds::{render_all, render_to};
 use scene::{DVec3, Rays, Scene};
-use shots::{Shot, shots, warn_of_aspects};
+use settings::{cameras, estimator, settings};
 use std::{fmt::Write as _, io::Write as _, num::NonZeroUsize, path::Path, time::Instant};
 
 fn main() {
@@ -46,14 +46,14 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let clouds = files.clouds();
     let (mut scene, environment) = inputs::import(arguments, scene_path)?;
     files.check_fit((&scene, &environment), scene_path, arguments)?;
-    let sampled = |material| clouds::materials(clouds).iter().any(|m| m.index == material);
+    let sampled = |material| shards::materials(clouds).iter().any(|m| m.index == material);
     let cameras = cameras(arguments, &scene, scene_path, || scene.origin + middle(bounds(&scene, sampled)))?;
     let shots = shots(arguments, &cameras, |chosen| settings(arguments, chosen, estimator, environment.clone()))?;
     warn_of_aspects(&shots, arguments);
     shots.iter().try_for_each(|shot| check_memory(&shot.settings).map_err(|e| shot.failure(e)))?;
-    let health = files.health();
-    arguments.scene_args.check_mesh(&mut scene, sampled, health, scene_path, common)?;
-    let media = media::assign(&arguments.medium, clouds::materials(clouds), &scene.materials)?;
+    let defects = files.defects();
+    arguments.scene_args.check_mesh(&mut scene, sampled, defects, scene_path, common)?;
+    let media = media::assign(&arguments.medium, shards::materials(clouds), &scene.materials)?;
     show_scale(arguments, &scene, clouds, &media, shots[0].settings.model);
     let output_path = arguments.output.as_deref().ok_or_else(|| Failure::usage("--output: give IMAGE.exr"))?;
     scene.files.iter().try_for_each(|path| declared.reads("a file that SCENE names", path))?;
@@ -85,7 +85,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             camera_argument: &shot.argument,
             turned_degrees: shot.degrees,
             warnings: &scene.warnings,
-            health,
+            defects,
         };
         let write = Instant::now();
         let mut group = Group::default();
@@ -123,14 +123,14 @@ fn check_memory(settings: &Settings) -> Result<(), Failure> {
 
 /// Prints each medium's lengths beside its object's.
 fn show_scale(arguments: &Arguments, scene: &Scene, clouds: &[Cloud], media: &[Medium], model: Model) {
-    for (slot, (material, medium)) in clouds::materials(clouds).iter().zip(media).enumerate() {
+    for (slot, (material, medium)) in shards::materials(clouds).iter().zip(media).enumerate() {
         let (low, high) = bounds(scene, |m| m == material.index);
         let extent = low.abs().max(high.abs()).max_element();
         let object = media::Object {
             material: &material.name,
             diagonal: (high - low).length(),
-            spacing: (material.area_m2 / clouds::count(clouds, slot) as f64).sqrt(),
-            drawn: clouds::drawn(clouds),
+            spacing: (material.area_m2 / shards::count(clouds, slot) as f64).sqrt(),
+            drawn: shards::drawn(clouds),
             rounding: 0.5 * f64::from(f32::EPSILON) * extent,
         };
         let scale = media::scale(&object, medium, model.of(medium).transport());

@@ -2,14 +2,14 @@
 
 use crate::{
     Crop, Filter, Input, Rendered, Session, Settings, calibration,
-    clouds::{self, Drawn},
     counts::Counts,
     edge::{self, Edge},
-    estimator::{Calibration, Estimator, Radial},
+    estimator::{Calibration, Estimator, FalloffTables},
     film::{Errors, Pixel, PixelSum},
-    gathering::{Body, Method},
-    path::{PathIndex, Renderer, Worker},
+    path::{PathIndex, Renderer, ThreadContext},
     samples::LitSamples,
+    shards::{self, DrawnCounts},
+    subsurface::{Method, TranslucentObject},
 };
 use bssrdf::{Medium, lanes::LaneModel};
 use formats::cloud::Cloud;
@@ -55,18 +55,18 @@ impl<'a, M: LaneModel> Passes<'a, M> {
             rays: input.rays,
             lights: LightTree::new(&input.scene.lights),
             camera: input.camera,
-            bodies: bodies::<M>(input, settings),
+            objects: objects::<M>(input, settings),
             environment: settings.environment.clone(),
             normals: settings.normals,
             estimator: settings.estimator,
-            drawn: Drawn::of(input.clouds),
+            drawn: DrawnCounts::of(input.clouds),
             paths_per_pixel: settings.paths_per_pixel,
             pass: 0..settings.paths_per_pixel,
             max_depth: settings.max_depth,
             clearance: CLEARANCE * input.scene.mesh.diagonal(),
             paths: Stream::new(settings.seed, Purpose::CameraPath),
             gathers: Stream::new(settings.seed, Purpose::Gather),
-            turns: Stream::new(settings.seed, Purpose::Turn),
+            turns: Stream::new(settings.seed, Purpose::ShardPick),
         };
         calibration::calibrate(&mut renderer, size(settings), settings.seed);
         let mut passes = Passes {
@@ -135,7 +135,7 @@ impl<'a, M: LaneModel> Passes<'a, M> {
         (origin - self.renderer.scene.origin, direction)
     }
 
-    fn add_paths(&self, place: usize, paths: Range<u32>, worker: &mut Worker) -> Sums {
+    fn add_paths(&self, place: usize, paths: Range<u32>, context: &mut ThreadContext) -> Sums {
         // The random numbers are those of the pixel in the whole image.
         let [x, y] = self.part.pixel(place);
         let pixel = (y * self.settings.width + x) as u64;
@@ -154,7 +154,7 @@ impl<'a, M: LaneModel> Passes<'a, M> {
                 }
             };
             let (origin, direction) = self.ray(place, offset);
-            let light = self.renderer.trace(PathIndex { pixel, path }, origin, direction, worker);
+            let light = self.renderer.trace(PathIndex { pixel, path }, origin, direction, context);
             sum.add(path, alone, &light);
             if let Some((edge, spread)) = &mut edge {
                 let half = path as usize % 2;
@@ -162,7 +162,7 @@ impl<'a, M: LaneModel> Passes<'a, M> {
                 for ray in 0..edge::RAYS {
                     let [x, y, ..] = spread[half].point(path / 2 * edge::RAYS + ray);
                     let (origin, direction) = self.ray(place, DVec2::new(x, y));
-                    edge.add_ray(half, self.renderer.through(origin, direction, &mut worker.counts));
+                    edge.add_ray(half, self.renderer.through(origin, direction, &mut context.counts));
                 }
             }
         }
@@ -181,11 +181,11 @@ impl<M: LaneModel> Session for Passes<'_, M> {
         self.renderer.paths_per_pixel = self.settings.paths_per_pixel.max(range.end);
         self.renderer.pass = range.clone();
         let tile = |tile: usize| {
-            let mut worker = Worker::new(self.renderer.bodies.len());
-            let add = |place: usize| (place, self.add_paths(place, range.clone(), &mut worker));
+            let mut context = ThreadContext::new(self.renderer.objects.len());
+            let add = |place: usize| (place, self.add_paths(place, range.clone(), &mut context));
             let sums: Vec<(usize, Sums)> = self.places(tile).map(add).collect();
             progress(sums.len() as u64);
-            (sums, worker.counts)
+            (sums, context.counts)
         };
         let tiles: Vec<_> = (0..self.tiles()).into_par_iter().map(tile).collect();
         for (sums, counts) in tiles {
@@ -217,16 +217,16 @@ fn part<'a>(cloud: &'a Cloud, slot: usize, medium: &Medium) -> [LitSamples<'a>; 
     cloud.meta().materials[slot].halves.map(|half| LitSamples::new(cloud, &half, medium.eta))
 }
 
-fn bodies<'a, M: LaneModel>(input: &Input<'a>, settings: &Settings) -> Vec<Option<Body<'a, M>>> {
-    let mut bodies: Vec<Option<Body<M>>> = input.scene.materials.iter().map(|_| None).collect();
-    for (slot, (sampled, medium)) in clouds::materials(input.clouds).iter().zip(input.media).enumerate() {
+fn objects<'a, M: LaneModel>(input: &Input<'a>, settings: &Settings) -> Vec<Option<TranslucentObject<'a, M>>> {
+    let mut objects: Vec<Option<TranslucentObject<M>>> = input.scene.materials.iter().map(|_| None).collect();
+    for (slot, (sampled, medium)) in shards::materials(input.clouds).iter().zip(input.media).enumerate() {
         let model = settings.model.of(medium);
         let method = match settings.estimator {
             Estimator::Exhaustive => Method::Exhaustive,
             Estimator::Roulette(rule) => Method::Roulette(rule.rates(model.transport())),
-            Estimator::Cut { .. } => Method::Cut(Radial::new(medium, &*model, sampled.area_m2.sqrt())),
+            Estimator::Cut { .. } => Method::Cut(FalloffTables::new(medium, &*model, sampled.area_m2.sqrt())),
         };
-        bodies[sampled.index as usize] = Some(Body {
+        objects[sampled.index as usize] = Some(TranslucentObject {
             model: M::new(medium),
             unscattered: settings.model.unscattered_extinction(medium),
             method,
@@ -235,5 +235,5 @@ fn bodies<'a, M: LaneModel>(input: &Input<'a>, settings: &Settings) -> Vec<Optio
             medium: medium.clone(),
         });
     }
-    bodies
+    objects
 }

@@ -1,11 +1,11 @@
 //! note: [split] One camera path: Fresnel roulette at the interfaces, and `L_o = L_e + L_t + L_r` where light leaves.
 
 use crate::{
-    clouds::{Drawn, Turn},
     counts::Counts,
     estimator::{Estimator, Scratch},
     film::{Guide, Layer, Layers},
-    gathering::Body,
+    shards::{DrawnCounts, ShardPick},
+    subsurface::TranslucentObject,
 };
 use bssrdf::{fresnel, lanes::LaneModel};
 use scene::{
@@ -22,13 +22,13 @@ pub struct Renderer<'a, M> {
     pub lights: LightTree<'a>,
     pub camera: &'a Camera,
     /// One entry for each material; none for opaque ones.
-    pub bodies: Vec<Option<Body<'a, M>>>,
+    pub objects: Vec<Option<TranslucentObject<'a, M>>>,
     /// What rays that escape see.
     pub environment: Environment,
     pub normals: NormalKind,
     pub estimator: Estimator,
     /// Samples of each cloud, the unlit ones included.
-    pub drawn: Drawn,
+    pub drawn: DrawnCounts,
     pub paths_per_pixel: u32,
     /// Paths of each pixel that are added at once.
     pub pass: Range<u32>,
@@ -50,16 +50,16 @@ pub struct PathIndex {
 
 /// What one thread counts and keeps between paths.
 #[derive(Clone, Debug, Default)]
-pub struct Worker {
+pub struct ThreadContext {
     pub counts: Counts,
     /// One for each material.
     pub(crate) scratch: Vec<Scratch>,
 }
 
-impl Worker {
+impl ThreadContext {
     /// For a scene of so many materials.
-    pub fn new(materials: usize) -> Worker {
-        Worker { counts: Counts::default(), scratch: vec![Scratch::default(); materials] }
+    pub fn new(materials: usize) -> ThreadContext {
+        ThreadContext { counts: Counts::default(), scratch: vec![Scratch::default(); materials] }
     }
 
     pub fn scratch(&mut self, material: usize) -> &mut Scratch {
@@ -79,7 +79,7 @@ pub struct PathLight {
 
 /// A path on its way.
 #[derive(Clone, Copy)]
-pub(crate) struct Walker {
+pub(crate) struct PathState {
     origin: DVec3,
     direction: DVec3,
     /// The triangle that the ray starts on.
@@ -93,13 +93,13 @@ pub(crate) struct Walker {
     /// Which half of the cloud it gathers from, if it is one.
     pub half: usize,
     /// Which of several clouds, if it is one.
-    pub turn: Turn,
+    pub turn: ShardPick,
     random: Item,
     pub dimension: u64,
     pub key: Item,
 }
 
-impl Walker {
+impl PathState {
     fn uniform(&mut self) -> f64 {
         self.dimension += 1;
         self.random.uniform(self.dimension - 1)
@@ -115,13 +115,13 @@ impl Walker {
 
 impl PathLight {
     /// Files light under the path's layer, or under `layer` if nothing happened to it yet.
-    fn add(&mut self, walker: &Walker, layer: Layer, radiance: DVec3) {
-        self.add_halves(walker, layer, radiance, [radiance; 2]);
+    fn add(&mut self, state: &PathState, layer: Layer, radiance: DVec3) {
+        self.add_halves(state, layer, radiance, [radiance; 2]);
     }
 
-    pub(crate) fn add_halves(&mut self, walker: &Walker, layer: Layer, radiance: DVec3, halves: [DVec3; 2]) {
-        self.layers[walker.layer.unwrap_or(layer) as usize] += walker.throughput * radiance;
-        self.halves.iter_mut().zip(halves).for_each(|(sum, half)| *sum += walker.throughput * half);
+    pub(crate) fn add_halves(&mut self, state: &PathState, layer: Layer, radiance: DVec3, halves: [DVec3; 2]) {
+        self.layers[state.layer.unwrap_or(layer) as usize] += state.throughput * radiance;
+        self.halves.iter_mut().zip(halves).for_each(|(sum, half)| *sum += state.throughput * half);
     }
 }
 
@@ -130,10 +130,10 @@ const BRANCH: u64 = 1 << 32;
 
 impl<M: LaneModel> Renderer<'_, M> {
     /// Light that arrives at the camera along one path. At its first interface the path splits in two.
-    pub fn trace(&self, index: PathIndex, origin: DVec3, direction: DVec3, worker: &mut Worker) -> PathLight {
+    pub fn trace(&self, index: PathIndex, origin: DVec3, direction: DVec3, context: &mut ThreadContext) -> PathLight {
         let item = index.pixel << 32 | u64::from(index.path);
         let half = index.path as usize % 2;
-        let mut walker = Walker {
+        let mut state = PathState {
             origin,
             direction,
             from: None,
@@ -148,17 +148,17 @@ impl<M: LaneModel> Renderer<'_, M> {
             key: self.gathers.item(item),
         };
         let mut light = PathLight::default();
-        worker.counts.paths += 1;
+        context.counts.paths += 1;
         let mut mirrored = None;
-        self.follow(&mut walker, &mut mirrored, &mut light, worker);
-        if let Some(mut walker) = mirrored {
-            self.follow(&mut walker, &mut None, &mut light, worker);
+        self.follow(&mut state, &mut mirrored, &mut light, context);
+        if let Some(mut state) = mirrored {
+            self.follow(&mut state, &mut None, &mut light, context);
         }
         light
     }
 
     /// Among the paths of its half that are added at once.
-    fn turn(&self, index: PathIndex) -> Turn {
+    fn turn(&self, index: PathIndex) -> ShardPick {
         let half = index.path % 2;
         // The first path of this half, at `path` or after it.
         let first = |path: u32| (path + 1 - half) / 2;
@@ -167,11 +167,17 @@ impl<M: LaneModel> Renderer<'_, M> {
         self.drawn.turn(half as usize, index.path / 2 - start, end - start, random)
     }
 
-    fn follow(&self, walker: &mut Walker, mirrored: &mut Option<Walker>, light: &mut PathLight, worker: &mut Worker) {
-        while self.step(walker, mirrored, light, worker) {
-            walker.events += 1;
-            if walker.events >= self.max_depth {
-                worker.counts.cut_by_depth += 1;
+    fn follow(
+        &self,
+        state: &mut PathState,
+        mirrored: &mut Option<PathState>,
+        light: &mut PathLight,
+        context: &mut ThreadContext,
+    ) {
+        while self.step(state, mirrored, light, context) {
+            state.events += 1;
+            if state.events >= self.max_depth {
+                context.counts.cut_by_depth += 1;
                 break;
             }
         }
@@ -180,184 +186,197 @@ impl<M: LaneModel> Renderer<'_, M> {
     /// Follows the path to its next interface; false if it ends.
     fn step(
         &self,
-        walker: &mut Walker,
-        mirrored: &mut Option<Walker>,
+        state: &mut PathState,
+        mirrored: &mut Option<PathState>,
         light: &mut PathLight,
-        worker: &mut Worker,
+        context: &mut ThreadContext,
     ) -> bool {
-        worker.counts.rays += 1;
-        let free = self.free_path(walker);
-        let Some(hit) = self.rays.closest_within(walker.origin, walker.direction, free, walker.from) else {
+        context.counts.rays += 1;
+        let free = self.free_path(state);
+        let Some(hit) = self.rays.closest_within(state.origin, state.direction, free, state.from) else {
             if free == f64::INFINITY {
-                self.escape(walker, light, &mut worker.counts);
+                self.escape(state, light, &mut context.counts);
             }
             return false;
         };
         let point = self.scene.mesh.point(hit.triangle, hit.weights, self.normals);
-        let front = walker.direction.dot(point.geometric_normal) < 0.0;
-        let body = self.bodies[point.material as usize].as_ref();
-        if body.is_some() && walker.from.is_none() && walker.inside.is_none() {
-            worker.counts.from_outside += u64::from(front);
-            worker.counts.from_inside += u64::from(!front);
+        let front = state.direction.dot(point.geometric_normal) < 0.0;
+        let object = self.objects[point.material as usize].as_ref();
+        if object.is_some() && state.from.is_none() && state.inside.is_none() {
+            context.counts.from_outside += u64::from(front);
+            context.counts.from_inside += u64::from(!front);
         }
-        if !self.attenuate(walker, &point, front, hit.distance) {
+        if !self.attenuate(state, &point, front, hit.distance) {
             return false;
         }
-        match body {
+        match object {
             None => {
-                self.opaque(walker, &point, &hit, light, &mut worker.counts);
+                self.opaque(state, &point, &hit, light, &mut context.counts);
                 false
             }
-            Some(_) if front && walker.inside.is_some() => {
+            Some(_) if front && state.inside.is_some() => {
                 // Straight on, a little beyond: two triangles that meet in the ray would send it to and fro.
-                worker.counts.nested += 1;
-                walker.origin = point.position + walker.direction * self.clearance;
-                walker.from = None;
+                context.counts.nested += 1;
+                state.origin = point.position + state.direction * self.clearance;
+                state.from = None;
                 true
             }
-            Some(body) if front => self.meet_from_outside(walker, body, &point, mirrored, light, worker),
-            Some(body) => self.meet_from_inside(walker, body, &point, &mut worker.counts),
+            Some(object) if front => self.meet_from_outside(state, object, &point, mirrored, light, context),
+            Some(object) => self.meet_from_inside(state, object, &point, &mut context.counts),
         }
     }
 
     /// How far a ray inside a medium goes without being scattered or absorbed, by one of the three channels (method.md
     /// 6.9). A ray that meets a surface within has survived with the mean of their transmittances.
-    fn free_path(&self, walker: &mut Walker) -> f64 {
-        let Some(body) = walker.inside.and_then(|m| self.bodies[m as usize].as_ref()) else {
+    fn free_path(&self, state: &mut PathState) -> f64 {
+        let Some(object) = state.inside.and_then(|m| self.objects[m as usize].as_ref()) else {
             return f64::INFINITY;
         };
-        let channel = ((3.0 * walker.uniform()) as usize).min(2);
-        let sigma = body.unscattered[channel];
-        if sigma > 0.0 { -(1.0 - walker.uniform()).ln() / sigma } else { f64::INFINITY }
+        let channel = ((3.0 * state.uniform()) as usize).min(2);
+        let sigma = object.unscattered[channel];
+        if sigma > 0.0 { -(1.0 - state.uniform()).ln() / sigma } else { f64::INFINITY }
     }
 
     /// A ray that meets nothing more.
-    fn escape(&self, walker: &Walker, light: &mut PathLight, counts: &mut Counts) {
-        let mut seen = self.environment.radiance(walker.direction);
-        if let Some(body) = walker.inside.and_then(|m| self.bodies[m as usize].as_ref()) {
+    fn escape(&self, state: &PathState, light: &mut PathLight, counts: &mut Counts) {
+        let mut seen = self.environment.radiance(state.direction);
+        if let Some(object) = state.inside.and_then(|m| self.objects[m as usize].as_ref()) {
             counts.escaped_inside += 1;
-            let clear = body.unscattered.map(|sigma| f64::from(u8::from(sigma == 0.0)));
+            let clear = object.unscattered.map(|sigma| f64::from(u8::from(sigma == 0.0)));
             // An infinite way through the medium; the channel of an infinite free path was one of the clear ones.
             seen *= DVec3::from_array(clear) * (3.0 / clear.iter().sum::<f64>().max(1.0));
         }
-        light.add(walker, Layer::Emission, seen);
+        light.add(state, Layer::Emission, seen);
     }
 
     /// Transmittance `e^{−σ̃_t s}` of the way through a medium (method.md 6.9), over the probability of having come so far:
     /// no channel grows by more than 3. False if the path ends.
-    fn attenuate(&self, walker: &mut Walker, point: &SurfacePoint, front: bool, distance: f64) -> bool {
+    fn attenuate(&self, state: &mut PathState, point: &SurfacePoint, front: bool, distance: f64) -> bool {
         // A back face met from outside: the camera is inside, or the mesh is open. No free path was chosen then.
-        let chosen = walker.inside.is_some();
-        let medium = walker.inside.unwrap_or(point.material);
-        let Some(body) = self.bodies[medium as usize].as_ref().filter(|_| chosen || !front) else {
+        let chosen = state.inside.is_some();
+        let medium = state.inside.unwrap_or(point.material);
+        let Some(object) = self.objects[medium as usize].as_ref().filter(|_| chosen || !front) else {
             return true;
         };
-        let transmittance = DVec3::from_array(body.unscattered.map(|sigma| (-sigma * distance).exp()));
+        let transmittance = DVec3::from_array(object.unscattered.map(|sigma| (-sigma * distance).exp()));
         let survival = transmittance.element_sum() / 3.0;
-        if !chosen && survival < 1.0 && walker.uniform() >= survival {
+        if !chosen && survival < 1.0 && state.uniform() >= survival {
             return false;
         }
-        walker.throughput *= transmittance / survival;
+        state.throughput *= transmittance / survival;
         survival > 0.0
     }
 
     /// A Lambertian surface that may emit: the path ends here, lit directly.
-    fn opaque(&self, walker: &mut Walker, point: &SurfacePoint, hit: &Hit, light: &mut PathLight, counts: &mut Counts) {
-        let front = walker.direction.dot(point.geometric_normal) < 0.0;
+    fn opaque(
+        &self,
+        state: &mut PathState,
+        point: &SurfacePoint,
+        hit: &Hit,
+        light: &mut PathLight,
+        counts: &mut Counts,
+    ) {
+        let front = state.direction.dot(point.geometric_normal) < 0.0;
         let material = &self.scene.materials[point.material as usize];
         if material.emits() && (front || material.double_sided) {
-            light.add(walker, Layer::Emission, material.emission);
+            light.add(state, Layer::Emission, material.emission);
         }
-        let facing = point.facing(-walker.direction);
-        let xi = || [walker.uniform(), walker.uniform()];
+        let facing = point.facing(-state.direction);
+        let xi = || [state.uniform(), state.uniform()];
         let irradiance = all_light_at(&self.lights, self.rays, &facing, xi, &mut counts.shadow_rays);
-        light.add(walker, Layer::Diffuse, self.scene.color(hit.triangle, hit.weights).truncate() / PI * irradiance);
+        light.add(state, Layer::Diffuse, self.scene.color(hit.triangle, hit.weights).truncate() / PI * irradiance);
     }
 
     /// Reflection with probability R, else refraction, which shows emitted and scattered light and goes on inside. The
     /// first interface of a path does both: choosing there would be most of the noise of an image.
     fn meet_from_outside(
         &self,
-        walker: &mut Walker,
-        body: &Body<M>,
+        state: &mut PathState,
+        object: &TranslucentObject<M>,
         point: &SurfacePoint,
-        mirrored: &mut Option<Walker>,
+        mirrored: &mut Option<PathState>,
         light: &mut PathLight,
-        worker: &mut Worker,
+        context: &mut ThreadContext,
     ) -> bool {
-        let counts = &mut worker.counts;
-        let eta = body.medium.eta;
-        let view = -walker.direction;
+        let counts = &mut context.counts;
+        let eta = object.medium.eta;
+        let view = -state.direction;
         let mut normal = facing_normal(point.normal, point.geometric_normal, view, counts);
         let transmittance = fresnel::transmittance(normal.dot(view), eta);
-        let splits = walker.layer.is_none() && transmittance > 0.0;
-        if !splits && walker.uniform() >= transmittance {
-            self.mirror(walker, normal, point, counts);
+        let splits = state.layer.is_none() && transmittance > 0.0;
+        if !splits && state.uniform() >= transmittance {
+            self.mirror(state, normal, point, counts);
             return true;
         }
         if splits {
             if transmittance < 1.0 {
-                let mut branch = Walker { dimension: walker.dimension + BRANCH, events: walker.events + 1, ..*walker };
+                let mut branch = PathState { dimension: state.dimension + BRANCH, events: state.events + 1, ..*state };
                 branch.throughput *= 1.0 - transmittance;
                 self.mirror(&mut branch, normal, point, counts);
                 *mirrored = (branch.events < self.max_depth).then_some(branch);
                 counts.cut_by_depth += u64::from(mirrored.is_none());
             }
-            walker.throughput *= transmittance;
-            light.through = if body.is_dark() { 0.0 } else { transmittance };
+            state.throughput *= transmittance;
+            light.through = if object.is_dark() { 0.0 } else { transmittance };
         }
         let emission = self.scene.materials[point.material as usize].emission;
-        light.add(walker, Layer::Emission, emission);
-        self.gather(walker, body, point, normal, light, worker);
+        light.add(state, Layer::Emission, emission);
+        self.gather(state, object, point, normal, light, context);
         if fresnel::enter(normal, view, eta).is_none_or(|e| e.direction.dot(point.geometric_normal) >= 0.0) {
-            worker.counts.geometric_normals += 1;
+            context.counts.geometric_normals += 1;
             normal = point.geometric_normal;
         }
         let Some(entry) = fresnel::enter(normal, view, eta) else {
             return false; // only the interpolated normal lets light through
         };
-        walker.inside = Some(point.material);
-        walker.leave(point, entry.direction, Layer::Transmission);
+        state.inside = Some(point.material);
+        state.leave(point, entry.direction, Layer::Transmission);
         true
     }
 
     /// Sends the path back from the outside of a surface.
-    fn mirror(&self, walker: &mut Walker, normal: DVec3, point: &SurfacePoint, counts: &mut Counts) {
-        let view = -walker.direction;
+    fn mirror(&self, state: &mut PathState, normal: DVec3, point: &SurfacePoint, counts: &mut Counts) {
+        let view = -state.direction;
         let mut mirrored = fresnel::reflect(normal, view);
         if mirrored.dot(point.geometric_normal) <= 0.0 {
             counts.geometric_normals += 1;
             mirrored = fresnel::reflect(point.geometric_normal, view);
         }
-        walker.leave(point, mirrored, Layer::Specular);
+        state.leave(point, mirrored, Layer::Specular);
     }
 
     /// Reflection inside with probability R_in, else out into the scene. Nothing is gathered from inside.
-    fn meet_from_inside(&self, walker: &mut Walker, body: &Body<M>, point: &SurfacePoint, counts: &mut Counts) -> bool {
+    fn meet_from_inside(
+        &self,
+        state: &mut PathState,
+        object: &TranslucentObject<M>,
+        point: &SurfacePoint,
+        counts: &mut Counts,
+    ) -> bool {
         let (inward, geometric) = (-point.normal, -point.geometric_normal);
-        let view = -walker.direction;
+        let view = -state.direction;
         let normal = facing_normal(inward, geometric, view, counts);
-        let eta_out = 1.0 / body.medium.eta;
+        let eta_out = 1.0 / object.medium.eta;
         let transmittance = fresnel::transmittance(normal.dot(view), eta_out);
-        if walker.uniform() < transmittance
+        if state.uniform() < transmittance
             && let Some(exit) = fresnel::enter(normal, view, eta_out)
         {
-            walker.inside = None;
+            state.inside = None;
             let mut direction = exit.direction;
             if direction.dot(geometric) >= 0.0 {
                 counts.geometric_normals += 1;
-                direction = fresnel::enter(geometric, view, eta_out).map_or(walker.direction, |e| e.direction);
+                direction = fresnel::enter(geometric, view, eta_out).map_or(state.direction, |e| e.direction);
             }
-            walker.leave(point, direction, Layer::Transmission);
+            state.leave(point, direction, Layer::Transmission);
             return true;
         }
-        walker.inside = Some(point.material);
+        state.inside = Some(point.material);
         let mut mirrored = fresnel::reflect(normal, view);
         if mirrored.dot(geometric) <= 0.0 {
             counts.geometric_normals += 1;
             mirrored = fresnel::reflect(geometric, view);
         }
-        walker.leave(point, mirrored, Layer::Transmission);
+        state.leave(point, mirrored, Layer::Transmission);
         true
     }
 
@@ -369,11 +388,11 @@ impl<M: LaneModel> Renderer<'_, M> {
         };
         let point = self.scene.mesh.point(hit.triangle, hit.weights, self.normals);
         let view = -direction;
-        match &self.bodies[point.material as usize] {
-            Some(body) if view.dot(point.geometric_normal) > 0.0 && !body.is_dark() => {
+        match &self.objects[point.material as usize] {
+            Some(object) if view.dot(point.geometric_normal) > 0.0 && !object.is_dark() => {
                 // What these rays meet is no event of a path.
                 let normal = facing_normal(point.normal, point.geometric_normal, view, &mut Counts::default());
-                fresnel::transmittance(normal.dot(view), body.medium.eta)
+                fresnel::transmittance(normal.dot(view), object.medium.eta)
             }
             _ => 0.0,
         }

@@ -6,7 +6,7 @@ use scene::DVec3;
 /// What the curve's argument is multiplied by: so a middle grey of 0.18 stays 0.18, and the curve meets 1 at about 10.
 const MIDDLE: f64 = 0.7232;
 
-/// The pixels as a PNG file, brighter by `stops` powers of two. Not colour-managed: values are linear sRGB.
+/// The pixels as a PNG file, brighter by `stops` powers of two. Not color-managed: values are linear sRGB.
 pub fn png(pixels: &[Pixel], width: usize, height: usize, stops: f64) -> Result<Vec<u8>, png::EncodingError> {
     let scale = stops.exp2();
     let bytes: Vec<u8> = pixels.iter().flat_map(|p| tone(p.beauty() * scale)).collect();

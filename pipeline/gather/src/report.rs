@@ -6,8 +6,8 @@ use formats::{
     Attribute,
     cloud::{Cloud, hex},
 };
-use gather::{Rendered, Settings, clouds, estimator::Estimator, film};
-use scene::{Camera, Health};
+use gather::{Rendered, Settings, estimator::Estimator, film, shards};
+use scene::{Camera, MeshDefects};
 use std::collections::BTreeMap;
 
 /// Facts about one image.
@@ -22,7 +22,7 @@ pub struct Facts<'a> {
     pub turned_degrees: f64,
     /// What was left out of the scene or looks wrong.
     pub warnings: &'a [String],
-    pub health: Health,
+    pub defects: MeshDefects,
 }
 
 fn estimator_name(estimator: Estimator) -> String {
@@ -61,12 +61,12 @@ impl Facts<'_> {
             put("utcOffset", Attribute::Float(0.0));
         }
         let first = self.clouds[0].meta();
-        put("pcsss/cloud", Attribute::Text(hex(&clouds::identity(self.clouds))));
+        put("pcsss/cloud", Attribute::Text(hex(&shards::identity(self.clouds))));
         put("pcsss/scene", Attribute::Text(hex(&first.geometry)));
-        put("pcsss/samplesDrawn", Attribute::Double(clouds::drawn(self.clouds) as f64));
+        put("pcsss/samplesDrawn", Attribute::Double(shards::drawn(self.clouds) as f64));
         match self.clouds {
             [_] => put("pcsss/cloudSeed", Attribute::Text(first.options.seed.to_string())),
-            _ => put("pcsss/clouds", Attribute::Texts(clouds::describe(self.clouds))),
+            _ => put("pcsss/clouds", Attribute::Texts(shards::describe(self.clouds))),
         }
         put("pcsss/metresPerUnit", Attribute::Double(first.options.metres_per_unit));
         put("pcsss/lightUnit", Attribute::Text(first.options.light_unit.clone()));
@@ -78,7 +78,7 @@ impl Facts<'_> {
         put("pcsss/version", text(version));
         put("pcsss/arguments", Attribute::Text(self.arguments(arguments)));
         put("pcsss/varianceCovers", text(self.covers()));
-        let media = clouds::materials(self.clouds).iter().zip(self.media);
+        let media = shards::materials(self.clouds).iter().zip(self.media);
         put("pcsss/media", Attribute::Texts(media.map(|(m, medium)| describe(&m.name, medium)).collect()));
         if !self.warnings.is_empty() {
             put("pcsss/warnings", Attribute::Texts(self.warnings.to_vec()));
@@ -134,12 +134,12 @@ impl Facts<'_> {
             "estimated_relative_error": film::relative_error(&rendered.pixels),
             "estimated_relative_error_covers": self.covers(),
             "negative_pixels": film::negative_count(&rendered.pixels),
-            "mesh": self.health.counts().into_iter().collect::<BTreeMap<_, _>>(),
+            "mesh": self.defects.counts().into_iter().collect::<BTreeMap<_, _>>(),
             "non_finite": rendered.non_finite_count,
             "non_finite_pixels": rendered.non_finite.iter().map(|p| self.pixel(*p)).collect::<Vec<_>>(),
-            "cloud": hex(&clouds::identity(self.clouds)),
+            "cloud": hex(&shards::identity(self.clouds)),
             "clouds": self.clouds.len(),
-            "samples_drawn": clouds::drawn(self.clouds),
+            "samples_drawn": shards::drawn(self.clouds),
             "estimator": estimator_name(self.settings.estimator),
             "bssrdf": self.settings.model.name(),
         });
@@ -154,7 +154,7 @@ impl Facts<'_> {
 
     /// What variance and estimated error cover.
     pub fn covers(&self) -> &'static str {
-        film::covers(self.settings.paths_per_pixel, clouds::Drawn::of(self.clouds).half(1))
+        film::covers(self.settings.paths_per_pixel, shards::DrawnCounts::of(self.clouds).half(1))
     }
 
     /// Column and row of a pixel in the whole image.

@@ -1,7 +1,7 @@
 //! note: [choice] Which triangle, and with what density.
 
 use crate::{
-    curve,
+    hilbert,
     ribbon::{Link, Part, ribbons},
 };
 use clap::ValueEnum;
@@ -56,7 +56,7 @@ impl TriangleChoice {
     pub fn with_shares(mesh: &Mesh, rule: Choice, wanted: impl Fn(u16) -> bool, shares: &[(u16, f64)]) -> Self {
         let mut triangles: Vec<u32> =
             (0..mesh.triangles.len()).filter(|k| wanted(mesh.triangles[*k].material)).map(|k| k as u32).collect();
-        curve::sort(mesh, &mut triangles);
+        hilbert::sort(mesh, &mut triangles);
         let links = ribbons(mesh, &triangles);
         let areas: Vec<f64> = links.iter().map(|link| mesh.area(link.triangle as usize)).collect();
         let mut choice = TriangleChoice { rule, links, areas, factors: Vec::new(), shares_so_far: Vec::new() };

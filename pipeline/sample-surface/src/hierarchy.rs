@@ -12,17 +12,18 @@ const ALONE: usize = 1 << 13;
 
 /// A sample's position, and its place in the list of records.
 #[derive(Clone, Copy)]
-struct Entry {
+struct OrderedSample {
     position: Vec3,
     index: u32,
 }
 
 /// Orders samples into tiles with a tree over them.
 pub fn build(records: &[Record]) -> (Vec<Tile>, Vec<Node>) {
-    let entry = |(index, r): (usize, &Record)| Entry { position: Vec3::from_array(r.position), index: index as u32 };
-    let mut entries: Vec<Entry> = records.par_iter().enumerate().map(entry).collect();
+    let entry =
+        |(index, r): (usize, &Record)| OrderedSample { position: Vec3::from_array(r.position), index: index as u32 };
+    let mut entries: Vec<OrderedSample> = records.par_iter().enumerate().map(entry).collect();
     order(&mut entries);
-    let collect = |part: &[Entry]| {
+    let collect = |part: &[OrderedSample]| {
         let mut own = [Record::default(); TILE];
         own.iter_mut().zip(part).for_each(|(record, e)| *record = records[e.index as usize]);
         tile(&own[..part.len()])
@@ -32,7 +33,7 @@ pub fn build(records: &[Record]) -> (Vec<Tile>, Vec<Node>) {
     (tiles, nodes)
 }
 
-fn order(entries: &mut [Entry]) {
+fn order(entries: &mut [OrderedSample]) {
     if entries.len() < 2 {
         return;
     }

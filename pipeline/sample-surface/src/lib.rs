@@ -2,29 +2,29 @@
 //!
 //! Knows no medium and no camera: one cloud serves all of them.
 
+mod adaptive_count;
 mod bounce;
 mod choice;
-mod curve;
-mod enough;
 pub mod hierarchy;
+mod hilbert;
 mod pattern;
 mod points;
 mod ribbon;
 mod sample;
 mod trials;
 
+pub use adaptive_count::{Enough, Round, sample_enough};
 pub use bounce::Bounce;
 pub use choice::{Choice, Chosen, TriangleChoice};
-pub use enough::{Enough, Round, sample_enough};
 pub use pattern::{Numbers, Pattern, Place};
 pub use points::Goal;
-pub use sample::{Drawn, LitSurface, draw};
+pub use sample::{LitSurface, SampleOutcome, draw};
 pub use trials::{TRIALS, Trials};
 
 use cli::{Thing, Unclear, count, count_up, the_one};
 use formats::cloud::{Content, Group, Meta, Options, Record, SampledMaterial, version};
 use rayon::prelude::*;
-use scene::{Health, NormalKind, Rays, Scene, light::LightTree, random};
+use scene::{MeshDefects, NormalKind, Rays, Scene, light::LightTree, random};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Samples that one task draws.
@@ -92,7 +92,7 @@ pub struct Plan {
     pub unmarked: bool,
     pub geometry: [u8; 32],
     /// Of the sampled surfaces.
-    pub health: Health,
+    pub defects: MeshDefects,
     /// Identity of everything the samples depend on.
     pub content: [u8; 32],
 }
@@ -113,8 +113,8 @@ impl Plan {
         hasher.update(&settings.samples.to_le_bytes());
         let options = serde_json::json!({ "options": &settings.options, "materials": &materials });
         hasher.update(options.to_string().as_bytes());
-        let health = scene.health(|material| materials.binary_search(&material).is_ok());
-        Ok(Plan { materials, shares, unmarked, geometry, health, content: *hasher.finalize().as_bytes() })
+        let defects = scene.defects(|material| materials.binary_search(&material).is_ok());
+        Ok(Plan { materials, shares, unmarked, geometry, defects, content: *hasher.finalize().as_bytes() })
     }
 }
 
@@ -279,14 +279,14 @@ fn draw_portion(
 }
 
 impl Portion {
-    fn count(&mut self, plan: &Plan, half: usize, drawn: Drawn) {
+    fn count(&mut self, plan: &Plan, half: usize, drawn: SampleOutcome) {
         match drawn {
-            Drawn::FacingAway => self.facing_away += 1,
-            Drawn::Shadowed => self.shadowed += 1,
-            Drawn::NoBounce => self.no_bounce += 1,
-            Drawn::Underflow => self.underflow += 1,
-            Drawn::NotFinite => self.not_finite += 1,
-            Drawn::Lit { sample, material } => {
+            SampleOutcome::FacingAway => self.facing_away += 1,
+            SampleOutcome::Shadowed => self.shadowed += 1,
+            SampleOutcome::NoBounce => self.no_bounce += 1,
+            SampleOutcome::Underflow => self.underflow += 1,
+            SampleOutcome::NotFinite => self.not_finite += 1,
+            SampleOutcome::Lit { sample, material } => {
                 self.flux += sample.flux.as_dvec3();
                 if let Ok(slot) = plan.materials.binary_search(&material) {
                     self.groups[slot][half].push(Record::new(&sample));
@@ -336,7 +336,7 @@ fn join(
             ("no_bounce".into(), total(|p| p.no_bounce)),
         ]),
         shadow_rays: total(|p| p.shadow_rays),
-        mesh_faults: plan.health.counts().map(|(name, count)| (name.to_owned(), count)).into(),
+        mesh_faults: plan.defects.counts().map(|(name, count)| (name.to_owned(), count)).into(),
         surface_area_m2: choice.area(),
         mean_flux_w: (flux / settings.samples as f64).to_array(),
         diagonal_m: scene.mesh.diagonal(),

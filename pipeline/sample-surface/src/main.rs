@@ -15,7 +15,7 @@ use formats::{
 use sample_surface::{
     Choice, Enough, Goal, Pattern, Plan, Round, SampleError, Sampled, Settings, sample, sample_enough,
 };
-use scene::{Health, Rays, Scene, light::Environment};
+use scene::{MeshDefects, Rays, Scene, light::Environment};
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
@@ -149,7 +149,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         plan.depends_on(goal);
     }
     let sampled = |material| plan.samples(material);
-    arguments.scene_args.check_mesh(&mut scene, sampled, plan.health, &arguments.scene, common)?;
+    arguments.scene_args.check_mesh(&mut scene, sampled, plan.defects, &arguments.scene, common)?;
     seconds.add("import", start);
     if plan.unmarked {
         common.say("no material is marked as a volume: all surfaces that do not emit are translucent");
@@ -176,7 +176,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     seconds.add("total", start);
     if let Some(path) = &arguments.stats {
-        group.write(path, &statistics(&cloud, &plan.health, &seconds, common, kept))?;
+        group.write(path, &statistics(&cloud, &plan.defects, &seconds, common, kept))?;
     }
     group.commit()?;
     report(&cloud, common);
@@ -310,7 +310,7 @@ impl Seconds {
     }
 }
 
-fn statistics(cloud: &Cloud, health: &Health, seconds: &Seconds, common: &Common, kept: bool) -> Vec<u8> {
+fn statistics(cloud: &Cloud, defects: &MeshDefects, seconds: &Seconds, common: &Common, kept: bool) -> Vec<u8> {
     let meta = cloud.meta();
     let rate = seconds.of("sample").filter(|s| *s > 0.0).map(|s| meta.shadow_rays as f64 / s);
     let table: serde_json::Map<_, _> = seconds.0.iter().map(|(k, v)| ((*k).to_owned(), (*v).into())).collect();
@@ -327,7 +327,7 @@ fn statistics(cloud: &Cloud, health: &Health, seconds: &Seconds, common: &Common
         "surface_area_m2": meta.surface_area_m2,
         "shadow_rays": meta.shadow_rays,
         "shadow_rays_per_second": rate,
-        "mesh": health.counts().into_iter().collect::<BTreeMap<_, _>>(),
+        "mesh": defects.counts().into_iter().collect::<BTreeMap<_, _>>(),
         "mean_flux_w": meta.mean_flux_w,
         "file_bytes": cloud.bytes(),
         "content": cloud::hex(&meta.content),

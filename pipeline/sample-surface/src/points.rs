@@ -10,7 +10,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use scene::{Scene, SurfacePoint};
 use sums::{
-    estimator::{Calibration, Cut, Radial, Scratch},
+    estimator::{Calibration, Cut, FalloffTables, Scratch},
     samples::{Exit, LitSamples},
 };
 
@@ -42,11 +42,11 @@ impl<'a> Points<'a> {
     /// for. `stream` tells the random numbers of the sums.
     pub fn light(&self, sampled: &Sampled, half: usize, stream: u64, goal: &Goal) -> Vec<f64> {
         let model = DirectionalLanes::new(goal.medium);
-        let radial = Radial::new(goal.medium, &*Model::DirectionalDipole.of(goal.medium), f64::INFINITY);
+        let tables = FalloffTables::new(goal.medium, &*Model::DirectionalDipole.of(goal.medium), f64::INFINITY);
         let at = |(index, place): (usize, &Place)| {
             let point = self.scene.mesh.point(place.triangle, place.weights, self.settings.normals);
             let key = 2 * (stream * self.places.len() as u64 + index as u64) + half as u64;
-            let light = radiance(sampled, half, &point, key, (&model, &radial, goal));
+            let light = radiance(sampled, half, &point, key, (&model, &tables, goal));
             // Points are not spread by area under the note's choice of triangles.
             (light / place.pdf_area.sqrt()).to_array()
         };
@@ -69,7 +69,7 @@ fn radiance(
     half: usize,
     point: &SurfacePoint,
     key: u64,
-    (model, radial, goal): (&DirectionalLanes, &Radial, &Goal),
+    (model, tables, goal): (&DirectionalLanes, &FalloffTables, &Goal),
 ) -> DVec3 {
     let Some(material) = sampled.meta.materials.iter().find(|m| m.index == point.material) else {
         return DVec3::ZERO;
@@ -84,6 +84,6 @@ fn radiance(
     // Less than the goal by so much that it does not show in the difference.
     let accuracy = (0.3 * goal.error) as f32;
     let (calibration, scratch) = (&Calibration::default(), &mut Scratch::default());
-    let cut = Cut { model, samples, radial, exit, accuracy, calibration, scratch };
+    let cut = Cut { model, samples, tables, exit, accuracy, calibration, scratch };
     simd::dispatch(cut).radiance / sampled.meta.drawn_by_half()[half].max(1) as f64
 }

@@ -7,7 +7,7 @@ use crate::{
 use formats::cloud::Sample;
 use scene::{
     Mesh, NormalKind, Rays, SurfacePoint,
-    light::{LightChoice, LightTree, Lit, Region, light_at},
+    light::{LightChoice, LightTree, Lit, ReceiverBounds, light_at},
 };
 
 /// A surface and its light.
@@ -21,7 +21,7 @@ pub struct LitSurface<'a> {
 }
 
 /// What became of a drawn sample.
-pub enum Drawn {
+pub enum SampleOutcome {
     /// A lit sample, and the material it lies on.
     Lit { sample: Sample, material: u16 },
     /// No light can reach it: all are behind the surface, or out of range.
@@ -45,11 +45,11 @@ pub fn draw(
     surface: &LitSurface,
     places: &[(usize, Place)],
     shadow_rays: &mut u64,
-    mut tell: impl FnMut(usize, Drawn),
+    mut tell: impl FnMut(usize, SampleOutcome),
 ) {
     let point = |(_, p): &(usize, Place)| surface.mesh.point(p.triangle, p.weights, surface.normals);
     let points: Vec<SurfacePoint> = places.iter().map(point).collect();
-    let Some(region) = Region::around(&points) else { return };
+    let Some(region) = ReceiverBounds::around(&points) else { return };
     let choice = LightChoice::new(&surface.lights, &region, ENTRIES[0] + ENTRIES[1] * points.len());
     for ((half, place), point) in places.iter().zip(&points) {
         tell(*half, drawn(surface, place, point, &choice, shadow_rays));
@@ -63,29 +63,29 @@ fn drawn(
     point: &SurfacePoint,
     choice: &LightChoice,
     shadow_rays: &mut u64,
-) -> Drawn {
+) -> SampleOutcome {
     let [xi, l1, l2] = place.light;
     let share = if surface.bounce.is_some() { SHARE } else { 0.0 };
     let (direction, irradiance) = match &surface.bounce {
         Some(bounce) if xi < share => match bounce.light_at(surface, point, [l1, l2], place.bounce, shadow_rays) {
-            None => return Drawn::NoBounce,
+            None => return SampleOutcome::NoBounce,
             Some((direction, irradiance)) => (direction, irradiance / share),
         },
         _ => match light_at(choice, surface.rays, point, [(xi - share) / (1.0 - share), l1, l2], shadow_rays) {
-            Lit::FacingAway => return Drawn::FacingAway,
-            Lit::Shadowed => return Drawn::Shadowed,
+            Lit::FacingAway => return SampleOutcome::FacingAway,
+            Lit::Shadowed => return SampleOutcome::Shadowed,
             Lit::Light { direction, irradiance } => (direction, irradiance / (1.0 - share)),
         },
     };
     // note: [flux] Φ = E/pdf(x); the estimator divides by K (method.md 6.5).
-    // Of a colour of -0 it would be -0; a cloud has no negative flux.
+    // Of a color of -0 it would be -0; a cloud has no negative flux.
     let flux = (irradiance / place.pdf_area).as_vec3() + scene::Vec3::ZERO;
     if !flux.is_finite() {
-        return Drawn::NotFinite;
+        return SampleOutcome::NotFinite;
     }
     if flux == scene::Vec3::ZERO {
-        return Drawn::Underflow;
+        return SampleOutcome::Underflow;
     }
     let sample = Sample { position: point.position.as_vec3(), normal: point.normal, direction, flux };
-    Drawn::Lit { sample, material: point.material }
+    SampleOutcome::Lit { sample, material: point.material }
 }

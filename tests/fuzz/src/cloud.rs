@@ -8,7 +8,7 @@ use bssrdf::{
 };
 use formats::cloud::{Cloud, Record, Sample, TILE, version};
 use gather::{
-    estimator::{Calibration, Cut, Exhaustive, Radial, Roulette, Rule, Scratch},
+    estimator::{Calibration, Cut, Exhaustive, FalloffTables, Roulette, Rule, Scratch},
     samples::{Exit, LitSamples},
 };
 use std::{ops::Range, path::Path, sync::LazyLock};
@@ -58,12 +58,12 @@ const FARTHEST: f32 = 1e18;
 
 /// Sums over all groups at a sample, and at a point beside it; of a `good` cloud they are finite.
 fn check_sums(cloud: &Cloud, sample: &Sample, good: bool) {
-    static MARBLE: LazyLock<(Medium, Radial)> = LazyLock::new(|| {
+    static MARBLE: LazyLock<(Medium, FalloffTables)> = LazyLock::new(|| {
         let medium = built_in("marble").expect("it is built in");
-        let radial = Radial::new(&medium, &*Model::DirectionalDipole.of(&medium), 0.1);
-        (medium, radial)
+        let tables = FalloffTables::new(&medium, &*Model::DirectionalDipole.of(&medium), 0.1);
+        (medium, tables)
     });
-    let (medium, radial) = &*MARBLE;
+    let (medium, tables) = &*MARBLE;
     let model = &DirectionalLanes::new(medium);
     let rates = Rule::Mixture.rates(Model::DirectionalDipole.of(medium).transport());
     let (calibration, scratch) = (&Calibration::default(), &mut Scratch::default());
@@ -78,7 +78,7 @@ fn check_sums(cloud: &Cloud, sample: &Sample, good: bool) {
             let sums = [
                 simd::dispatch(Exhaustive { model, samples, exit }),
                 simd::dispatch(Roulette { model, samples, exit, rates }),
-                simd::dispatch(Cut { model, samples, radial, exit, accuracy: 0.1, calibration, scratch }),
+                simd::dispatch(Cut { model, samples, tables, exit, accuracy: 0.1, calibration, scratch }),
             ];
             if good && cloud.meta().materials.iter().flat_map(|m| cloud.samples(m)).all(|s| small(&s)) {
                 assert!(sums.iter().all(|s| s.radiance.is_finite() && s.radiance.min_element() >= 0.0), "{sums:?}");

@@ -34,7 +34,7 @@ pub fn gltf(bytes: &[u8]) -> bool {
 
 fn check_surface(scene: &Scene) {
     let translucent = scene.translucent().map_or(Vec::new(), |(materials, _)| materials);
-    scene.health(|material| translucent.contains(&material));
+    scene.defects(|material| translucent.contains(&material));
     let rays = Rays::of_scene(scene, |material| translucent.contains(&material));
     let lights = LightTree::new(&scene.lights);
     let count = scene.mesh.triangles.len();

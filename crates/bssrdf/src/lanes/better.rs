@@ -25,7 +25,7 @@ struct Channel {
     /// `C_E`.
     vector: f32,
     /// `α'² σ_t'²/(4π)` over the exit normalisation, 1/m²; 0 where nothing scatters.
-    strength: f32,
+    prefactor: f32,
 }
 
 /// The better dipole of one medium.
@@ -40,7 +40,7 @@ impl LaneModel for BetterLanes {
         let channels = medium.channels.map(|c| {
             let reduced = c.reduced_extinction();
             let scatters = c.scatters();
-            // Any finite values do where the strength is 0.
+            // Any finite values do where the prefactor is 0.
             let diffusion = if scatters { c.grosjean_diffusion() * reduced } else { 1.0 };
             let transport = if scatters { c.grosjean_transport() / reduced } else { 0.0 };
             let norm = PI * boundary.exit_norm;
@@ -51,7 +51,7 @@ impl LaneModel for BetterLanes {
                 virtual_depth: (1.0 + 4.0 * boundary.reflection * diffusion) as f32,
                 fluence: (boundary.c_phi / diffusion) as f32,
                 vector: boundary.c_e as f32,
-                strength: (c.reduced_albedo().powi(2) * reduced * reduced / (4.0 * PI) / norm) as f32,
+                prefactor: (c.reduced_albedo().powi(2) * reduced * reduced / (4.0 * PI) / norm) as f32,
             }
         });
         BetterLanes { channels }
@@ -79,7 +79,7 @@ impl Channel {
         // e^{q_r} (e^{−q_r}/d_r − e^{−q_v}/d_v)
         let difference = (d.delta * d.over_real + fades) * d.over_virtual;
         let sources = self.vector * (real + mirrored) + self.fluence * difference;
-        let value = self.strength * exp2_negative(self.fall * d.real) * sources;
+        let value = self.prefactor * exp2_negative(self.fall * d.real) * sources;
         // No number where a distance left the range of float32: S is far below it there.
         if value > 0.0 { value } else { 0.0 }
     }

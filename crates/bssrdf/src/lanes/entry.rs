@@ -19,7 +19,7 @@ type Whole = [i32; LANES];
 
 /// The interface that light enters by, from outside; no units.
 #[derive(Clone, Copy, Debug)]
-pub struct Entry {
+pub struct EntryRefraction {
     /// `η² − 1`: float64, because beyond it there is total reflection if `η < 1`.
     excess: f64,
     /// `η²`.
@@ -49,10 +49,10 @@ struct Products {
     direction: Whole,
 }
 
-impl Entry {
+impl EntryRefraction {
     /// The interface of relative index `eta`, inside over outside.
-    pub fn new(eta: f64) -> Entry {
-        Entry { excess: (eta - 1.0) * (eta + 1.0), squared: (eta * eta) as f32, inverse: (1.0 / eta) as f32 }
+    pub fn new(eta: f64) -> EntryRefraction {
+        EntryRefraction { excess: (eta - 1.0) * (eta + 1.0), squared: (eta * eta) as f32, inverse: (1.0 / eta) as f32 }
     }
 
     /// Unit normals, refracted directions and transmittances of sixteen samples, given as octahedral codes: int16 x in
@@ -181,7 +181,7 @@ mod tests {
 
     #[test]
     fn every_code_gives_its_unit_vector() {
-        let entry = Entry::new(1.3);
+        let entry = EntryRefraction::new(1.3);
         let mut state = 1;
         let corners = [0u32, 0x7FFF, 0x8000, 0x8001, 0xFFFF];
         for k in 0..20_000usize {
@@ -212,7 +212,7 @@ mod tests {
                 let cosine = [f64::from(next(&mut state)) / 4.3e9, 0.0, critical][i % 3];
                 towards[i] = direction(&mut state, unit(normal[i]), cosine);
             }
-            let entered = Entry::new(eta).enter(&normal, &towards);
+            let entered = EntryRefraction::new(eta).enter(&normal, &towards);
             for i in 0..LANES {
                 grazing += usize::from(agrees(&entered, i, [unit(normal[i]), unit(towards[i])], eta));
             }
@@ -248,10 +248,10 @@ mod tests {
         let up = [code(DVec3::Z); LANES];
         let slanted = |cosine: f64| [code(DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine)); LANES];
         for (eta, cosine) in [(1.3, -0.5), (1.0, -0.5), (1.0, 0.0), (1.3, 0.0), (0.7, 0.0), (0.7, 0.7), (0.7, -0.9)] {
-            let entered = Entry::new(eta).enter(&up, &slanted(cosine));
+            let entered = EntryRefraction::new(eta).enter(&up, &slanted(cosine));
             assert_eq!(entered.transmittance, [0.0; LANES], "eta {eta} cosine {cosine}");
             assert!(entered.refracted.iter().flatten().all(|v| v.is_finite()));
         }
-        assert_eq!(Entry::new(1.0).enter(&up, &slanted(0.5)).transmittance, [1.0; LANES]);
+        assert_eq!(EntryRefraction::new(1.0).enter(&up, &slanted(0.5)).transmittance, [1.0; LANES]);
     }
 }

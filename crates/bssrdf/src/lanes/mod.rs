@@ -12,7 +12,7 @@ mod standard;
 
 pub use better::BetterLanes;
 pub use directional::DirectionalLanes;
-pub use entry::{Entered, Entry};
+pub use entry::{Entered, EntryRefraction};
 pub use exp::exp_negative;
 pub use standard::StandardLanes;
 

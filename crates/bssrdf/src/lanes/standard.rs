@@ -14,7 +14,7 @@ struct Channel {
     fall: f32,
     virtual_depth: f32,
     /// `α' σ_t'²/(4π²)`, 1/m²; 0 where nothing scatters.
-    strength: f32,
+    prefactor: f32,
 }
 
 /// The standard dipole of one medium.
@@ -33,7 +33,7 @@ impl LaneModel for StandardLanes {
                 transport: transport as f32,
                 fall: (-transport * LOG2_E) as f32,
                 virtual_depth: (1.0 + 4.0 / 3.0 * medium.interface.reflection_egan) as f32,
-                strength: (c.reduced_albedo() * reduced * reduced / (4.0 * PI * PI)) as f32,
+                prefactor: (c.reduced_albedo() * reduced * reduced / (4.0 * PI * PI)) as f32,
             }
         });
         StandardLanes { channels }
@@ -56,7 +56,7 @@ impl Channel {
         let (over_real, over_virtual) = (inverse * mirrored, inverse * real);
         let real = self.source(real) * (over_real * over_real * over_real);
         let mirrored = self.source(mirrored) * (over_virtual * over_virtual * over_virtual);
-        let value = self.strength * (real + self.virtual_depth * mirrored);
+        let value = self.prefactor * (real + self.virtual_depth * mirrored);
         // No number where a distance left the range of float32: S is far below it there.
         if value > 0.0 { value } else { 0.0 }
     }

@@ -37,7 +37,7 @@ const PROVENANCE_LIMIT: usize = 16 * META_LIMIT;
 const LARGEST_GROUP: u64 = 1 << 32;
 
 /// Most samples drawn for a cloud: the sums over thousands of clouds are whole numbers still, in float64 too.
-const MOST_DRAWN: u64 = 1 << 40;
+const MAX_DRAWN: u64 = 1 << 40;
 
 /// No scene is wider, m.
 const FARTHEST: f64 = 1e18;
@@ -315,7 +315,7 @@ fn groups_fit(meta: &Meta, header: &Header) -> Option<()> {
     }
     let elements = |name| header.section(name).map(|s| s.elements).ok();
     let full = samples == header.samples && elements("tile") == Some(tiles) && elements("node") == Some(nodes);
-    (full && (samples.max(1)..=MOST_DRAWN).contains(&meta.samples_drawn)).then_some(())
+    (full && (samples.max(1)..=MAX_DRAWN).contains(&meta.samples_drawn)).then_some(())
 }
 
 #[cfg(test)]

@@ -97,8 +97,7 @@ fn what_is_written_is_read() {
 fn the_number_of_samples_drawn_is_believable() {
     let folder = tempfile::tempdir().expect("folder");
     let path = folder.path().join("test.cloud");
-    for (samples_drawn, good) in [(4, false), (5, true), (MOST_DRAWN, true), (MOST_DRAWN + 1, false), (u64::MAX, false)]
-    {
+    for (samples_drawn, good) in [(4, false), (5, true), (MAX_DRAWN, true), (MAX_DRAWN + 1, false), (u64::MAX, false)] {
         let mut output = Output::create(&path).expect("creates");
         write(&mut output, &path, &content(5), &Meta { samples_drawn, ..meta(5) }).expect("writes");
         output.commit().expect("commits");

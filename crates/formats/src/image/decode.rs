@@ -186,13 +186,13 @@ fn empty_image(headers: &[Header]) -> Result<Image, ImageError> {
 }
 
 /// Bytes of pixels that a file of this length may claim.
-pub(crate) fn most_unpacked(file_length: u64) -> u64 {
+pub(crate) fn max_unpacked(file_length: u64) -> u64 {
     ALWAYS_ALLOWED.saturating_add(file_length.saturating_mul(MAX_EXPANSION))
 }
 
 /// Refuses sizes that would take much more memory than the file, before any of it is taken.
 fn check_size(headers: &[Header], file_length: u64) -> Result<(), ImageError> {
-    let allowed = most_unpacked(file_length);
+    let allowed = max_unpacked(file_length);
     let mut samples = 0_u64;
     for part in headers {
         let Vec2(width, height) = part.layer_size;

@@ -81,7 +81,7 @@ pub(super) fn standard_kind(name: &str) -> Option<&'static str> {
 }
 
 /// One attribute as it lies in the file.
-struct Entry<'a> {
+struct HeaderField<'a> {
     name: &'a [u8],
     kind: &'a [u8],
     value: &'a [u8],
@@ -137,7 +137,7 @@ pub(super) fn compression(bytes: &[u8]) -> Option<u8> {
 }
 
 /// The attributes up to the zero that ends the list, and what follows it.
-fn split(bytes: &[u8]) -> Option<(Vec<Entry<'_>>, &[u8])> {
+fn split(bytes: &[u8]) -> Option<(Vec<HeaderField<'_>>, &[u8])> {
     let mut entries = Vec::new();
     let mut rest = bytes;
     while *rest.first()? != 0 {
@@ -147,7 +147,7 @@ fn split(bytes: &[u8]) -> Option<(Vec<Entry<'_>>, &[u8])> {
         let size = usize::try_from(i32::from_le_bytes(*size)).ok()?;
         let (value, next) = after_size.split_at_checked(size)?;
         let all = &rest[..rest.len() - next.len()];
-        entries.push(Entry { name, kind, value, all });
+        entries.push(HeaderField { name, kind, value, all });
         rest = next;
     }
     Some((entries, &rest[1..]))
@@ -159,7 +159,7 @@ fn split_at_zero(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
 }
 
 /// `None` for values of the wrong size.
-fn value(entry: &Entry<'_>) -> Option<Attribute> {
+fn value(entry: &HeaderField<'_>) -> Option<Attribute> {
     Some(match entry.kind {
         b"string" => Attribute::Text(text(entry.value)),
         b"float" => Attribute::Float(f32::from_le_bytes(entry.value.try_into().ok()?)),

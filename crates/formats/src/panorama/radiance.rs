@@ -47,7 +47,7 @@ fn start(reader: &mut Reader, length: u64) -> Result<(Header, [usize; 2]), Strin
     Ok((header, size))
 }
 
-/// Scene-linear colour: mantissas share an exponent.
+/// Scene-linear color: mantissas share an exponent.
 fn radiance([r, g, b, exponent]: [u8; 4], gain: [f64; 3]) -> [f32; 3] {
     if exponent == 0 {
         return [0.0; 3];
@@ -209,7 +209,7 @@ mod tests {
 
     /// Planted: pixels multiplied by the exposure.
     #[test]
-    fn exposure_and_colour_correction_are_undone() {
+    fn exposure_and_color_correction_are_undone() {
         let head = format!("{HEAD}EXPOSURE= 2\nEXPOSURE=4\nCOLORCORR=1 0.5 1\nSOFTWARE=x=y\n");
         let picture = decode(&file(&head, "-Y 1 +X 1", &[128, 128, 64, 131])).expect("a picture");
         assert_eq!(picture.pixels, [[0.5, 1.0, 0.25]]);

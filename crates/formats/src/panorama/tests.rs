@@ -26,10 +26,10 @@ fn the_same_picture_as_either_format_is_the_same() {
 }
 
 #[test]
-fn grey_is_a_colour_and_other_layers_are_not() {
+fn grey_is_a_color_and_other_layers_are_not() {
     let grey = Panorama::decode(&exr(&["Y"])).expect("a picture");
     assert_eq!(grey.pixels[5], [1e5; 3]);
-    let message = Panorama::decode(&exr(&["sky.R", "sky.G"])).expect_err("no colour");
+    let message = Panorama::decode(&exr(&["sky.R", "sky.G"])).expect_err("no color");
     assert!(message.contains("sky.G") && message.contains("R, G and B"), "{message}");
     assert!(Panorama::decode(&exr(&["R", "Y"])).is_err() && Panorama::decode(&exr(&["Y", "RY", "BY"])).is_err());
 }

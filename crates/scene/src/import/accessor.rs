@@ -71,7 +71,7 @@ impl<'a> Column<'a> {
         }
     }
 
-    /// A list of colours with or without alpha, of float32 or of normalized integers.
+    /// A list of colors with or without alpha, of float32 or of normalized integers.
     pub fn colors(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self, Fault> {
         let accessor = get(&document.root.accessors, index, &field)?;
         let number = component(accessor).and_then(|c| Number::of_color(c, accessor.normalized));

@@ -6,18 +6,18 @@ use gltf::json::{self, camera::Type, validation::Checked};
 use std::f64::consts::PI;
 
 /// Most bytes of the names of all cameras, each of as many nodes as carry it.
-const MOST_NAME_BYTES: usize = 1 << 24;
+const MAX_NAME_BYTES: usize = 1 << 24;
 
 /// One camera for each node that carries one, in the order of the nodes.
 pub(super) fn read(root: &json::Root, nodes: &[Placed], metres_per_unit: f64) -> Result<Vec<Camera>, Fault> {
     let mut cameras = Vec::new();
-    let mut room = MOST_NAME_BYTES;
+    let mut room = MAX_NAME_BYTES;
     for placed in nodes {
         let Some(index) = &placed.node.camera else { continue };
         let fault = |what: Fault| format!("camera of node `{}`: {what}", placed.name);
         let camera = get(&root.cameras, index, "node.camera").map_err(fault)?;
         let left = room.checked_sub(camera.name.as_ref().map_or(0, String::len));
-        let full = || format!("the names of cameras have more than {MOST_NAME_BYTES} bytes in all; shorten them");
+        let full = || format!("the names of cameras have more than {MAX_NAME_BYTES} bytes in all; shorten them");
         room = left.ok_or_else(|| fault(full()))?;
         cameras.push(of_node(placed, camera, metres_per_unit).map_err(fault)?);
     }

@@ -4,7 +4,7 @@ use crate::{Camera, Projection, mesh::Mesh};
 use glam::DVec3;
 
 /// So many triangles are asked for all cameras; of what is left, a plane is taken to cut.
-pub(super) const MOST_TESTS: usize = 1 << 26;
+pub(super) const MAX_TESTS: usize = 1 << 26;
 
 /// What clipping a triangle costs, in triangles that are only asked for their depth.
 const COST_OF_CLIPPING: usize = 4;

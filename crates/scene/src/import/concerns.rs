@@ -17,7 +17,7 @@ use gltf::json::{self, Root};
 use std::collections::BTreeSet;
 
 /// What the scene is made of.
-pub(super) struct Drawn<'a> {
+pub(super) struct RenderedParts<'a> {
     pub mesh: &'a Mesh,
     pub nodes: &'a [Placed<'a>],
     /// One for each node that carries one, in their order.
@@ -27,7 +27,7 @@ pub(super) struct Drawn<'a> {
 }
 
 /// What is not honoured of all that is drawn or lights.
-pub(super) fn of(document: &Document, drawn: &Drawn) -> Vec<Unhonoured> {
+pub(super) fn of(document: &Document, drawn: &RenderedParts) -> Vec<Unhonoured> {
     let root = &document.root;
     let mut list = Collected { survey: &document.survey, list: Vec::new() };
     let materials: BTreeSet<u16> = drawn.mesh.triangles.iter().map(|t| t.material).collect();
@@ -113,8 +113,8 @@ impl Collected<'_> {
     }
 
     /// Cameras; their planes only where these would cut something off.
-    fn add_cameras(&mut self, root: &Root, drawn: &Drawn) {
-        let (mut room, bounds) = (clipping::MOST_TESTS, drawn.mesh.bounds());
+    fn add_cameras(&mut self, root: &Root, drawn: &RenderedParts) {
+        let (mut room, bounds) = (clipping::MAX_TESTS, drawn.mesh.bounds());
         let indices = drawn.nodes.iter().filter_map(|placed| placed.node.camera.as_ref());
         for (index, camera) in indices.zip(drawn.cameras) {
             let Some(planes) = root.cameras.get(index.value()).and_then(planes) else { continue };

@@ -113,7 +113,7 @@ impl Builder {
         Ok(())
     }
 
-    /// Adds what colours the vertices that come next.
+    /// Adds what colors the vertices that come next.
     fn add_looks(&mut self, part: &Part) -> Result<(), Fault> {
         if let Some((column, place)) = &part.coordinates {
             self.coordinates.resize(self.positions.len(), [0.0; 2]);

@@ -30,7 +30,7 @@ use crate::{
     mesh::Mesh,
     unhonoured::{quoted, rest},
 };
-use concerns::Drawn;
+use concerns::RenderedParts;
 use container::Document;
 use geometry::{Geometry, Instance};
 use gltf::json::{Index, Root};
@@ -104,7 +104,7 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Fault> 
     lights.add_emitters(&mesh, &materials);
     let metres_per_unit = options.metres_per_unit;
     let cameras = cameras::read(root, &nodes, metres_per_unit)?;
-    let drawn = Drawn { mesh: &mesh, nodes: &nodes, cameras: &cameras, origin, metres_per_unit };
+    let drawn = RenderedParts { mesh: &mesh, nodes: &nodes, cameras: &cameras, origin, metres_per_unit };
     let unhonoured = [features::undeclared_effects(document), concerns::of(document, &drawn)].concat();
     Ok(Scene {
         files: document.files.borrow().read().to_owned(),

@@ -21,7 +21,7 @@ impl Number {
         allowed.then_some(Number { component, normalized })
     }
 
-    /// Of a colour: float32, or an integer of 8 or 16 bits that stands for 0 to 1.
+    /// Of a color: float32, or an integer of 8 or 16 bits that stands for 0 to 1.
     pub fn of_color(component: ComponentType, normalized: bool) -> Option<Number> {
         let allowed = match component {
             ComponentType::F32 => !normalized,

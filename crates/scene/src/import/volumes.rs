@@ -1,7 +1,7 @@
 //! Materials that bound a medium, and what the file says of it.
 
 use super::Fault;
-use crate::volume::{Draft, Scatter, Volume};
+use crate::volume::{Scatter, ScatterExtension, Volume};
 use glam::DVec3;
 use gltf::json::{
     self,
@@ -10,11 +10,11 @@ use gltf::json::{
 use serde::Deserialize;
 use serde_json::Value;
 
-/// Colours of attenuation below this are taken as this: their logarithm must be finite.
+/// Colors of attenuation below this are taken as this: their logarithm must be finite.
 const DARKEST: f64 = 1e-4;
 
 /// The newer draft first: it replaces the other.
-const DRAFTS: [Draft; 2] = [Draft::Scatter, Draft::VolumeScatter];
+const DRAFTS: [ScatterExtension; 2] = [ScatterExtension::Scatter, ScatterExtension::VolumeScatter];
 
 /// Fields of both drafts. The older one had `multiscatterColor` until February 2026.
 #[derive(Deserialize)]
@@ -35,7 +35,7 @@ pub(super) fn is_marked(m: &json::Material) -> bool {
         .is_some_and(|e| e.volume.as_ref().is_some_and(|v| v.thickness_factor.0 > 0.0) || drafts(e).next().is_some())
 }
 
-fn drafts(e: &material::Material) -> impl Iterator<Item = (Draft, &Value)> {
+fn drafts(e: &material::Material) -> impl Iterator<Item = (ScatterExtension, &Value)> {
     DRAFTS.into_iter().filter_map(|draft| Some((draft, e.others.get(draft.extension())?)))
 }
 
@@ -53,7 +53,7 @@ pub(super) fn read(
         note(format!("{} is not used beside the draft that replaces it", older.extension()));
     }
     // Nothing enters, or there is no inside.
-    let enters = transmission > 0.0 || matches!(draft, Some((Draft::VolumeScatter, _)));
+    let enters = transmission > 0.0 || matches!(draft, Some((ScatterExtension::VolumeScatter, _)));
     let solid = e.volume.as_ref().filter(|v| draft.is_some() || v.thickness_factor.0 > 0.0);
     let (true, Some(volume)) = (enters, solid) else {
         if let Some((draft, _)) = draft {
@@ -94,15 +94,15 @@ fn extinction(volume: &material::Volume, metres_per_unit: f64, note: &mut impl F
     if color.min_element() < DARKEST && distance.is_finite() {
         note(format!("attenuationColor is taken as no less than {DARKEST}: a darker one has no finite extinction"));
     }
-    // No negative zero where the colour is 1.
+    // No negative zero where the color is 1.
     Ok(color.map(|c| (-c.max(DARKEST).ln()).max(0.0) / distance))
 }
 
-fn scatter(draft: Draft, value: &Value, note: &mut impl FnMut(String)) -> Result<Option<Scatter>, Fault> {
+fn scatter(draft: ScatterExtension, value: &Value, note: &mut impl FnMut(String)) -> Result<Option<Scatter>, Fault> {
     let fields = Fields::deserialize(value).map_err(|e| e.to_string())?;
     let (default_color, strength) = match draft {
-        Draft::VolumeScatter => (0.0, 1.0),
-        Draft::Scatter => (1.0, fields.scatter_strength_factor.unwrap_or(0.0)),
+        ScatterExtension::VolumeScatter => (0.0, 1.0),
+        ScatterExtension::Scatter => (1.0, fields.scatter_strength_factor.unwrap_or(0.0)),
     };
     let color = fields.multiscatter_color_factor.or(fields.multiscatter_color).unwrap_or([default_color; 3]);
     let (color, asymmetry) = (DVec3::from_array(color), fields.scatter_anisotropy);

@@ -1,6 +1,6 @@
 //! Light from emitting triangles.
 
-use super::{Extent, Illumination, Light, Region, extent::Ball, strength};
+use super::{Illumination, Light, LightBounds, ReceiverBounds, bounds::LightSphere, channel_sum};
 use crate::{
     mesh::{Mesh, SurfacePoint, unit},
     warp,
@@ -25,45 +25,45 @@ pub struct AreaLight {
     double_sided: bool,
     emitters: Vec<Emitter>,
     area: f64,
-    extent: Extent,
-    ball: Ball,
+    bounds: LightBounds,
+    sphere: LightSphere,
 }
 
 impl AreaLight {
     /// These triangles of `mesh`, emitting `radiance`, W/(m² sr); none if there are none.
     pub fn new(mesh: &Mesh, triangles: &[usize], radiance: DVec3, double_sided: bool) -> Option<AreaLight> {
         let (mut emitters, mut area) = (Vec::new(), 0.0);
-        let mut extent: Option<Extent> = None;
+        let mut bounds: Option<LightBounds> = None;
         for k in triangles {
             let corners = mesh.corners(*k);
             area += mesh.area(*k);
             let normal = unit((corners[1] - corners[0]).cross(corners[2] - corners[0]));
             emitters.push(Emitter { corners, normal, area_so_far: area });
-            let own = Extent {
+            let own = LightBounds {
                 low: corners[0].min(corners[1]).min(corners[2]),
                 high: corners[0].max(corners[1]).max(corners[2]),
                 // The mean over the half space that a triangle shines into.
-                intensity: strength(radiance) * mesh.area(*k) / PI,
+                intensity: channel_sum(radiance) * mesh.area(*k) / PI,
                 axis: normal,
                 reach: if double_sided { PI } else { FRAC_PI_2 },
                 range: f64::INFINITY,
             };
-            extent = Some(extent.map_or(own, |all| all.join(&own)));
+            bounds = Some(bounds.map_or(own, |all| all.join(&own)));
         }
-        let extent = extent.filter(|_| area > 0.0)?;
-        Some(AreaLight { radiance, double_sided, emitters, area, extent, ball: Ball::new(&extent) })
+        let bounds = bounds.filter(|_| area > 0.0)?;
+        Some(AreaLight { radiance, double_sided, emitters, area, bounds, sphere: LightSphere::new(&bounds) })
     }
 }
 
 impl Light for AreaLight {
     /// With the largest cosine that a place of it can have.
     fn importance(&self, at: &SurfacePoint) -> f64 {
-        let [_, most] = self.ball.arriving(&Region::point(at));
+        let [_, most] = self.sphere.arriving(&ReceiverBounds::point(at));
         most
     }
 
-    fn extent(&self) -> Option<Extent> {
-        Some(self.extent)
+    fn bounds(&self) -> Option<LightBounds> {
+        Some(self.bounds)
     }
 
     fn illuminate(&self, at: &SurfacePoint, xi: [f64; 2]) -> Option<Illumination> {

@@ -7,15 +7,15 @@
 
 use super::{
     Light,
-    pyramid::split,
-    region::Region,
+    hierarchical_sampler::split,
+    receiver::ReceiverBounds,
     tree::{Kind, LightTree},
 };
 use crate::{mesh::SurfacePoint, random::BELOW_ONE};
 use std::collections::BinaryHeap;
 
 /// Lights that are weighed at every point because they are near, at most.
-const MOST_NEAR: usize = 16;
+const MAX_NEAR: usize = 16;
 
 /// Lights that are drawn from the list to choose one of.
 const CANDIDATES: usize = 4;
@@ -44,7 +44,7 @@ pub struct Pick<'a> {
 
 impl<'t, 'a> LightChoice<'t, 'a> {
     /// Lights for the points of a region; the list has `most` entries at most.
-    pub fn new(tree: &'t LightTree<'a>, region: &Region, most: usize) -> Self {
+    pub fn new(tree: &'t LightTree<'a>, region: &ReceiverBounds, most: usize) -> Self {
         let mut choice = LightChoice { tree, single: tree.single.clone(), shared: Vec::new(), weighed: 0 };
         if tree.is_flat() {
             return choice;
@@ -57,7 +57,7 @@ impl<'t, 'a> LightChoice<'t, 'a> {
         let mut total = 0.0;
         for (node, importance) in nodes {
             match tree.kind(node) {
-                Kind::Leaf(light) if choice.single.len() < MOST_NEAR && tree.is_near(node, region) => {
+                Kind::Leaf(light) if choice.single.len() < MAX_NEAR && tree.is_near(node, region) => {
                     choice.single.push(light);
                 }
                 _ if importance > 0.0 => {
@@ -70,13 +70,13 @@ impl<'t, 'a> LightChoice<'t, 'a> {
         choice
     }
 
-    fn weigh(&mut self, node: u32, region: &Region) -> f64 {
+    fn weigh(&mut self, node: u32, region: &ReceiverBounds) -> f64 {
         self.weighed += 1;
         self.tree.importance(node, region)
     }
 
     /// Nodes that hold all lights: the most important is opened until there are `most`.
-    fn open(&mut self, region: &Region, most: usize) -> Vec<(u32, f64)> {
+    fn open(&mut self, region: &ReceiverBounds, most: usize) -> Vec<(u32, f64)> {
         let (mut closed, mut open) = (Vec::new(), BinaryHeap::new());
         // Numbers that are not negative are in the order of their bits.
         open.push((self.weigh(0, region).to_bits(), 0));
@@ -174,7 +174,7 @@ impl<'t, 'a> LightChoice<'t, 'a> {
             match self.tree.kind(node) {
                 Kind::Leaf(light) => return Draw { light, dark: false, probability, xi },
                 Kind::Inner(children) => {
-                    let here = Region::point(at);
+                    let here = ReceiverBounds::point(at);
                     let [a, b] = children.map(|child| self.tree.importance(child, &here));
                     if a + b <= 0.0 {
                         return Draw { light: 0, dark: true, probability, xi };

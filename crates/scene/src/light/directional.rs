@@ -1,6 +1,6 @@
 //! Light from infinitely far away.
 
-use super::{Extent, Illumination, Light, strength};
+use super::{Illumination, Light, LightBounds, channel_sum};
 use crate::mesh::SurfacePoint;
 use glam::DVec3;
 
@@ -14,7 +14,7 @@ pub struct DirectionalLight {
 }
 
 impl Light for DirectionalLight {
-    fn extent(&self) -> Option<Extent> {
+    fn bounds(&self) -> Option<LightBounds> {
         None
     }
 
@@ -22,7 +22,7 @@ impl Light for DirectionalLight {
         if at.geometric_normal.dot(self.direction) <= 0.0 {
             return 0.0;
         }
-        strength(self.irradiance) * at.normal.dot(self.direction).max(0.0)
+        channel_sum(self.irradiance) * at.normal.dot(self.direction).max(0.0)
     }
 
     fn illuminate(&self, at: &SurfacePoint, _xi: [f64; 2]) -> Option<Illumination> {

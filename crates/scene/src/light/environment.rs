@@ -1,6 +1,6 @@
 //! Light from all around.
 
-use super::{EnvironmentMap, Extent, Illumination, Light, strength};
+use super::{EnvironmentMap, Illumination, Light, LightBounds, channel_sum};
 use crate::{mesh::SurfacePoint, warp};
 use glam::DVec3;
 use std::{f64::consts::PI, sync::Arc};
@@ -46,13 +46,13 @@ impl From<DVec3> for Environment {
 }
 
 impl Light for Environment {
-    fn extent(&self) -> Option<Extent> {
+    fn bounds(&self) -> Option<LightBounds> {
         None
     }
 
     fn importance(&self, at: &SurfacePoint) -> f64 {
         match self {
-            Environment::Constant(radiance) => PI * strength(*radiance),
+            Environment::Constant(radiance) => PI * channel_sum(*radiance),
             Environment::Map(map) => map.importance(at),
         }
     }

@@ -5,10 +5,9 @@
 //! constant over each pixel: what a ray sees is what directions are chosen by.
 
 use super::{
-    Extent, Illumination, Light,
-    lookout::{Lookout, WINDOW_COLUMNS, WINDOW_ROWS},
-    pyramid::{Cell, Pyramid},
-    strength,
+    Illumination, Light, LightBounds, channel_sum,
+    cosine_importance::{CosineImportanceTable, TILE_COLUMNS, TILE_ROWS},
+    hierarchical_sampler::{Cell, HierarchicalSampler2d},
 };
 use crate::mesh::SurfacePoint;
 use glam::{DVec2, DVec3, Vec3};
@@ -40,9 +39,9 @@ pub struct EnvironmentMap {
     /// Cosine and sine of the rotation.
     turn: DVec2,
     /// Strength times solid angle of each pixel.
-    power: Pyramid,
-    /// The windows that light comes through, for every way a surface can face.
-    lookout: Lookout,
+    power: HierarchicalSampler2d,
+    /// The tiles that light comes through, for every way a surface can face.
+    cosine_importance: CosineImportanceTable,
 }
 
 impl EnvironmentMap {
@@ -69,11 +68,13 @@ impl EnvironmentMap {
             return Err(MapError::Pixel { column: k % width, row: k / width, value: pixels[k] });
         }
         let solid_angles: Vec<f64> = (0..height).map(|row| solid_angle(width, height, row)).collect();
-        let power = Pyramid::new(width, height, |x, y| strength(pixels[y * width + x].as_dvec3()) * solid_angles[y]);
-        let lookout = Lookout::new(&power);
+        let power = HierarchicalSampler2d::new(width, height, |x, y| {
+            channel_sum(pixels[y * width + x].as_dvec3()) * solid_angles[y]
+        });
+        let cosine_importance = CosineImportanceTable::new(&power);
         let (sine, cosine) = rotation_degrees.to_radians().sin_cos();
         let turn = DVec2::new(cosine, sine);
-        Ok(EnvironmentMap { width, height, pixels, scale, rotation_degrees, turn, power, lookout })
+        Ok(EnvironmentMap { width, height, pixels, scale, rotation_degrees, turn, power, cosine_importance })
     }
 
     /// Radiance that a ray in this unit direction sees, W/(m² sr).
@@ -139,24 +140,24 @@ fn solid_angle(width: usize, height: usize, row: usize) -> f64 {
 }
 
 impl Light for EnvironmentMap {
-    fn extent(&self) -> Option<Extent> {
+    fn bounds(&self) -> Option<LightBounds> {
         None
     }
 
     fn importance(&self, at: &SurfacePoint) -> f64 {
-        self.lookout.facing(self.in_map(at.normal)).total() * self.scale
+        self.cosine_importance.facing(self.in_map(at.normal)).total() * self.scale
     }
 
-    /// note: [irradiance] A window by its light and cosine, a pixel in it by its light, and any place in the pixel:
+    /// note: [irradiance] A tile by its light and cosine, a pixel in it by its light, and any place in the pixel:
     /// `E = L (n·ω) Ω/P` with the pixel's solid angle and probability.
     fn illuminate(&self, at: &SurfacePoint, xi: [f64; 2]) -> Option<Illumination> {
-        let windows = self.lookout.facing(self.in_map(at.normal));
-        if windows.total() == 0.0 {
+        let tiles = self.cosine_importance.facing(self.in_map(at.normal));
+        if tiles.total() == 0.0 {
             return None;
         }
-        let window = windows.choose(xi);
-        let level = self.power.level_within(WINDOW_COLUMNS, WINDOW_ROWS);
-        let cell = self.power.choose_below(level, window);
+        let tile = tiles.choose(xi);
+        let level = self.power.level_within(TILE_COLUMNS, TILE_ROWS);
+        let cell = self.power.choose_below(level, tile);
         let direction = self.in_world(self.direction(&cell));
         let cosine = at.normal.dot(direction);
         let radiance = self.pixels[cell.row * self.width + cell.column].as_dvec3() * self.scale;

@@ -1,25 +1,25 @@
 //! Lights: what arrives at a point on the surface, by one routine for both phases.
 
 mod area;
+mod bounds;
 mod choice;
+mod cosine_importance;
 mod directional;
 mod environment;
 mod environment_map;
-mod extent;
-mod lookout;
+mod hierarchical_sampler;
 mod point;
-mod pyramid;
-mod region;
+mod receiver;
 mod tree;
 
 pub use area::AreaLight;
+pub use bounds::LightBounds;
 pub use choice::{LightChoice, Pick};
 pub use directional::DirectionalLight;
 pub use environment::Environment;
 pub use environment_map::{EnvironmentMap, MapError};
-pub use extent::Extent;
 pub use point::{PointLight, Spot};
-pub use region::Region;
+pub use receiver::ReceiverBounds;
 pub use tree::LightTree;
 
 use crate::{mesh::SurfacePoint, rays::Rays};
@@ -44,7 +44,7 @@ pub trait Light: Send + Sync {
     fn importance(&self, at: &SurfacePoint) -> f64;
 
     /// Where the light is and what it can send; none if it is infinitely far away.
-    fn extent(&self) -> Option<Extent>;
+    fn bounds(&self) -> Option<LightBounds>;
 
     /// Light arriving at `at`, from the direction that the uniform numbers `xi` choose; none if it arrives from below
     /// the surface.
@@ -99,7 +99,7 @@ pub fn all_light_at(
     if lights.lights.len() <= FEW {
         return lights.lights.iter().map(|light| visible(&**light, xi())).sum();
     }
-    let choice = LightChoice::new(lights, &Region::point(at), PICKED_FROM);
+    let choice = LightChoice::new(lights, &ReceiverBounds::point(at), PICKED_FROM);
     let [shift, _] = xi();
     let one = |k: usize| {
         let picked = choice.pick(at, (k as f64 + shift) / FEW as f64);
@@ -114,7 +114,7 @@ fn arriving(light: &dyn Light, at: &SurfacePoint, xi: [f64; 2]) -> Option<Illumi
     (arriving.direction.dot(at.geometric_normal) > 0.0 && arriving.irradiance != DVec3::ZERO).then_some(arriving)
 }
 
-/// One number for a colour, positive wherever a channel is.
-pub(crate) fn strength(color: DVec3) -> f64 {
+/// One number for a color, positive wherever a channel is.
+pub(crate) fn channel_sum(color: DVec3) -> f64 {
     color.element_sum()
 }

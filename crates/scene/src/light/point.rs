@@ -1,6 +1,6 @@
 //! Light from one point, to all sides or within a cone.
 
-use super::{Extent, Illumination, Light, strength};
+use super::{Illumination, Light, LightBounds, channel_sum};
 use crate::mesh::SurfacePoint;
 use glam::DVec3;
 
@@ -59,23 +59,23 @@ impl PointLight {
     /// Share of the intensity that leaves towards a point at `distance` in direction `-direction`.
     fn attenuation(&self, direction: DVec3, distance: f64) -> f64 {
         let cone = self.spot.map_or(1.0, |spot| spot.attenuation(direction));
-        let window = self.range.map_or(1.0, |range| (1.0 - (distance / range).powi(4)).clamp(0.0, 1.0));
-        cone * window
+        let tile = self.range.map_or(1.0, |range| (1.0 - (distance / range).powi(4)).clamp(0.0, 1.0));
+        cone * tile
     }
 }
 
 impl Light for PointLight {
     fn importance(&self, at: &SurfacePoint) -> f64 {
         match self.illuminate(at, [0.0; 2]) {
-            Some(light) if light.direction.dot(at.geometric_normal) > 0.0 => strength(light.irradiance),
+            Some(light) if light.direction.dot(at.geometric_normal) > 0.0 => channel_sum(light.irradiance),
             _ => 0.0,
         }
     }
 
-    fn extent(&self) -> Option<Extent> {
-        let point = Extent::point(self.position, strength(self.intensity));
+    fn bounds(&self) -> Option<LightBounds> {
+        let point = LightBounds::point(self.position, channel_sum(self.intensity));
         let cone = self.spot.map_or((point.axis, point.reach), |spot| (spot.axis, spot.outer));
-        Some(Extent { axis: cone.0, reach: cone.1, range: self.range.unwrap_or(f64::INFINITY), ..point })
+        Some(LightBounds { axis: cone.0, reach: cone.1, range: self.range.unwrap_or(f64::INFINITY), ..point })
     }
 
     fn illuminate(&self, at: &SurfacePoint, _xi: [f64; 2]) -> Option<Illumination> {

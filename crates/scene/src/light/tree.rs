@@ -2,8 +2,8 @@
 
 use super::{
     Light,
-    extent::{Ball, Extent},
-    region::Region,
+    bounds::{LightBounds, LightSphere},
+    receiver::ReceiverBounds,
 };
 
 /// So few lights are weighed one by one.
@@ -11,12 +11,12 @@ pub(super) const FEW: usize = 16;
 
 /// Share of the most light that may arrive which a light is weighed by at least: what the middle of a region does not
 /// see may light the rest of it.
-const LEAST_SHARE: f64 = 0.5;
+const MIN_SHARE: f64 = 0.5;
 
 /// Lights, ready to choose from.
 pub struct LightTree<'a> {
     pub(super) lights: &'a [Box<dyn Light>],
-    /// Lights that are weighed at each point: those without an extent, or all if there are few.
+    /// Lights that are weighed at each point: those without an bounds, or all if there are few.
     pub(super) single: Vec<u32>,
     /// The first is the root; the first child of a node follows it.
     nodes: Vec<Node>,
@@ -25,7 +25,7 @@ pub struct LightTree<'a> {
 }
 
 struct Node {
-    ball: Ball,
+    sphere: LightSphere,
     kind: Kind,
 }
 
@@ -41,7 +41,8 @@ pub(super) enum Kind {
 impl<'a> LightTree<'a> {
     pub fn new(lights: &'a [Box<dyn Light>]) -> LightTree<'a> {
         let numbers = 0..lights.len() as u32;
-        let mut placed: Vec<(u32, Extent)> = numbers.filter_map(|k| Some((k, lights[k as usize].extent()?))).collect();
+        let mut placed: Vec<(u32, LightBounds)> =
+            numbers.filter_map(|k| Some((k, lights[k as usize].bounds()?))).collect();
         if placed.len() <= FEW {
             placed.clear();
         }
@@ -56,10 +57,10 @@ impl<'a> LightTree<'a> {
     }
 
     /// Adds the node of these lights and those below it: halves across the longest edge of the box of their centres.
-    fn add(&mut self, lights: &mut [(u32, Extent)]) {
+    fn add(&mut self, lights: &mut [(u32, LightBounds)]) {
         let all = lights.iter().skip(1).fold(lights[0].1, |all, (_, e)| all.join(e));
         let index = self.nodes.len();
-        self.nodes.push(Node { ball: Ball::new(&all), kind: Kind::Leaf(lights[0].0) });
+        self.nodes.push(Node { sphere: LightSphere::new(&all), kind: Kind::Leaf(lights[0].0) });
         if lights.len() == 1 {
             self.leaves.push(index as u32);
             return;
@@ -90,20 +91,20 @@ impl<'a> LightTree<'a> {
     }
 
     /// A number near the light that arrives from a node, positive if any can, W/m².
-    pub(super) fn importance(&self, node: u32, region: &Region) -> f64 {
-        let Node { ball, kind } = &self.nodes[node as usize];
-        let [middle, most] = ball.arriving(region);
+    pub(super) fn importance(&self, node: u32, region: &ReceiverBounds) -> f64 {
+        let Node { sphere, kind } = &self.nodes[node as usize];
+        let [middle, most] = sphere.arriving(region);
         let middle = match kind {
-            Kind::Leaf(light) if most > 0.0 && ball.falls_off() => {
+            Kind::Leaf(light) if most > 0.0 && sphere.falls_off() => {
                 self.lights[*light as usize].importance(&region.middle)
             }
             _ => middle,
         };
         // Lists of them are added up.
-        middle.min(f64::MAX / 1e9).max(LEAST_SHARE * most)
+        middle.min(f64::MAX / 1e9).max(MIN_SHARE * most)
     }
 
-    pub(super) fn is_near(&self, node: u32, region: &Region) -> bool {
-        self.nodes[node as usize].ball.is_near(region)
+    pub(super) fn is_near(&self, node: u32, region: &ReceiverBounds) -> bool {
+        self.nodes[node as usize].sphere.is_near(region)
     }
 }

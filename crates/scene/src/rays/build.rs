@@ -15,12 +15,12 @@ use obvhs::{
 
 /// Boxes grow by at least this share of the mesh's diagonal: sixteen float32 rounding steps, where rounded origin,
 /// reciprocals, limit, box corners and slab test together can be wrong by seven.
-const LEAST_PADDING: f32 = 16.0 * f32::EPSILON;
+const MIN_PADDING: f32 = 16.0 * f32::EPSILON;
 
 /// Boxes grow by at most this share. How much differs from box to box, at random: the builder joins each box with the
 /// best of its neighbours, and among equal boxes (a mesh on top of itself) all prefer the same one, which makes the
 /// build quadratic and the tree a list.
-pub(super) const PADDING: f32 = 2.0 * LEAST_PADDING;
+pub(super) const PADDING: f32 = 2.0 * MIN_PADDING;
 
 /// Meshes with more [`crowding`] are left as the builder joined them: to better the tree would take time with the square of
 /// the number of triangles. Of surfaces it is 10 at most.
@@ -92,13 +92,13 @@ fn crowding(tree: &Bvh2) -> f64 {
     sum / leaves
 }
 
-/// The box of triangle `k`, larger by [`LEAST_PADDING`] to [`PADDING`].
+/// The box of triangle `k`, larger by [`MIN_PADDING`] to [`PADDING`].
 fn padded_box(k: usize, corners: &[Vec3; 3], diagonal: f32) -> Aabb {
     let bits = crate::random::mix(k as u64 + 1);
     let share = |i: u32| (bits >> (10 * i) & 1023) as f32 / 1024.0;
     let pad = |i| {
         let share = Vec3A::new(share(i), share(i + 1), share(i + 2));
-        (share * (PADDING - LEAST_PADDING) + LEAST_PADDING) * diagonal
+        (share * (PADDING - MIN_PADDING) + MIN_PADDING) * diagonal
     };
     let [a, b, c] = corners.map(Vec3A::from);
     Aabb::new(a.min(b).min(c) - pad(0), a.max(b).max(c) + pad(3))

@@ -30,7 +30,7 @@ const DIAGONAL: f64 = 1024.0;
 
 /// A hit nearer than this share of the diagonal may be the surface that the ray left: rounding puts the crossing of a
 /// triangle in the same plane anywhere up to 1e-16 over the cosine, and 1e-10 is a flat ray indeed.
-const SKIN: f64 = 1e-6 * DIAGONAL;
+const SELF_HIT_EPSILON: f64 = 1e-6 * DIAGONAL;
 
 /// The way to a light ends this share of the diagonal before the light's own surface.
 const CLEARANCE: f64 = 1e-9 * DIAGONAL;
@@ -134,7 +134,7 @@ impl<'a> Rays<'a> {
             return distance >= 0.0;
         };
         let in_front = distance >= 0.0 && leaf.triangles[lane] != from;
-        in_front && (distance > SKIN || self.is_ahead(leaf, lane, from, ray.direction))
+        in_front && (distance > SELF_HIT_EPSILON || self.is_ahead(leaf, lane, from, ray.direction))
     }
 
     /// Whether a triangle reaches into the half-space that a ray goes to from the one that it left: if it lies in the

@@ -35,9 +35,9 @@ fn copies_within_a_material_are_left_out() {
         assert_eq!(scene.mesh.triangles, single.mesh.triangles);
         assert_eq!((area(&scene), scene.origin), (area(&single), single.origin));
         assert!(scene.warnings[0].starts_with("5 triangles lie exactly on others"), "{:?}", scene.warnings);
-        let health = scene.health(|_| true);
-        assert_eq!((health.duplicate_triangles, health.open_edges, health.inward_parts), (5, 0, 0));
-        assert!(scene.health(|m| m != 0).is_good());
+        let defects = scene.defects(|_| true);
+        assert_eq!((defects.duplicate_triangles, defects.open_edges, defects.inward_parts), (5, 0, 0));
+        assert!(scene.defects(|m| m != 0).is_good());
     }
 }
 
@@ -60,8 +60,8 @@ fn copies_of_other_materials_stay() {
     again(&mut asset, &[0, 2, 1, 0, 1, 3], other);
     let scene = import(&asset);
     assert_eq!((scene.mesh.triangles.len(), scene.duplicate_triangles.len()), (6, 0));
-    assert_eq!(scene.health(|_| true).duplicate_triangles, 2);
-    assert!(scene.health(|m| m == 0).is_good());
+    assert_eq!(scene.defects(|_| true).duplicate_triangles, 2);
+    assert!(scene.defects(|m| m == 0).is_good());
 }
 
 /// A lamp of two sides may be two sheets that emit to their fronts; twice the same front is one lamp.

@@ -96,9 +96,9 @@ fn alpha_of_vertices_and_factor() {
     }
 }
 
-/// Clouds of surfaces with other holes or colours are other clouds: those shadow and light what is sampled.
+/// Clouds of surfaces with other holes or colors are other clouds: those shadow and light what is sampled.
 #[test]
-fn the_identity_of_a_mesh_depends_on_holes_and_colours() {
+fn the_identity_of_a_mesh_depends_on_holes_and_colors() {
     let digest = |bytes: &[u8], material: Value, sampler: Value| {
         with_picture(bytes, material, sampler).import().expect("imports").geometry_digest()
     };

@@ -56,7 +56,7 @@ fn a_point_lights_intensity_ignores_scale_and_its_place_does_not() {
 }
 
 #[test]
-fn colours_add_up_to_white() {
+fn colors_add_up_to_white() {
     let light = |color: Value| import(&lit(json!({ "type": "point", "color": color, "intensity": 2 }), json!({})));
     let at = |scene: Scene| irradiance(&scene, DVec3::new(0.0, 0.0, -0.5), DVec3::Z);
     let sum: DVec3 = [json!([1, 0, 0]), json!([0, 1, 0]), json!([0, 0, 1])].map(|c| at(light(c))).iter().sum();

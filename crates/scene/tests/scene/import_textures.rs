@@ -1,4 +1,4 @@
-//! Base colours: factors, textures and vertex colours, at known places of a square.
+//! Base colors: factors, textures and vertex colors, at known places of a square.
 
 use crate::asset::{Asset, FLOAT, Folder, OPTIONS, UNSIGNED_BYTE, UNSIGNED_SHORT, fault};
 use base64::{Engine, engine::general_purpose::STANDARD};
@@ -68,7 +68,7 @@ pub fn with_picture(bytes: &[u8], material: Value, sampler: Value) -> Asset {
     asset
 }
 
-/// The colour of the square at x and y.
+/// The color of the square at x and y.
 pub fn color_at(scene: &Scene, x: f64, y: f64) -> DVec4 {
     let (triangle, weights) = if x > y { (0, [1.0 - x, x - y, y]) } else { (1, [1.0 - y, x, y - x]) };
     scene.color(triangle, weights)
@@ -167,7 +167,7 @@ fn coordinates_of_another_set_transformed() {
 
 /// Seen to catch: integers not normalised; vertices of another primitive.
 #[test]
-fn vertex_colours_of_every_kind() {
+fn vertex_colors_of_every_kind() {
     let corners = [[0.0, 0.2, 0.4, 1.0], [0.6, 0.8, 1.0, 0.4], [0.2, 0.0, 0.0, 0.8], [1.0, 1.0, 1.0, 0.0f32]];
     let flat = corners.as_flattened();
     let floats: Vec<u8> = flat.iter().flat_map(|x| x.to_le_bytes()).collect();
@@ -213,7 +213,7 @@ fn vertex_colours_of_every_kind() {
     }
 }
 
-/// Neither texture, mask nor vertex colours change a translucent surface: said in one line.
+/// Neither texture, mask nor vertex colors change a translucent surface: said in one line.
 #[test]
 fn what_is_not_used_is_said() {
     let mut material = textured(json!({}));
@@ -224,7 +224,7 @@ fn what_is_not_used_is_said() {
     scene.warn_of_colors(|_| false);
     assert!(scene.warnings.is_empty());
     scene.warn_of_colors(|m| m == 0);
-    let expected = "`Cloth`: not used on a translucent surface: base colour texture, alphaMode MASK, vertex colours";
+    let expected = "`Cloth`: not used on a translucent surface: base color texture, alphaMode MASK, vertex colors";
     assert!(scene.warnings.len() == 1 && scene.warnings[0].contains(expected), "{:?}", scene.warnings);
     let mut bare = with_picture(&png(), textured(json!({})), json!({}));
     bare.set("/meshes/0/primitives/0/attributes", json!({ "POSITION": 0 }));

@@ -1,7 +1,7 @@
 //! What a file says of the medium below a surface: both drafts, both spellings, every default.
 
 use crate::asset::{Asset, OPTIONS, fault, import_bytes, tetrahedron};
-use scene::{DVec3, Draft, ImportOptions, Material, Scatter, Volume};
+use scene::{DVec3, ImportOptions, Material, Scatter, ScatterExtension, Volume};
 use serde_json::{Value, json};
 
 /// The tetrahedron's material with these extensions, and what the import says of it.
@@ -26,7 +26,7 @@ fn volume() -> Value {
 const EXTINCTION: DVec3 = DVec3::new(0.5 * std::f64::consts::LN_2, std::f64::consts::LN_2, 0.0);
 
 /// The scattering that the file gives by these extensions, and the warnings.
-fn scatter_of(draft: Draft, scatter: Value) -> (Option<Scatter>, Vec<String>) {
+fn scatter_of(draft: ScatterExtension, scatter: Value) -> (Option<Scatter>, Vec<String>) {
     let extensions = json!({
         "KHR_materials_volume": volume(),
         "KHR_materials_transmission": { "transmissionFactor": 1 },
@@ -39,10 +39,10 @@ fn scatter_of(draft: Draft, scatter: Value) -> (Option<Scatter>, Vec<String>) {
     (medium.scatter, warnings)
 }
 
-/// Planted: the older draft's default colour for the newer.
+/// Planted: the older draft's default color for the newer.
 #[test]
 fn both_drafts_with_their_defaults_and_spellings() {
-    let both = [Draft::VolumeScatter, Draft::Scatter];
+    let both = [ScatterExtension::VolumeScatter, ScatterExtension::Scatter];
     for draft in both {
         let asked = Scatter { draft, color: DVec3::new(0.25, 0.5, 1.0), asymmetry: 0.0 };
         for spelling in ["multiscatterColorFactor", "multiscatterColor"] {
@@ -53,7 +53,7 @@ fn both_drafts_with_their_defaults_and_spellings() {
             "scatterAnisotropy": -0.75, "scatterStrengthFactor": 0.5 });
         let (found, warnings) = scatter_of(draft, fields);
         // Only the newer draft has a strength.
-        let share = if draft == Draft::Scatter { 0.5 } else { 1.0 };
+        let share = if draft == ScatterExtension::Scatter { 0.5 } else { 1.0 };
         assert_eq!(found, Some(Scatter { draft, color: DVec3::splat(share), asymmetry: -0.75 }));
         assert!(warnings.is_empty(), "{warnings:?}");
     }
@@ -61,7 +61,7 @@ fn both_drafts_with_their_defaults_and_spellings() {
     let [(older, said), (newer, too)] = both.map(|draft| scatter_of(draft, json!({})));
     assert_eq!((older, newer), (None, None));
     assert!(said[0].contains("multiscatterColorFactor is 0") && too[0].contains("scatterStrengthFactor is 0"));
-    let (white, _) = scatter_of(Draft::Scatter, json!({ "scatterStrengthFactor": 1 }));
+    let (white, _) = scatter_of(ScatterExtension::Scatter, json!({ "scatterStrengthFactor": 1 }));
     assert_eq!(white.map(|s| s.color), Some(DVec3::ONE));
 }
 
@@ -84,7 +84,7 @@ fn transmission_lets_light_in() {
     let (walls, _) = material(walls);
     assert_eq!((walls.medium, walls.volume), (None, false));
     // The newer draft needs it, the older does not.
-    for (draft, has_medium) in [(Draft::Scatter, false), (Draft::VolumeScatter, true)] {
+    for (draft, has_medium) in [(ScatterExtension::Scatter, false), (ScatterExtension::VolumeScatter, true)] {
         let scatter = json!({ "multiscatterColorFactor": [1, 1, 1], "scatterStrengthFactor": 1 });
         let (m, warnings) = material(json!({ "KHR_materials_volume": volume(), draft.extension(): scatter }));
         assert_eq!((m.medium.is_some(), m.volume), (has_medium, true));
@@ -127,7 +127,7 @@ fn what_is_missing_or_taken_otherwise_is_said() {
         older: color(),
         "KHR_materials_scatter": { "scatterStrengthFactor": 1 },
     }));
-    assert_eq!(newer.medium.and_then(|m| m.scatter).map(|s| s.draft), Some(Draft::Scatter));
+    assert_eq!(newer.medium.and_then(|m| m.scatter).map(|s| s.draft), Some(ScatterExtension::Scatter));
     assert!(text[0].contains("KHR_materials_volume_scatter is not used"), "{text:?}");
 }
 

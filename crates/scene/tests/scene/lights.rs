@@ -5,7 +5,7 @@ use scene::{
     DVec3, Mesh, Rays, SurfacePoint, Vec3,
     light::{
         AreaLight, DirectionalLight, Environment, EnvironmentMap, Illumination, Light, LightChoice, LightTree, Lit,
-        Pick, PointLight, Region, Spot, all_light_at, light_at,
+        Pick, PointLight, ReceiverBounds, Spot, all_light_at, light_at,
     },
 };
 use std::f64::consts::PI;
@@ -93,7 +93,7 @@ fn narrow_spots_are_as_bright_as_wide_ones() {
         if outer < 0.03 && inner < outer {
             assert!((share(middle) / (expected * expected) - 1.0).abs() < 1e-3, "{inner} {outer}: {}", share(middle));
         }
-        assert!(light.extent().is_some_and(|extent| extent.reach >= outer));
+        assert!(light.bounds().is_some_and(|extent| extent.reach >= outer));
     }
 }
 
@@ -185,7 +185,7 @@ fn area_light_shines_to_its_front_or_to_both_sides() {
 }
 
 fn any_picked(lights: &[Box<dyn Light>], at: &SurfacePoint) -> bool {
-    LightChoice::new(&LightTree::new(lights), &Region::point(at), 1).pick(at, 0.5).is_some()
+    LightChoice::new(&LightTree::new(lights), &ReceiverBounds::point(at), 1).pick(at, 0.5).is_some()
 }
 
 fn lights() -> Vec<Box<dyn Light>> {
@@ -231,7 +231,7 @@ fn lights_are_picked_in_proportion_to_their_importance() {
     let lights = lights();
     let tree = LightTree::new(&lights);
     for at in [facing(DVec3::ZERO, tilted(10.0)), facing(DVec3::splat(0.3), tilted(170.0))] {
-        let choice = LightChoice::new(&tree, &Region::point(&at), 1);
+        let choice = LightChoice::new(&tree, &ReceiverBounds::point(&at), 1);
         let importance: Vec<f64> = lights.iter().map(|l| l.importance(&at)).collect();
         let total: f64 = importance.iter().sum();
         let n = 100_000;
@@ -268,7 +268,7 @@ fn one_light_at_random_has_the_mean_of_all() {
     ];
     let expected = 20.0 / 5.0 * (2.0 / 5f64.sqrt()) + 2.0 * 0.5;
     let tree = LightTree::new(&lights);
-    let choice = LightChoice::new(&tree, &Region::point(&at), 1);
+    let choice = LightChoice::new(&tree, &ReceiverBounds::point(&at), 1);
     let n = 10_000;
     let (mut sum, mut traced, mut shadowed) = (0.0, 0, 0);
     for k in 0..n {

@@ -4,7 +4,7 @@ use crate::meshes::{direction, mesh, random};
 use scene::{
     DVec3, Mesh, Rays, SurfacePoint,
     light::{
-        AreaLight, DirectionalLight, Environment, Light, LightChoice, LightTree, Lit, PointLight, Region, Spot,
+        AreaLight, DirectionalLight, Environment, Light, LightChoice, LightTree, Lit, PointLight, ReceiverBounds, Spot,
         all_light_at, light_at,
     },
 };
@@ -23,12 +23,12 @@ fn surface(index: u64) -> SurfacePoint {
 }
 
 /// A region of the surface with a point in it, not in its middle.
-fn around(at: &SurfacePoint) -> Region {
+fn around(at: &SurfacePoint) -> ReceiverBounds {
     let beside = |k: u64| {
         let normal = (at.position + 0.2 * direction(random(k), 0)).normalize();
         facing(normal, normal)
     };
-    Region::around(&[*at, beside(1), beside(2), beside(3)]).expect("points")
+    ReceiverBounds::around(&[*at, beside(1), beside(2), beside(3)]).expect("points")
 }
 
 /// Lamps in the shell between these distances, of intensities over two decades; some are spots or fade out.
@@ -168,7 +168,7 @@ fn one_of_many_lights_has_the_mean_of_all() {
 /// Seen to catch: lists that grow with the number of lights; nodes opened in the order of the tree.
 #[test]
 fn the_cost_of_a_choice_hardly_depends_on_the_number_of_lights() {
-    for (count, most_noise) in [(100, 0.3), (1000, 0.3), (20_000, 0.8)] {
+    for (count, max_noise) in [(100, 0.3), (1000, 0.3), (20_000, 0.8)] {
         let lights = lamps(count, [1.5, 4.0]);
         let tree = LightTree::new(&lights);
         let (mut weighed, mut variance, regions, points) = (0, 0.0, 40, 256);
@@ -179,7 +179,7 @@ fn the_cost_of_a_choice_hardly_depends_on_the_number_of_lights() {
                 facing(normal, normal)
             };
             let places: Vec<SurfacePoint> = (0..points).map(beside).collect();
-            let choice = LightChoice::new(&tree, &Region::around(&places).expect("points"), 1024);
+            let choice = LightChoice::new(&tree, &ReceiverBounds::around(&places).expect("points"), 1024);
             weighed += choice.weighed;
             for (k, at) in places.iter().enumerate() {
                 let all: f64 = lights.iter().map(|l| l.importance(at)).sum();
@@ -190,6 +190,6 @@ fn the_cost_of_a_choice_hardly_depends_on_the_number_of_lights() {
         }
         println!("{count} lamps: {} weighed a region, deviation {:.3}", weighed / regions, variance.sqrt());
         assert!(weighed / regions <= 2 * 1024, "{weighed}");
-        assert!(variance.sqrt() < most_noise, "{count}: {}", variance.sqrt());
+        assert!(variance.sqrt() < max_noise, "{count}: {}", variance.sqrt());
     }
 }

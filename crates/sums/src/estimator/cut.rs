@@ -2,12 +2,12 @@
 //!
 //! A closed node contributes one of its `n` samples, picked uniformly, `n` times; an open leaf all of its samples. That
 //! is unbiased for every choice of the cut that does not look at what is picked. A node is opened while the standard
-//! deviation that it would add, by the tables of [`Radial`], exceeds a threshold that is the same for all nodes: for a
+//! deviation that it would add, by the tables of [`FalloffTables`], exceeds a threshold that is the same for all nodes: for a
 //! given sum of variances this takes the fewest nodes. The threshold follows from the wanted error and from an estimate of
 //! the sum itself, what open leaves contribute and what the tables say of closed nodes, and is lowered until the cut is
 //! good enough.
 
-use super::{Accumulator, Calibration, Radial, Sum, random_bits};
+use super::{Accumulator, Calibration, FalloffTables, Sum, random_bits};
 use crate::samples::{Exit, LitSamples};
 use bssrdf::{
     lanes::{LANES, Lane, LaneModel},
@@ -42,7 +42,7 @@ pub struct Scratch {
 pub struct Cut<'a, M> {
     pub model: &'a M,
     pub samples: &'a LitSamples<'a>,
-    pub radial: &'a Radial,
+    pub tables: &'a FalloffTables,
     pub exit: &'a Exit,
     /// Wanted standard error of the sum, relative.
     pub accuracy: f32,
@@ -154,7 +154,7 @@ impl<M: LaneModel> Cut<'_, M> {
             ids[..count].copy_from_slice(&frontier[frontier.len() - count..]);
             frontier.truncate(frontier.len() - count);
             visited += count as u64;
-            let predicted = predict(self.radial, self.exit, nodes, scale, &ids);
+            let predicted = predict(self.tables, self.exit, nodes, scale, &ids);
             for i in 0..count {
                 let (error, value, most) = (predicted.error[i], predicted.value[i], predicted.most[i]);
                 let node = Closed { id: ids[i], error, value, most };
@@ -265,7 +265,7 @@ struct Predicted {
 
 /// Looks at sixteen nodes.
 #[inline(always)]
-fn predict(radial: &Radial, exit: &Exit, nodes: &[Node], scale: f32, ids: &[u32; LANES]) -> Predicted {
+fn predict(tables: &FalloffTables, exit: &Exit, nodes: &[Node], scale: f32, ids: &[u32; LANES]) -> Predicted {
     let mut offset = [[0.0; LANES]; 3];
     let mut rest = [[0.0; LANES]; 5];
     for i in 0..LANES {
@@ -287,13 +287,13 @@ fn predict(radial: &Radial, exit: &Exit, nodes: &[Node], scale: f32, ids: &[u32;
         let far2 = offset[0][i] * offset[0][i] + offset[1][i] * offset[1][i] + offset[2][i] * offset[2][i];
         let near = (far2.sqrt() - radius[i]).max(0.0);
         let near2 = near * near;
-        let by_place = radial.slope(near2) * spread[i];
-        let by_light = radial.scatter(near2) * turn[i] * (1.0 / DIFFUSE_TURN);
+        let by_place = tables.slope(near2) * spread[i];
+        let by_light = tables.scatter(near2) * turn[i] * (1.0 / DIFFUSE_TURN);
         // Of a disc the squared radius is twice the mean squared distance from its middle.
         let disc2 = 2.0 * spread[i] * spread[i];
         // The mean of a decay over a node lies near the geometric mean of those to its middle and its near end.
-        let here = if far2 > disc2 { radial.value(far2) } else { radial.disc(disc2) };
-        let beside = (here * radial.value(near2)).sqrt();
+        let here = if far2 > disc2 { tables.value(far2) } else { tables.disc(disc2) };
+        let beside = (here * tables.value(near2)).sqrt();
         let by_flux = here * deviation[i];
         predicted.error[i] = flux[i] * (by_place * by_place + by_light * by_light + by_flux * by_flux).sqrt();
         predicted.value[i] = flux[i] * here;

@@ -6,13 +6,13 @@
 mod calibration;
 mod cut;
 mod exhaustive;
-mod radial;
+mod falloff_tables;
 mod roulette;
 
 pub use calibration::Calibration;
 pub use cut::{Cut, Scratch};
 pub use exhaustive::Exhaustive;
-pub use radial::Radial;
+pub use falloff_tables::FalloffTables;
 pub use roulette::{Rates, Roulette, Rule, random_bits};
 
 use bssrdf::lanes::{LANES, Lane};

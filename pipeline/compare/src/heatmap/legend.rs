@@ -1,12 +1,12 @@
-//! What the colours mean, below the picture and as text in the file.
+//! What the colors mean, below the picture and as text in the file.
 
 use picture::{Picture, font};
 
-use super::{Counts, colour};
+use super::{Counts, color};
 
 /// Narrowest picture that holds the legend, pixels.
 pub(super) const WIDTH: usize = 448;
-/// Rows of the legend: title, bar, numbers, two lines of other colours.
+/// Rows of the legend: title, bar, numbers, two lines of other colors.
 pub(super) const HEIGHT: usize = MARGIN + 4 * LINE + BAR + TICK + GAP + MARGIN;
 pub(super) const PAPER: [u8; 3] = [24, 24, 26];
 
@@ -29,16 +29,16 @@ pub(super) fn draw(picture: &mut Picture, top: usize, layer: &str, counts: Count
     write(picture, &format!("absolute error of {layer}"), MARGIN, top);
     draw_bar(picture, top + LINE, max);
     let top = top + LINE + BAR + TICK + LINE + GAP;
-    draw_swatch(picture, top, colour::ABOVE, &format!("above {}: {above} pixels", short(max)));
-    draw_swatch(picture, top + LINE, colour::NOT_FINITE, &format!("not finite: {not_finite} pixels"));
+    draw_swatch(picture, top, color::ABOVE, &format!("above {}: {above} pixels", short(max)));
+    draw_swatch(picture, top + LINE, color::NOT_FINITE, &format!("not finite: {not_finite} pixels"));
 }
 
 fn draw_bar(picture: &mut Picture, top: usize, max: f64) {
     let width = WIDTH - 2 * SIDE;
-    let scale = colour::scale();
+    let scale = color::scale();
     for x in 0..width {
-        let colour = scale[x * (colour::STEPS - 1) / (width - 1)];
-        picture.fill(SIDE + x..SIDE + x + 1, top..top + BAR, colour);
+        let color = scale[x * (color::STEPS - 1) / (width - 1)];
+        picture.fill(SIDE + x..SIDE + x + 1, top..top + BAR, color);
     }
     for tick in 0..TICKS {
         let x = SIDE + (width - 1) * tick / (TICKS - 1);
@@ -49,8 +49,8 @@ fn draw_bar(picture: &mut Picture, top: usize, max: f64) {
     }
 }
 
-fn draw_swatch(picture: &mut Picture, top: usize, colour: [u8; 3], text: &str) {
-    picture.fill(MARGIN..MARGIN + 14, top..top + 14, colour);
+fn draw_swatch(picture: &mut Picture, top: usize, color: [u8; 3], text: &str) {
+    picture.fill(MARGIN..MARGIN + 14, top..top + 14, color);
     write(picture, text, MARGIN + 22, top);
 }
 
@@ -90,7 +90,7 @@ mod tests {
         let mut picture = Picture::new(WIDTH, HEIGHT, PAPER);
         draw_bar(&mut picture, 0, 1.0);
         let at = |x: usize, y: usize| picture.pixels[y * WIDTH + x];
-        let scale = colour::scale();
+        let scale = color::scale();
         let end = WIDTH - SIDE - 1;
         assert_eq!([at(SIDE, 3), at(end, 3)], [scale[0], scale[255]]);
         assert_eq!([at(SIDE, BAR + 2), at(end, BAR + 2), at(end + 1, BAR + 2)], [INK, INK, PAPER]);

@@ -6,7 +6,7 @@ use crate::layer::{Layer, layers};
 use crate::{Choice, Mismatch};
 use formats::image::Image;
 
-mod colour;
+mod color;
 mod legend;
 
 /// End of the scale if no other is asked for, in units of the channel: a tenth of a white surface under unit light.
@@ -45,7 +45,7 @@ struct Counts {
     not_finite: u64,
 }
 
-/// A PNG file: the chosen layer's absolute error, largest of its channels, as colour from 0 to `max`, with a legend
+/// A PNG file: the chosen layer's absolute error, largest of its channels, as color from 0 to `max`, with a legend
 /// below. Small images are enlarged by a whole factor. Of all layers, the first is drawn, which is `beauty` if there is.
 pub fn heatmap(reference: &Image, test: &Image, choice: &Choice, max: f64) -> Result<Vec<u8>, HeatmapError> {
     let layers = layers(reference, test);
@@ -57,11 +57,11 @@ pub fn heatmap(reference: &Image, test: &Image, choice: &Choice, max: f64) -> Re
         return Err(HeatmapError::TooLarge { width, height });
     }
     let mut picture = Picture::new(width, height, legend::PAPER);
-    let (scale, planes, mut counts) = (colour::scale(), layer.samples().planes, Counts::default());
+    let (scale, planes, mut counts) = (color::scale(), layer.samples().planes, Counts::default());
     for pixel in 0..reference.width * reference.height {
         let (left, top) = (pixel % reference.width * zoom, pixel / reference.width * zoom);
-        let colour = counts.shade(&scale, error(&planes, pixel), max);
-        picture.fill(left..left + zoom, top..top + zoom, colour);
+        let color = counts.shade(&scale, error(&planes, pixel), max);
+        picture.fill(left..left + zoom, top..top + zoom, color);
     }
     legend::draw(&mut picture, reference.height * zoom, &layer.name, counts, max);
     let description = legend::description(&layer.name, max, zoom);
@@ -86,17 +86,17 @@ fn error(planes: &[(&[f32], &[f32])], pixel: usize) -> Option<f64> {
 }
 
 impl Counts {
-    fn shade(&mut self, scale: &[[u8; 3]; colour::STEPS], error: Option<f64>, max: f64) -> [u8; 3] {
+    fn shade(&mut self, scale: &[[u8; 3]; color::STEPS], error: Option<f64>, max: f64) -> [u8; 3] {
         match error {
             None => {
                 self.not_finite += 1;
-                colour::NOT_FINITE
+                color::NOT_FINITE
             }
             Some(error) if error > max => {
                 self.above += 1;
-                colour::ABOVE
+                color::ABOVE
             }
-            Some(error) => scale[(error / max * (colour::STEPS - 1) as f64).round() as usize],
+            Some(error) => scale[(error / max * (color::STEPS - 1) as f64).round() as usize],
         }
     }
 }
@@ -117,13 +117,13 @@ mod tests {
 
     #[test]
     fn the_end_of_the_scale_belongs_to_it() {
-        let (scale, mut counts) = (colour::scale(), Counts::default());
+        let (scale, mut counts) = (color::scale(), Counts::default());
         let mut shade = |error, max| counts.shade(&scale, error, max);
         assert_eq!(shade(Some(0.25), 0.25), scale[255]);
         assert_eq!(shade(Some(0.125), 0.25), scale[128]);
-        assert_eq!(shade(Some(0.250_001), 0.25), colour::ABOVE);
+        assert_eq!(shade(Some(0.250_001), 0.25), color::ABOVE);
         assert_eq!(shade(Some(0.0), f64::MIN_POSITIVE), scale[0]);
-        assert_eq!(shade(None, 0.25), colour::NOT_FINITE);
+        assert_eq!(shade(None, 0.25), color::NOT_FINITE);
         assert_eq!(counts, Counts { above: 1, not_finite: 1 });
     }
 

@@ -3,7 +3,7 @@
 //! Names, paths and attributes come from files and are not trusted. They reach the page as JSON only ([`embed`]),
 //! and the page shows them as text nodes only; nothing is ever pasted into markup.
 
-mod colour;
+mod color;
 mod embed;
 mod fit;
 mod index;
@@ -23,7 +23,7 @@ pub use index::{IndexError, index};
 const COMMON: &str = concat!(include_str!("page/dom.js"), include_str!("page/theme.js"));
 const SCRIPT: &str = concat!(
     include_str!("page/data.js"),
-    include_str!("page/colour.js"),
+    include_str!("page/color.js"),
     include_str!("page/numbers.js"),
     include_str!("page/state.js"),
     include_str!("page/paint.js"),
@@ -49,7 +49,7 @@ struct Picture<'a> {
     attributes: Vec<AttributePair<'a>>,
     /// What is not as the reader expects, in words.
     notes: Vec<String>,
-    colours: colour::Maps,
+    colors: color::Maps,
 }
 
 /// An attribute of either header, in words.
@@ -80,7 +80,7 @@ pub fn page(
         layers: &fitted.layers,
         attributes: attributes(reference, test),
         notes: fitted.notes,
-        colours: colour::MAPS,
+        colors: color::MAPS,
     };
     let thumbnails = thumbnail::thumbnails(&layers, reference.width, reference.height);
     let mut data = embed::json("report", document)? + &embed::json("thumbnails", &thumbnails)?;

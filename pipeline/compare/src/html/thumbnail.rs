@@ -4,7 +4,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::{Deserialize, Serialize};
 
-use super::colour;
+use super::color;
 use super::reduce::{Rectangle, means};
 use crate::layer::Layer;
 use crate::metric::EPSILON;
@@ -43,15 +43,15 @@ pub(super) fn thumbnails(layers: &[Layer<'_>], width: usize, height: usize) -> T
     let block = width.max(height).div_ceil(SIDE);
     let size = [width.div_ceil(block), height.div_ceil(block)];
     let reduced = |samples: &[f32]| means(samples, width, Rectangle { x: 0, y: 0, width, height }, block);
-    // Colours, or one channel as grey.
+    // Colors, or one channel as grey.
     let planes = layer.samples().planes;
     let is_luminance = layer.channels.first().is_some_and(|(name, _)| name == "Y");
     let shown = &planes[..if planes.len() < 3 || is_luminance { 1 } else { 3 }];
     let white = white(&shown.iter().flat_map(|(reference, _)| reduced(reference)).collect::<Vec<f32>>());
     let test: Vec<Vec<f32>> = shown.iter().map(|(_, test)| reduced(test)).collect();
-    let colours = (0..size[0] * size[1]).map(|i| [0, 1, 2].map(|c| shade(test[c.min(test.len() - 1)][i], white)));
-    let heat = heat(&planes, [width, height], block).into_iter().map(|error| colour::absolute(part(error)));
-    Thumbnails { test: png(size, colours.flatten()), heat: png(size, heat.flatten()) }
+    let colors = (0..size[0] * size[1]).map(|i| [0, 1, 2].map(|c| shade(test[c.min(test.len() - 1)][i], white)));
+    let heat = heat(&planes, [width, height], block).into_iter().map(|error| color::absolute(part(error)));
+    Thumbnails { test: png(size, colors.flatten()), heat: png(size, heat.flatten()) }
 }
 
 /// The value that 99 of 100 do not exceed: it becomes white, so that dark pictures can be seen.
@@ -63,7 +63,7 @@ fn white(values: &[f32]) -> f64 {
 }
 
 fn shade(value: f32, white: f64) -> u8 {
-    colour::srgb(f64::from(value) / white)
+    color::srgb(f64::from(value) / white)
 }
 
 /// The largest relative error of each block, as relMSE takes it: over the root of the squared reference plus

@@ -1,4 +1,4 @@
-//! What the eye sees: metrics of the beauty layer as a picture of three colours.
+//! What the eye sees: metrics of the beauty layer as a picture of three colors.
 
 use formats::image::Image;
 use rayon::prelude::*;

@@ -1,17 +1,17 @@
 //! What is left of an image: few numbers, large enough to be near to normally distributed.
 //!
-//! Channel means of every colour layer; of the subsurface layer also the brightness and colour of nine tiles, because
+//! Channel means of every color layer; of the subsurface layer also the brightness and color of nine tiles, because
 //! a fault may brighten one side and darken the other, and because ratios of channels shed the noise that channels
-//! share: the colour of skin is known ten times better than its brightness. Last the noise that the image claims.
+//! share: the color of skin is known ten times better than its brightness. Last the noise that the image claims.
 
 use formats::image::Image;
 use serde::{Deserialize, Serialize};
 
 /// Tiles along each side of the picture.
 const TILES: usize = 3;
-/// The layer of which there are tiles and colours, and whose scatter is tested.
+/// The layer of which there are tiles and colors, and whose scatter is tested.
 const SCATTERED: &str = "subsurface";
-/// The colours.
+/// The colors.
 const RGB: [&str; 3] = ["R", "G", "B"];
 
 /// What a statistic measures.
@@ -23,7 +23,7 @@ pub enum Kind {
     /// The same, of the layer whose scatter between replicates is tested too.
     Scatter,
     /// A ratio of the radiances of two channels.
-    Colour,
+    Color,
     /// The mean over pixels of their standard error, W/(m² sr): only its growth is a fault.
     Noise,
 }
@@ -39,14 +39,14 @@ pub(super) struct Statistic {
 /// All statistics of an image, the same names in the same order for all images of the same channels.
 pub(super) fn statistics(image: &Image) -> Vec<Statistic> {
     let mut found = Vec::new();
-    for layer in colour_layers(image) {
+    for layer in color_layers(image) {
         let kind = if layer == SCATTERED { Kind::Scatter } else { Kind::Light };
         let means = means(image, &layer, |_, _| true);
         for (channel, mean) in RGB.iter().zip(means) {
             found.push(Statistic { name: format!("{} {channel}", shown(&layer)), kind, value: mean });
         }
         if layer == SCATTERED {
-            found.extend(colours(shown(&layer), means));
+            found.extend(colors(shown(&layer), means));
             found.extend((0..TILES * TILES).flat_map(|tile| of_tile(image, &layer, tile)));
         }
     }
@@ -59,18 +59,18 @@ fn tile_of(image: &Image, x: usize, y: usize) -> usize {
     y * TILES / image.height * TILES + x * TILES / image.width
 }
 
-/// Brightness and colour of one tile.
+/// Brightness and color of one tile.
 fn of_tile(image: &Image, layer: &str, tile: usize) -> Vec<Statistic> {
     let means = means(image, layer, |x, y| tile_of(image, x, y) == tile);
     let name = format!("{} tile {},{}", shown(layer), tile % TILES, tile / TILES);
     let light = Statistic { name: format!("{name} R+G+B"), kind: Kind::Light, value: means.iter().sum() };
-    [light].into_iter().chain(colours(&name, means)).collect()
+    [light].into_iter().chain(colors(&name, means)).collect()
 }
 
-fn colours(name: &str, [red, green, blue]: [f64; 3]) -> [Statistic; 2] {
+fn colors(name: &str, [red, green, blue]: [f64; 3]) -> [Statistic; 2] {
     [("R/G", red / green), ("B/G", blue / green)].map(|(ratio, value)| Statistic {
         name: format!("{name} {ratio}"),
-        kind: Kind::Colour,
+        kind: Kind::Color,
         value,
     })
 }
@@ -96,7 +96,7 @@ fn noise(image: &Image) -> impl Iterator<Item = Statistic> + '_ {
 }
 
 /// Layers with red, green and blue, in order of name; the picture itself, which has no name, first.
-fn colour_layers(image: &Image) -> Vec<String> {
+fn color_layers(image: &Image) -> Vec<String> {
     let reds = image.channels.iter().filter_map(|channel| match channel.name.rsplit_once('.') {
         Some((layer, "R")) => Some(layer.to_owned()),
         None if channel.name == "R" => Some(String::new()),
@@ -117,14 +117,14 @@ fn full(layer: &str, channel: &str) -> String {
 }
 
 /// How little of its layer's light a tile may hold and still say something, relative to an even share.
-const LEAST_SHARE: f64 = 0.25;
+const MIN_SHARE: f64 = 0.25;
 
 /// Whether a statistic is of a tile that is nearly all background; `light` finds the reference's mean by name.
 pub(super) fn is_background(name: &str, light: impl Fn(&str) -> f64) -> bool {
     let Some((layer, rest)) = name.split_once(" tile ") else { return false };
     let tile = rest.split(' ').next().unwrap_or_default();
     let whole: f64 = RGB.iter().map(|channel| light(&format!("{layer} {channel}"))).sum();
-    let enough = light(&format!("{layer} tile {tile} R+G+B")) >= LEAST_SHARE * whole;
+    let enough = light(&format!("{layer} tile {tile} R+G+B")) >= MIN_SHARE * whole;
     // In this order a share that is no number is background.
     !enough
 }

@@ -17,14 +17,14 @@ pub const MEAN_IMAGE: &str = "mean.exr";
 /// Changes only when a key changes its meaning or goes.
 const SCHEMA: u32 = 1;
 /// A file beyond it is no summary.
-const MOST_BYTES: u64 = 16 << 20;
+const MAX_BYTES: u64 = 16 << 20;
 /// Relative scatter above which a mean is taken as it is and not its logarithm, which would be skewed.
 const LOGARITHM_BELOW: f64 = 0.2;
 /// Skewness beyond which a statistic is left out, in standard deviations of the skewness of normal numbers, `√(6/n)`: of
 /// 64 replicates 0.77. Beyond it means of eight would not be near enough to normal, five standard errors out.
-const MOST_SKEWNESS: f64 = 2.5;
+const MAX_SKEWNESS: f64 = 2.5;
 /// The same of the excess kurtosis, `√(24/n)`: of 64 replicates 2.
-const MOST_KURTOSIS: f64 = 3.3;
+const MAX_KURTOSIS: f64 = 3.3;
 
 /// Mean and variance of all statistics of a case.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -75,8 +75,8 @@ impl Summary {
         let fail = |source| formats::Error::read(&path, source);
         let facts = std::fs::metadata(&path).map_err(fail)?;
         let wrong = |what: String| ReplicateError::Summary { path: path.clone(), what };
-        if !facts.is_file() || facts.len() > MOST_BYTES {
-            return Err(wrong(format!("not a file of at most {MOST_BYTES} bytes")));
+        if !facts.is_file() || facts.len() > MAX_BYTES {
+            return Err(wrong(format!("not a file of at most {MAX_BYTES} bytes")));
         }
         let bytes = std::fs::read(&path).map_err(fail)?;
         // Some editors begin a file with a byte order mark.
@@ -197,7 +197,7 @@ fn too_far_from_normal(values: &[f64], mean: f64, variance: f64) -> Option<Strin
     let moment =
         |power: i32| values.iter().map(|value| ((value - mean) / variance.sqrt()).powi(power)).sum::<f64>() / n;
     let (skewness, kurtosis) = (moment(3), moment(4) - 3.0);
-    let far = skewness.abs() > MOST_SKEWNESS * (6.0 / n).sqrt() || kurtosis > MOST_KURTOSIS * (24.0 / n).sqrt();
+    let far = skewness.abs() > MAX_SKEWNESS * (6.0 / n).sqrt() || kurtosis > MAX_KURTOSIS * (24.0 / n).sqrt();
     far.then(|| format!("far from normal: skewness {skewness:.2}, excess kurtosis {kurtosis:.2}"))
 }
 

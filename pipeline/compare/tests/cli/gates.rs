@@ -27,7 +27,7 @@ fn one_per_cent_brighter_is_a_bias() {
 
 /// Red up and blue down keeps the mean of the layer.
 #[test]
-fn a_shift_of_colour_is_a_bias() {
+fn a_shift_of_color_is_a_bias() {
     let shift = |image: &mut Image| {
         image.channels[0].samples.iter_mut().for_each(|sample| *sample += 0.1);
         image.channels[2].samples.iter_mut().for_each(|sample| *sample -= 0.1);

@@ -26,7 +26,7 @@ impl Normal {
     }
 }
 
-/// Colours from 0.2 to 0.8, times `gain`, with noise.
+/// Colors from 0.2 to 0.8, times `gain`, with noise.
 fn image(gain: f64, noise: f64, seed: u64) -> Image {
     let mut normal = Normal(seed);
     let channels = ["R", "G", "B"].into_iter().zip([0.0, 1.0, 2.0]).map(|(name, phase)| {

@@ -21,7 +21,7 @@ pub struct Run {
     pub stderr: String,
 }
 
-/// Colours, one more layer, depth, and the hash of a scene.
+/// Colors, one more layer, depth, and the hash of a scene.
 pub fn picture() -> Image {
     let plane = |shift: usize| (0..WIDTH * HEIGHT).map(|i| 0.25 + ((i * 7 + shift) % 13) as f32 / 8.0).collect();
     let names = ["R", "G", "B", "Z", "variance.R"];

@@ -1,4 +1,4 @@
-//! Opaque surfaces through the programs: colour, texture and holes of a card above the slab.
+//! Opaque surfaces through the programs: color, texture and holes of a card above the slab.
 
 use crate::support::Bench;
 use base64::{Engine, engine::general_purpose::STANDARD};
@@ -105,11 +105,11 @@ fn a_picture_that_cannot_be_read() {
 
 /// The card as a translucent surface: said, once.
 #[test]
-fn colours_of_a_translucent_surface_are_not_used() {
+fn colors_of_a_translucent_surface_are_not_used() {
     let bench = Bench::new();
     bench.write("card.png", picture());
     let scene = bench.slab("card.gltf", |root| with_card(root, "MASK"));
     let arguments = [&scene, "--translucent", "Card", "-n", "500", "-o", "card.cloud", "--progress", "none"];
     let said = bench.says("sample-surface", &arguments);
-    assert_eq!(said.matches("`Card`: not used on a translucent surface: base colour texture, alphaMode").count(), 1);
+    assert_eq!(said.matches("`Card`: not used on a translucent surface: base color texture, alphaMode").count(), 1);
 }

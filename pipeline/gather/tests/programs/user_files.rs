@@ -115,7 +115,7 @@ fn positions_far_from_the_origin() {
 
 /// Red, green and blue lights are white together, on nested and scaled nodes. `import_lights` has cones and ranges.
 #[test]
-fn light_colour_and_cone() {
+fn light_color_and_cone() {
     let bench = Bench::new();
     let flux = |colors: &[Value]| {
         let scene = bench.slab("lights.gltf", |root| {
@@ -296,7 +296,7 @@ fn media_of_file_and_command_line_together() {
     assert!(said.contains("`Slab`: KHR_materials_volume_scatter") && said.contains("`Plain`: marble"), "{said}");
 }
 
-/// Open, turned, doubled: warned of with counts, kept in the statistics, refused by `--strict`. `health`.
+/// Open, turned, doubled: warned of with counts, kept in the statistics, refused by `--strict`. `defects`.
 #[test]
 fn an_open_mesh_with_a_volume() {
     let bench = Bench::new();

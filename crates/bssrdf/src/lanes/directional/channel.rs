@@ -7,7 +7,7 @@ use super::{
         dipole::Distances,
         exp::{decay2, exp2_negative},
     },
-    geometry::{Light, Projections},
+    geometry::{Projections, SourceGeometry},
 };
 use crate::{Coefficients, Interface};
 use std::f64::consts::{LOG2_E, PI};
@@ -35,7 +35,7 @@ pub(super) struct Channel {
     /// `1/(3σ_t)²`.
     back_lit: f32,
     /// `3C_φ σ_t'²/(4π² · 4C_φ(1/η))`, 1/m²; 0 where nothing scatters.
-    strength: f32,
+    prefactor: f32,
 }
 
 /// `d_r²` and `δd² = d_v² − d_r² = h² − z²`.
@@ -52,10 +52,10 @@ pub(super) struct Roots {
     delta: Lane,
 }
 
-/// The exponentials: `e^{−δq}`, one minus that, and `e^{−q_r}` times the strength.
-pub(super) struct Falls {
-    stays: Lane,
-    fades: Lane,
+/// The exponentials: `e^{−δq}`, one minus that, and `e^{−q_r}` times the prefactor.
+pub(super) struct Decay {
+    exp: Lane,
+    one_minus_exp: Lane,
     real: Lane,
 }
 
@@ -73,7 +73,7 @@ impl Channel {
         mirror2: 1.0,
         mirror_k: 1.0,
         back_lit: 0.1,
-        strength: 0.0,
+        prefactor: 0.0,
     };
 
     pub fn new(c: &Coefficients, boundary: &Interface, k: f64) -> Channel {
@@ -96,13 +96,13 @@ impl Channel {
             mirror2: (mirror * mirror) as f32,
             mirror_k: (-k * mirror) as f32,
             back_lit: (reduced / (3.0 * c.extinction())).powi(2) as f32,
-            strength: (3.0 * boundary.c_phi * reduced * reduced / (4.0 * PI * PI * boundary.exit_norm)) as f32,
+            prefactor: (3.0 * boundary.c_phi * reduced * reduced / (4.0 * PI * PI * boundary.exit_norm)) as f32,
         }
     }
 
     /// The depth of the real source (method.md 5.2, 5.3).
     #[inline(always)]
-    pub fn squares(&self, light: &Light) -> Squares {
+    pub fn squares(&self, light: &SourceGeometry) -> Squares {
         let mut squares = Squares { real2: [0.0; LANES], delta2: [0.0; LANES] };
         for i in 0..LANES {
             let (r2, mu0) = (light.r2[i] * self.scale2, light.mu0[i]);
@@ -116,7 +116,7 @@ impl Channel {
     }
 
     #[inline(always)]
-    pub fn roots(&self, light: &Light, squares: &Squares) -> Roots {
+    pub fn roots(&self, light: &SourceGeometry, squares: &Squares) -> Roots {
         let zero = [0.0; LANES];
         let mut roots = Roots { real: zero, over_real: zero, over_virtual: zero, delta: zero };
         for i in 0..LANES {
@@ -131,26 +131,26 @@ impl Channel {
     }
 
     #[inline(always)]
-    pub fn falls(&self, roots: &Roots) -> Falls {
+    pub fn falls(&self, roots: &Roots) -> Decay {
         let zero = [0.0; LANES];
-        let mut falls = Falls { stays: zero, fades: zero, real: zero };
+        let mut falls = Decay { exp: zero, one_minus_exp: zero, real: zero };
         for i in 0..LANES {
-            (falls.stays[i], falls.fades[i]) = decay2(self.fall * roots.delta[i]);
-            falls.real[i] = exp2_negative(self.fall * roots.real[i]) * self.strength;
+            (falls.exp[i], falls.one_minus_exp[i]) = decay2(self.fall * roots.delta[i]);
+            falls.real[i] = exp2_negative(self.fall * roots.real[i]) * self.prefactor;
         }
         falls
     }
 
     /// `S_bare` (method.md 5.10 by 9.5), and 1 where it has lost too many digits.
     #[inline(always)]
-    pub fn values(&self, p: &Projections, s: &Squares, d: &Roots, e: &Falls) -> (Lane, [u32; LANES]) {
+    pub fn values(&self, p: &Projections, s: &Squares, d: &Roots, e: &Decay) -> (Lane, [u32; LANES]) {
         let (mut values, mut lost) = ([0.0; LANES], [0; LANES]);
         for i in 0..LANES {
             // ω = 1 − ρ³ e^{−δq} with ρ = d_r/d_v = 1 − u (9.2); not negative, for h² > z² in every medium.
             let rho = d.real[i] * d.over_virtual[i];
             let rho3 = rho * rho * rho;
-            let omega = d.delta[i] * d.over_virtual[i] * (1.0 + rho * (1.0 + rho)) + rho3 * e.fades[i];
-            let share = rho3 * e.stays[i];
+            let omega = d.delta[i] * d.over_virtual[i] * (1.0 + rho * (1.0 + rho)) + rho3 * e.one_minus_exp[i];
+            let share = rho3 * e.exp[i];
             let [(g, g_terms), (d_g, d_terms)] = self.brackets(p, s, d, i);
             let sum = omega * g - share * d_g;
             let terms = omega * g_terms + share * d_terms;

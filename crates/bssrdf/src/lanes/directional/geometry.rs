@@ -11,7 +11,7 @@ const NULL_DIRECTION_2: f32 = 1e-12;
 const NULL_DISTANCE_2: f32 = 1e-30;
 
 /// What the depth of the real source depends on.
-pub(super) struct Light {
+pub(super) struct SourceGeometry {
     /// `r²`.
     pub r2: Lane,
     /// `‖x × ω12‖²`.
@@ -33,11 +33,11 @@ pub(super) struct Projections {
     pub k_mu_virtual: Lane,
 }
 
-impl Light {
+impl SourceGeometry {
     #[inline(always)]
-    pub fn new(block: &Block, normal_out: [f32; 3]) -> Light {
+    pub fn new(block: &Block, normal_out: [f32; 3]) -> SourceGeometry {
         let zero = [0.0; LANES];
-        let mut light = Light { r2: zero, across2: zero, mu0: zero };
+        let mut light = SourceGeometry { r2: zero, across2: zero, mu0: zero };
         for i in 0..LANES {
             let (x, refracted) = (lane(&block.offset, i), lane(&block.refracted, i));
             let across = cross(x, refracted);
@@ -51,7 +51,7 @@ impl Light {
 
 impl Projections {
     #[inline(always)]
-    pub fn new(block: &Block, normal_out: [f32; 3], light: &Light, k: f32) -> Projections {
+    pub fn new(block: &Block, normal_out: [f32; 3], light: &SourceGeometry, k: f32) -> Projections {
         let zero = [0.0; LANES];
         let mut p = Projections { x: zero, n: zero, a: zero, b: zero, k_mu: zero, k_mu_virtual: zero };
         for i in 0..LANES {

@@ -11,7 +11,7 @@ mod geometry;
 use super::{Block, LANES, Lane, LaneModel};
 use crate::{Bssrdf, DirectionalDipole, Medium, Separation};
 use channel::Channel;
-use geometry::{Light, Projections};
+use geometry::{Projections, SourceGeometry};
 use glam::{DVec3, Vec3};
 
 /// The directional dipole of one medium.
@@ -34,7 +34,7 @@ impl LaneModel for DirectionalLanes {
     #[inline(always)]
     fn bare(&self, block: &Block, normal_out: [f32; 3]) -> [Lane; 3] {
         let [red, green, blue] = &self.channels;
-        let light = Light::new(block, normal_out);
+        let light = SourceGeometry::new(block, normal_out);
         let squares = [red.squares(&light), green.squares(&light), blue.squares(&light)];
         let projections = Projections::new(block, normal_out, &light, self.k);
         let [r, g, b] = &squares;

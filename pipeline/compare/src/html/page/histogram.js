@@ -78,12 +78,12 @@ function axes(limit, decades, x, y) {
 /** Steps of the counts, and the report's mean error as a broken line. */
 function curve({ name, number, counts }, limit, x, y) {
   const steps = counts.map((count, i) => `${i ? "L" : "M"}${x(i)} ${y(count)}L${x(i + 1)} ${y(count)}`).join("");
-  const colour = `channel-${"RXGYBZ".includes(name) ? name : "other"}`;
-  const nodes = [shape("path", { class: `curve ${colour}`, d: steps })];
+  const color = `channel-${"RXGYBZ".includes(name) ? name : "other"}`;
+  const nodes = [shape("path", { class: `curve ${color}`, d: steps })];
   const mean = meanError(number);
   if (Number.isFinite(mean)) {
     const place = x(1 + PARTS * (0.5 + Math.min(Math.max(mean / limit, -1), 1) / 2));
-    nodes.push(shape("line", { class: `mean ${colour}`, x1: place, x2: place, y1: PLOT.top, y2: PLOT.height - PLOT.bottom }));
+    nodes.push(shape("line", { class: `mean ${color}`, x1: place, x2: place, y1: PLOT.top, y2: PLOT.height - PLOT.bottom }));
   }
   return nodes;
 }

@@ -69,13 +69,13 @@ function showFrame() {
 }
 
 function legend() {
-  const notFinite = element("span", { class: "entry" }, swatch([picture.colours.not_finite]), "not finite");
+  const notFinite = element("span", { class: "entry" }, swatch([picture.colors.not_finite]), "not finite");
   const { channels, light, low, high } = state.look;
   if (state.view in mapTables) {
     const which = shownChannels().length > 1 ? ", of the channel that differs most" : "";
     const signed = state.view === "signed";
     const scale = shortText(state.scale);
-    return [element("span", { class: "entry" }, signed ? `−${scale}` : "0", swatch(picture.colours[state.view]), signed ? `+${scale}` : scale),
+    return [element("span", { class: "entry" }, signed ? `−${scale}` : "0", swatch(picture.colors[state.view]), signed ? `+${scale}` : scale),
       element("span", { class: "entry" }, `${signed ? "test − reference" : "|test − reference|"}${which}`), notFinite];
   }
   if (light) return [element("span", { class: "entry" }, `sRGB, exposure ${signedText(state.stops)} stops: white is ${shortText(2 ** -state.stops)}`), notFinite];
@@ -84,12 +84,12 @@ function legend() {
   return [element("span", { class: "entry" }, shortText(low), swatch([[0, 0, 0], [255, 255, 255]]), shortText(high)), element("span", { class: "entry" }, what), notFinite];
 }
 
-/** A strip of colours. */
-function swatch(colours) {
-  const strip = element("canvas", { width: colours.length > 1 ? 160 : 12, height: 12, class: "swatch", "aria-hidden": "true" });
+/** A strip of colors. */
+function swatch(colors) {
+  const strip = element("canvas", { width: colors.length > 1 ? 160 : 12, height: 12, class: "swatch", "aria-hidden": "true" });
   const ink = strip.getContext("2d");
   for (let x = 0; x < strip.width; x++) {
-    ink.fillStyle = cssColour(colours.length > 1 ? mapColour(colours, x / (strip.width - 1)) : colours[0]);
+    ink.fillStyle = cssColor(colors.length > 1 ? mapColor(colors, x / (strip.width - 1)) : colors[0]);
     ink.fillRect(x, 0, 1, strip.height);
   }
   return strip;

@@ -16,11 +16,11 @@ function paintAnew(grid, kind) {
   const canvas = element("canvas", { width: grid.width, height: grid.height });
   const context = canvas.getContext("2d");
   const image = context.createImageData(grid.width, grid.height);
-  const colours = kind in mapTables ? errorColours(grid, kind) : valueColours(grid, kind);
+  const colors = kind in mapTables ? errorColors(grid, kind) : valueColors(grid, kind);
   const holes = [];
   for (let i = 0, at = 0; i < grid.width * grid.height; i++, at += 4) {
-    if (!colours(i, image.data, at)) {
-      image.data.set(picture.colours.not_finite, at);
+    if (!colors(i, image.data, at)) {
+      image.data.set(picture.colors.not_finite, at);
       holes.push(i);
     }
     image.data[at + 3] = 255;
@@ -29,8 +29,8 @@ function paintAnew(grid, kind) {
   return { canvas, holes };
 }
 
-/** A function that writes the colour of a block and says whether it has one: whether all its values are finite. */
-function valueColours(grid, kind) {
+/** A function that writes the color of a block and says whether it has one: whether all its values are finite. */
+function valueColors(grid, kind) {
   const planes = state.look.channels.map((channel) => grid[kind][channel]);
   const [first, second, third] = planes.length === 3 ? planes : [planes[0], planes[0], planes[0]];
   const { light, low, high } = state.look;
@@ -45,7 +45,7 @@ function valueColours(grid, kind) {
 }
 
 /** The same for errors: of the channel that differs most. */
-function errorColours(grid, kind) {
+function errorColors(grid, kind) {
   const pairs = shownChannels().map((channel) => [grid.reference[channel], grid.test[channel]]);
   const [map, scale] = [mapTables[kind], state.scale];
   return (i, bytes, at) => {

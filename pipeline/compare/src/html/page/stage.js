@@ -101,7 +101,7 @@ function drawHoles(pane, grid, holes) {
   const size = state.zoom * grid.block;
   const side = Math.max(size, 4 * density());
   if (side === size) return;
-  context.fillStyle = cssColour(picture.colours.not_finite);
+  context.fillStyle = cssColor(picture.colors.not_finite);
   for (const hole of holes.slice(0, 5000)) {
     const [column, row] = [hole % grid.width, Math.floor(hole / grid.width)];
     const [x, y] = toStage(pane, grid.x + (column + 0.5) * grid.block, grid.y + (row + 0.5) * grid.block);
@@ -126,13 +126,13 @@ function drawBorders(pane) {
   context.stroke();
 }
 
-/** A frame that is seen on any colour: dark outside, bright inside. */
+/** A frame that is seen on any color: dark outside, bright inside. */
 function drawCursor(pane) {
   const [x, y] = toStage(pane, ...state.cursor);
   const size = Math.max(state.zoom, 7 * density());
   const shift = (size - state.zoom) / 2;
-  for (const [colour, grow] of [["#000", 1.5], ["#fff", 0]]) {
-    context.strokeStyle = colour;
+  for (const [color, grow] of [["#000", 1.5], ["#fff", 0]]) {
+    context.strokeStyle = color;
     context.lineWidth = 1.5 * density();
     const extra = grow * density();
     context.strokeRect(x - shift - extra, y - shift - extra, size + 2 * extra, size + 2 * extra);

@@ -17,7 +17,7 @@ const state = {
   data: null,
   look: null,
   stops: 0,
-  /** The error that is the end of the colour map, in units of the channel. */
+  /** The error that is the end of the color map, in units of the channel. */
   scale: 1,
   /** Which image flicker shows. */
   shown: "reference",

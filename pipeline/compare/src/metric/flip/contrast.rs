@@ -1,4 +1,4 @@
-//! What is too fine to be seen: contrast sensitivity as filters of the opponents, by which colour blurs more than light.
+//! What is too fine to be seen: contrast sensitivity as filters of the opponents, by which color blurs more than light.
 
 use std::f64::consts::PI;
 
@@ -73,8 +73,8 @@ mod tests {
         let contrast = Contrast::new();
         let sum = |taps: &[f32]| 2.0 * taps.iter().sum::<f32>() - taps[0];
         let whole = |blur: &Blur| sum(&blur.rows) * sum(&blur.columns);
-        let colours = contrast.blue_yellow.iter().map(whole).sum();
-        for found in [whole(&contrast.light), whole(&contrast.red_green), colours] {
+        let colors = contrast.blue_yellow.iter().map(whole).sum();
+        for found in [whole(&contrast.light), whole(&contrast.red_green), colors] {
             // A few roundings of 1.
             assert!((found - 1.0).abs() < 1e-6, "{found}");
         }

@@ -1,4 +1,4 @@
-//! Edges and points, which are seen even where their colour differs little: first and second derivatives of light.
+//! Edges and points, which are seen even where their color differs little: first and second derivatives of light.
 
 use super::PIXELS_PER_DEGREE;
 use crate::metric::convolve::gaussian;

@@ -2,7 +2,7 @@
 
 use simd::Kernel;
 
-use super::colour::{self, hunt_lab, opponents};
+use super::color::{self, hunt_lab, opponents};
 use super::contrast::{Blur, Contrast};
 use super::exposure::Tone;
 use super::feature::{self, Detectors};
@@ -25,7 +25,7 @@ impl Eye {
 /// Of one image.
 pub(super) struct Look {
     /// L*, a*, b* with Hunt's adjustment, of what is not too fine to be seen.
-    colour: [Box<Plane>; 3],
+    color: [Box<Plane>; 3],
     /// Strength of edges and of points.
     edge: Box<Plane>,
     point: Box<Plane>,
@@ -33,7 +33,7 @@ pub(super) struct Look {
 
 impl Default for Look {
     fn default() -> Look {
-        Look { colour: std::array::from_fn(|_| plane()), edge: plane(), point: plane() }
+        Look { color: std::array::from_fn(|_| plane()), edge: plane(), point: plane() }
     }
 }
 
@@ -41,7 +41,7 @@ impl Look {
     /// L*, a*, b*, edges and points.
     #[inline(always)]
     fn lanes(&self, at: usize) -> [&[f32; LANES]; 5] {
-        let [l, a, b] = &self.colour;
+        let [l, a, b] = &self.color;
         [lanes(l, at), lanes(a, at), lanes(b, at), lanes(&self.edge, at), lanes(&self.point, at)]
     }
 }
@@ -85,12 +85,12 @@ impl Kernel for See<'_> {
         let Work { opponents, across, more } = self.work;
         split(self.tone, self.linear, opponents);
         let Contrast { light, red_green, blue_yellow } = &self.eye.contrast;
-        let Look { colour, edge, point } = self.look;
-        blur(light, &opponents[0], across, &mut colour[0]);
-        blur(red_green, &opponents[1], across, &mut colour[1]);
-        blur(&blue_yellow[0], &opponents[2], across, &mut colour[2]);
+        let Look { color, edge, point } = self.look;
+        blur(light, &opponents[0], across, &mut color[0]);
+        blur(red_green, &opponents[1], across, &mut color[1]);
+        blur(&blue_yellow[0], &opponents[2], across, &mut color[2]);
         blur(&blue_yellow[1], &opponents[2], across, more);
-        adjust(colour, more);
+        adjust(color, more);
         let Detectors { smooth, edge: first, point: second } = &self.eye.detectors;
         convolve::<Even>(Along::Rows(HALO), smooth, &opponents[0], across);
         convolve::<Odd>(Along::Columns, first, across, edge);
@@ -126,7 +126,7 @@ fn blur(filter: &Blur, from: &Plane, across: &mut Plane, to: &mut Plane) {
     convolve::<Even>(Along::Columns, &filter.columns, across, to);
 }
 
-/// Filtered opponents become adjusted colours; `more` is added to the third.
+/// Filtered opponents become adjusted colors; `more` is added to the third.
 #[inline(always)]
 fn adjust([first, second, third]: &mut [Box<Plane>; 3], more: &Plane) {
     for at in (0..GROUPS).map(group) {
@@ -170,10 +170,10 @@ impl Kernel for Compare<'_> {
             let (a, b) = (reference.lanes(at), test.lanes(at));
             let mut largest = *lanes(self.largest, at);
             for i in 0..LANES {
-                let colour = colour::difference([a[0][i], a[1][i], a[2][i]], [b[0][i], b[1][i], b[2][i]], self.limit);
+                let color = color::difference([a[0][i], a[1][i], a[2][i]], [b[0][i], b[1][i], b[2][i]], self.limit);
                 let feature = feature::difference([a[3][i], b[3][i]], [a[4][i], b[4][i]]);
-                // The paper's colour^(1 - feature), exactly zero where the colours are equal.
-                largest[i] = largest[i].max(colour * power(colour, -feature));
+                // The paper's color^(1 - feature), exactly zero where the colors are equal.
+                largest[i] = largest[i].max(color * power(color, -feature));
             }
             self.largest[at..at + LANES].copy_from_slice(&largest);
         }
@@ -228,7 +228,7 @@ mod tests {
         let bits = |level| {
             let looks = [3, 5].map(|k| look(level, |x, y| ((x * x + k * y * y) % 37) as f32 / 30.0));
             let mut largest = plane();
-            simd::run_as(level, Compare { looks: &looks, limit: colour::largest_difference(), largest: &mut largest });
+            simd::run_as(level, Compare { looks: &looks, limit: color::largest_difference(), largest: &mut largest });
             largest.map(f32::to_bits)
         };
         let plain = bits(Level::Plain);

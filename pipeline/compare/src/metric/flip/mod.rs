@@ -9,7 +9,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-mod colour;
+mod color;
 mod contrast;
 mod exposure;
 mod feature;
@@ -74,7 +74,7 @@ pub fn hdr_map(picture: &Picture<'_>) -> (Vec<f32>, Exposures) {
 /// The largest difference among the tones.
 fn map(picture: &Picture<'_>, tones: &[Tone]) -> Vec<f32> {
     let [width, height] = picture.size;
-    let (eye, limit) = (Eye::new(), colour::largest_difference());
+    let (eye, limit) = (Eye::new(), color::largest_difference());
     let mut map = vec![0.0; width * height];
     map.par_chunks_mut(width * SIDE).enumerate().for_each_init(Scratch::default, |scratch, (band, rows)| {
         for tile in Tile::of_band(picture.size, band) {
@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn one_colour_that_differs_is_enough() {
+    fn one_color_that_differs_is_enough() {
         let (even, other) = ([0.3; 4], [0.4; 4]);
         for color in 0..3 {
             let mut test = [even.as_slice(); 3];
@@ -188,9 +188,9 @@ mod tests {
 
     #[test]
     fn even_pictures_on_paper() {
-        // L* is 50 and 60, without colour, edges or points: 10^0.7 in the part of the scale that ends at 0.95.
+        // L* is 50 and 60, without color, edges or points: 10^0.7 in the part of the scale that ends at 0.95.
         let (dark, light) = ([0.184_186_5; 9], [0.281_233_2; 9]);
-        let expected = 0.95 * 10f64.powf(0.7) / (0.4 * f64::from(colour::largest_difference()));
+        let expected = 0.95 * 10f64.powf(0.7) / (0.4 * f64::from(color::largest_difference()));
         let found = with([3, 3], &dark, &light, ldr);
         assert!((found.mean - expected).abs() < 1e-5, "{found:?} {expected}");
         assert_eq!(found.max, found.median);
@@ -199,7 +199,7 @@ mod tests {
         let shown = 2.118_872 / 2.0 * 0.6;
         let half: f64 = shown * (2.51 * shown + 0.03) / (shown * (2.43 * shown + 0.59) + 0.14);
         let difference = 116.0 * (0.85f64.cbrt() - half.cbrt());
-        let expected = 0.95 * difference.powf(0.7) / (0.4 * f64::from(colour::largest_difference()));
+        let expected = 0.95 * difference.powf(0.7) / (0.4 * f64::from(color::largest_difference()));
         assert!((found.flip.mean - expected).abs() < 1e-5, "{found:?} {expected}");
     }
 

@@ -1,4 +1,4 @@
-//! Colours: linear sRGB, the opponents that contrast is filtered in, and the space that differences are measured in.
+//! Colors: linear sRGB, the opponents that contrast is filtered in, and the space that differences are measured in.
 
 use crate::metric::elementary::power;
 
@@ -74,7 +74,7 @@ pub(super) fn opponents(rgb: [f32; 3]) -> [f32; 3] {
     [y, x - y, y - z]
 }
 
-/// Of opponents: R, G, B clamped to what a screen shows, in L*a*b* with Hunt's adjustment, by which colours fade where it
+/// Of opponents: R, G, B clamped to what a screen shows, in L*a*b* with Hunt's adjustment, by which colors fade where it
 /// is dark.
 #[inline(always)]
 pub(super) fn hunt_lab([y, xy, yz]: [f32; 3]) -> [f32; 3] {
@@ -102,7 +102,7 @@ fn distance(a: [f32; 3], b: [f32; 3]) -> f32 {
     l.abs() + (a * a + b * b).sqrt()
 }
 
-/// Large differences count less: the exponent is the paper's q_c. Exactly zero for equal colours.
+/// Large differences count less: the exponent is the paper's q_c. Exactly zero for equal colors.
 #[inline(always)]
 fn compressed_distance(a: [f32; 3], b: [f32; 3]) -> f32 {
     let distance = distance(a, b);
@@ -115,7 +115,7 @@ pub(super) fn largest_difference() -> f32 {
     compressed_distance(green, blue)
 }
 
-/// Of two adjusted colours: 0 to 1. Differences up to 0.4 of the largest, the paper's p_c, take 0.95 of the range, p_t.
+/// Of two adjusted colors: 0 to 1. Differences up to 0.4 of the largest, the paper's p_c, take 0.95 of the range, p_t.
 #[inline(always)]
 pub(super) fn difference(a: [f32; 3], b: [f32; 3], largest: f32) -> f32 {
     let (joint, distance) = (0.4 * largest, compressed_distance(a, b));
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn white_grey_and_black_have_no_colour() {
+    fn white_grey_and_black_have_no_color() {
         for (grey, lightness) in [(0.0, 0.0), (0.001, 0.903_3), (0.184_187, 50.0), (1.0, 100.0)] {
             let [l, a, b] = lab([grey; 3]);
             // Of 100, in float32.

@@ -42,7 +42,7 @@ const FIRST: u64 = 1 << 16;
 const POWER: f64 = 4.0 / 3.0;
 
 /// Samples that carry light in all trials, at least: of fewer the scatter of the trials says little.
-const LEAST_LIT: u64 = 32;
+const MIN_LIT: u64 = 32;
 
 /// Samples that are drawn in search of light. A scene in which none of so many carries any is taken for dark.
 const SEARCH: u64 = 1 << 24;
@@ -117,9 +117,9 @@ impl Search<'_> {
         sample(self.scene, self.rays, &settings, self.plan, |_| ())
     }
 
-    /// How many samples to try next where so many have this error: `most_growth` times as many at most.
-    fn more(&self, samples: u64, error: f64, most_growth: f64) -> Result<u64, SampleError> {
-        let growth = (error / self.goal.error).powf(POWER).clamp(1.5, most_growth);
+    /// How many samples to try next where so many have this error: `max_growth` times as many at most.
+    fn more(&self, samples: u64, error: f64, max_growth: f64) -> Result<u64, SampleError> {
+        let growth = (error / self.goal.error).powf(POWER).clamp(1.5, max_growth);
         let (next, most) = ((samples as f64 * growth).ceil() as u64, self.goal.most);
         if next > most { Err(SampleError::TooMany { samples, error, next, most }) } else { Ok(next) }
     }
@@ -131,11 +131,11 @@ impl Search<'_> {
             let trials = Trials::draw((scene, rays), settings, plan, goal, samples.div_ceil(TRIALS))?;
             (self.tell)(&Round::Trials(trials));
             let most = if trials.lit == 0 { SEARCH.min(goal.most) } else { goal.most };
-            if trials.lit >= LEAST_LIT || samples >= most {
+            if trials.lit >= MIN_LIT || samples >= most {
                 return Ok(trials);
             }
             // Their number varies: somewhat more samples than would do by those that were found.
-            let growth = 1.5 * LEAST_LIT as f64 / trials.lit.max(1) as f64;
+            let growth = 1.5 * MIN_LIT as f64 / trials.lit.max(1) as f64;
             samples = ((samples as f64 * growth.clamp(2.0, 16.0)) as u64).min(most);
         }
     }

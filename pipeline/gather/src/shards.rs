@@ -78,15 +78,15 @@ pub fn count(clouds: &[Cloud], slot: usize) -> u64 {
 }
 
 /// Samples drawn for each half of each cloud, and which cloud a path gathers from.
-pub struct Drawn {
+pub struct DrawnCounts {
     parts: Vec<[u64; 2]>,
     sums: [u64; 2],
 }
 
-impl Drawn {
-    pub fn of(clouds: &[Cloud]) -> Drawn {
+impl DrawnCounts {
+    pub fn of(clouds: &[Cloud]) -> DrawnCounts {
         let parts: Vec<[u64; 2]> = clouds.iter().map(|cloud| cloud.meta().drawn_by_half()).collect();
-        Drawn { sums: [0, 1].map(|half| parts.iter().map(|n| n[half]).sum()), parts }
+        DrawnCounts { sums: [0, 1].map(|half| parts.iter().map(|n| n[half]).sum()), parts }
     }
 
     /// How many clouds there are.
@@ -106,9 +106,9 @@ impl Drawn {
 
     /// The cloud whose turn it is for path `index` of the `paths` of a pixel that are added at once and gather from one
     /// half: each as often as it has samples, evenly, from a random start in [0, 1).
-    pub fn turn(&self, half: usize, index: u32, paths: u32, start: impl Fn() -> f64) -> Turn {
+    pub fn turn(&self, half: usize, index: u32, paths: u32, start: impl Fn() -> f64) -> ShardPick {
         if self.parts.len() == 1 {
-            return Turn { part: 0, weight: 1.0 };
+            return ShardPick { part: 0, weight: 1.0 };
         }
         let start = start();
         let place = |index: u32| ((start + f64::from(index)) / f64::from(paths) * self.sums[half] as f64) as u64;
@@ -119,20 +119,20 @@ impl Drawn {
         });
         let here = place(index).min(self.sums[half].saturating_sub(1));
         let Some((part, end)) = ends.enumerate().find(|(_, end)| here < *end) else {
-            return Turn { part: 0, weight: 1.0 };
+            return ShardPick { part: 0, weight: 1.0 };
         };
         let drawn = self.parts[part][half];
         // Sure of a turn, it counts for its samples however often it has one; else on average.
         let sure = u128::from(drawn) * u128::from(paths) >= u128::from(self.sums[half]);
         let turns = first_beyond(&place, paths, end) - first_beyond(&place, paths, end - drawn);
         let share = drawn as f64 / self.sums[half] as f64;
-        Turn { part, weight: if sure { share * f64::from(paths) / f64::from(turns.max(1)) } else { 1.0 } }
+        ShardPick { part, weight: if sure { share * f64::from(paths) / f64::from(turns.max(1)) } else { 1.0 } }
     }
 }
 
 /// A path's cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turn {
+pub struct ShardPick {
     pub part: usize,
     /// What the light that it gathers there is multiplied by.
     pub weight: f64,
@@ -176,8 +176,8 @@ pub fn describe(clouds: &[Cloud]) -> Vec<String> {
 mod tests {
     use super::*;
 
-    fn drawn(halves: &[u64]) -> Drawn {
-        Drawn { parts: halves.iter().map(|n| [*n; 2]).collect(), sums: [halves.iter().sum(); 2] }
+    fn drawn(halves: &[u64]) -> DrawnCounts {
+        DrawnCounts { parts: halves.iter().map(|n| [*n; 2]).collect(), sums: [halves.iter().sum(); 2] }
     }
 
     /// On paper: 2 and 3 of 5 samples. Of five paths all weights are 1; of fewer, those of a cloud that is sure of a turn
@@ -191,7 +191,7 @@ mod tests {
         for start in [0.0, 0.3, 0.999] {
             // Of two paths the first cloud may have none.
             let two = of(2, start);
-            let weight = |turn: &Turn| if turn.part == 0 { 1.0 } else { 1.2 / turns(&two, 1) };
+            let weight = |turn: &ShardPick| if turn.part == 0 { 1.0 } else { 1.2 / turns(&two, 1) };
             assert!(two.iter().all(|turn| (turn.weight - weight(turn)).abs() < 1e-15), "{two:?}");
             let five = of(5, start);
             assert_eq!([turns(&five, 0), turns(&five, 1)], [2.0, 3.0], "{start}");
@@ -205,7 +205,7 @@ mod tests {
         }
     }
 
-    fn turns(of: &[Turn], part: usize) -> f64 {
+    fn turns(of: &[ShardPick], part: usize) -> f64 {
         of.iter().filter(|turn| turn.part == part).count() as f64
     }
 

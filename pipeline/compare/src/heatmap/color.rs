@@ -1,4 +1,4 @@
-//! Errors as colours: black, violet, red, orange, yellow.
+//! Errors as colors: black, violet, red, orange, yellow.
 //!
 //! Equal steps of the error are equal steps of lightness in Oklab (Ottosson, "A perceptual color space for image
 //! processing", 2020), so the picture also reads in grey and without telling red from green.
@@ -18,16 +18,16 @@ const LIGHTEST: f64 = 0.9;
 const HUES: [f64; 2] = [285.0, 465.0];
 const CHROMA: f64 = 0.185;
 
-/// Colours from no error to the end of the scale.
+/// Colors from no error to the end of the scale.
 pub(super) fn scale() -> [[u8; 3]; STEPS] {
-    std::array::from_fn(|step| colour(step as f64 / (STEPS - 1) as f64))
+    std::array::from_fn(|step| color(step as f64 / (STEPS - 1) as f64))
 }
 
-fn colour(part: f64) -> [u8; 3] {
+fn color(part: f64) -> [u8; 3] {
     let hue = (HUES[0] + (HUES[1] - HUES[0]) * part).to_radians();
     let lightness = LIGHTEST * part;
     let wanted = CHROMA * (FRAC_PI_2 * part).sin().sqrt();
-    // Dark colours cannot be vivid: the most chroma that sRGB has is taken, by halving; black has none.
+    // Dark colors cannot be vivid: the most chroma that sRGB has is taken, by halving; black has none.
     let (mut chroma, mut step) = (wanted, wanted / 2.0);
     for _ in 0..20 {
         let shown = linear_srgb(lightness, chroma, hue).iter().all(|light| (0.0..=1.0).contains(light));
@@ -62,8 +62,8 @@ mod tests {
     use super::*;
 
     /// The paper's other direction: from sRGB to lightness and hue, degrees.
-    fn lightness_and_hue(colour: [u8; 3]) -> [f64; 2] {
-        let [r, g, b] = colour.map(|byte| {
+    fn lightness_and_hue(color: [u8; 3]) -> [f64; 2] {
+        let [r, g, b] = color.map(|byte| {
             let x = f64::from(byte) / 255.0;
             if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
         });
@@ -80,25 +80,25 @@ mod tests {
     /// and three degrees of hue beyond. Planted and caught: no reduction of chroma, a sign in a matrix.
     #[test]
     fn lightness_is_linear_in_the_error() {
-        for (step, colour) in scale().into_iter().enumerate() {
+        for (step, color) in scale().into_iter().enumerate() {
             let part = step as f64 / 255.0;
-            let [lightness, hue] = lightness_and_hue(colour);
+            let [lightness, hue] = lightness_and_hue(color);
             let (tolerance, turn) = if step < 26 { (0.04, 360.0) } else { (0.005, 3.0) };
-            assert!((lightness - LIGHTEST * part).abs() < tolerance, "{step}: {colour:?} {lightness}");
+            assert!((lightness - LIGHTEST * part).abs() < tolerance, "{step}: {color:?} {lightness}");
             let off = (hue - HUES[0] - (HUES[1] - HUES[0]) * part + 540.0).rem_euclid(360.0) - 180.0;
-            assert!(off.abs() < turn, "{step}: {colour:?} is off by {off} degrees");
+            assert!(off.abs() < turn, "{step}: {color:?} is off by {off} degrees");
         }
     }
 
     #[test]
-    fn ends_and_other_colours_are_told_apart() {
+    fn ends_and_other_colors_are_told_apart() {
         let scale = scale();
         assert_eq!(scale[0], [0; 3]);
         let [r, g, b] = scale[STEPS - 1];
         assert!(r > 230 && g > 200 && b < 80, "{:?}", scale[STEPS - 1]);
         let apart = |one: [u8; 3], two: [u8; 3]| (0..3).map(|c| one[c].abs_diff(two[c])).max().unwrap();
         for other in [ABOVE, NOT_FINITE] {
-            assert!(scale.iter().all(|colour| apart(*colour, other) > 100));
+            assert!(scale.iter().all(|color| apart(*color, other) > 100));
         }
     }
 }

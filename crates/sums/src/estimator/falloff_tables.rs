@@ -11,7 +11,7 @@ const ENTRIES: usize = 1 << (32 - 1 - SHIFT);
 /// to the other. That matters in nearly clear media alone: where light passes the other point at a grazing angle, the
 /// directional dipole has a pole.
 #[derive(Clone, Debug)]
-pub struct Radial {
+pub struct FalloffTables {
     /// Mean of `S_bare`, 1/(m² sr).
     value: Box<[f32; ENTRIES]>,
     /// Mean of `value` over a disc of this squared radius around the point, 1/(m² sr).
@@ -31,11 +31,11 @@ struct Variation {
     scatter: f64,
 }
 
-impl Radial {
+impl FalloffTables {
     /// For a surface of this size, m: nearer than that it is nearly a plane. An infinite one is a plane.
-    pub fn new(medium: &Medium, model: &dyn Bssrdf, size: f64) -> Radial {
+    pub fn new(medium: &Medium, model: &dyn Bssrdf, size: f64) -> FalloffTables {
         let table = || -> Box<[f32; ENTRIES]> { Box::new([0.0; ENTRIES]) };
-        let mut radial = Radial { value: table(), disc: table(), slope: table(), scatter: table() };
+        let mut tables = FalloffTables { value: table(), disc: table(), slope: table(), scatter: table() };
         let (nearest, farthest) = reach(medium, model);
         let known = variations(model, &directions(medium.eta), nearest, farthest, size);
         let mut slope = 0.0f64;
@@ -46,11 +46,11 @@ impl Radial {
             }
             let here = interpolate(&known, (distance / nearest).ln() / STEP.ln());
             slope = slope.max(here.slope);
-            (radial.value[k], radial.scatter[k]) = (here.value as f32, here.scatter as f32);
-            radial.slope[k] = slope as f32;
+            (tables.value[k], tables.scatter[k]) = (here.value as f32, here.scatter as f32);
+            tables.slope[k] = slope as f32;
         }
-        radial.average();
-        radial
+        tables.average();
+        tables
     }
 
     /// `∫ S 2πr dr/(πR²)`: the mean over the squared distance.
@@ -204,12 +204,12 @@ fn variation(near: &(f64, [Vec<f64>; 3]), here: &(f64, [Vec<f64>; 3]), far: &(f6
         let (near, here, far) = (&near.1[channel], &here.1[channel], &far.1[channel]);
         let n = here.len().max(1) as f64;
         let mean = here.iter().sum::<f64>() / n;
-        let radial = near.iter().zip(far).map(|(a, b)| ((a - b) / width).powi(2)).sum::<f64>() / n;
+        let tables = near.iter().zip(far).map(|(a, b)| ((a - b) / width).powi(2)).sum::<f64>() / n;
         // The next azimuth lies as many directions further on as an azimuth has.
         let turned = here.iter().cycle().skip(here.len() / 8).zip(here);
         let across = turned.take(here.len()).map(|(a, b)| ((a - b) / (PI / 4.0 * distance)).powi(2)).sum::<f64>() / n;
         sum.value += mean / 3.0;
-        sum.slope += (0.5 * (radial + across)).sqrt() / 3.0;
+        sum.slope += (0.5 * (tables + across)).sqrt() / 3.0;
         sum.scatter += (here.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt() / 3.0;
     }
     sum

@@ -2,7 +2,7 @@
 
 use crate::{
     arguments::Arguments,
-    choices::{Cameras, Chosen},
+    settings::{Cameras, Chosen},
 };
 use cli::Failure;
 use gather::Settings;

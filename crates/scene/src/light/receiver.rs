@@ -3,9 +3,9 @@
 use crate::mesh::SurfacePoint;
 use glam::DVec3;
 
-/// A ball that holds some points, and a cone that holds their normals.
+/// A sphere that holds some points, and a cone that holds their normals.
 #[derive(Clone, Copy, Debug)]
-pub struct Region {
+pub struct ReceiverBounds {
     /// Its middle, as if it were a point of the surface.
     pub(super) middle: SurfacePoint,
     /// m.
@@ -14,14 +14,14 @@ pub struct Region {
     spread: [f64; 2],
 }
 
-impl Region {
+impl ReceiverBounds {
     /// One point.
-    pub fn point(at: &SurfacePoint) -> Region {
-        Region { middle: *at, radius: 0.0, spread: [1.0, 0.0] }
+    pub fn point(at: &SurfacePoint) -> ReceiverBounds {
+        ReceiverBounds { middle: *at, radius: 0.0, spread: [1.0, 0.0] }
     }
 
     /// The region of these points; none if there are none.
-    pub fn around(points: &[SurfacePoint]) -> Option<Region> {
+    pub fn around(points: &[SurfacePoint]) -> Option<ReceiverBounds> {
         let first = points.first()?;
         let start = (DVec3::INFINITY, DVec3::NEG_INFINITY, DVec3::ZERO);
         let (low, high, sum) = points
@@ -33,11 +33,11 @@ impl Region {
         // Rounding must leave no normal outside.
         let cosine = (points.iter().map(|p| p.normal.dot(normal)).fold(1.0, f64::min) - 1e-9).max(-1.0);
         let middle = SurfacePoint { position, normal, geometric_normal: normal, ..*first };
-        Some(Region { middle, radius, spread: [cosine, (1.0 - cosine * cosine).sqrt()] })
+        Some(ReceiverBounds { middle, radius, spread: [cosine, (1.0 - cosine * cosine).sqrt()] })
     }
 
     /// The largest cosine of a normal with a direction that has this one with the middle's.
-    pub(super) fn most_cosine(&self, cosine: f64) -> f64 {
+    pub(super) fn max_cosine(&self, cosine: f64) -> f64 {
         let [cos_spread, sin_spread] = self.spread;
         if cosine >= cos_spread {
             return 1.0;
@@ -65,14 +65,14 @@ mod tests {
                 SurfacePoint { position: vector(2 * k + 1), normal, geometric_normal: normal, triangle: 0, material: 0 }
             };
             let points: Vec<SurfacePoint> = (0..5).map(point).collect();
-            let region = Region::around(&points).expect("points");
+            let region = ReceiverBounds::around(&points).expect("points");
             let direction = vector(20).normalize();
-            let most = region.most_cosine(region.middle.normal.dot(direction));
+            let most = region.max_cosine(region.middle.normal.dot(direction));
             for p in &points {
                 assert!(p.normal.dot(direction) <= most, "{index}: {} {most}", p.normal.dot(direction));
                 assert!(p.position.distance(region.middle.position) <= region.radius);
             }
         }
-        assert!(Region::around(&[]).is_none());
+        assert!(ReceiverBounds::around(&[]).is_none());
     }
 }

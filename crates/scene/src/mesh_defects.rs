@@ -6,7 +6,7 @@ use std::{collections::BTreeMap, fmt};
 
 /// Faults of the surfaces that bound media. Vertices at the same place are one, whatever their normals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Health {
+pub struct MeshDefects {
     /// Edges where the surface ends.
     pub open_edges: u64,
     /// Edges whose two triangles are wound against each other.
@@ -20,16 +20,16 @@ pub struct Health {
     pub degenerate_triangles: u64,
 }
 
-impl Health {
+impl MeshDefects {
     pub fn is_good(&self) -> bool {
-        *self == Health::default()
+        *self == MeshDefects::default()
     }
 
-    /// From counts by name as [`Health::counts`] has them; what is not named is 0.
-    pub fn from_counts(count: impl Fn(&str) -> Option<u64>) -> Health {
+    /// From counts by name as [`MeshDefects::counts`] has them; what is not named is 0.
+    pub fn from_counts(count: impl Fn(&str) -> Option<u64>) -> MeshDefects {
         let [open_edges, flipped_edges, inward_parts, duplicate_triangles, degenerate_triangles] =
-            Health::default().counts().map(|(name, _)| count(name).unwrap_or(0));
-        Health { open_edges, flipped_edges, inward_parts, duplicate_triangles, degenerate_triangles }
+            MeshDefects::default().counts().map(|(name, _)| count(name).unwrap_or(0));
+        MeshDefects { open_edges, flipped_edges, inward_parts, duplicate_triangles, degenerate_triangles }
     }
 
     /// Names as statistics have them, in order.
@@ -45,7 +45,7 @@ impl Health {
 }
 
 /// What there is to complain of, as one line.
-impl fmt::Display for Health {
+impl fmt::Display for MeshDefects {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let found = self.counts().into_iter().filter(|(_, count)| *count > 0);
         let found: Vec<String> = found.map(|(name, count)| format!("{count} {}", name.replace('_', " "))).collect();
@@ -54,22 +54,22 @@ impl fmt::Display for Health {
 }
 
 impl Scene {
-    /// Examines the surfaces of the materials that `belong`, as [`Mesh::health`] does, and counts what was left out.
-    pub fn health(&self, belong: impl Fn(u16) -> bool) -> Health {
+    /// Examines the surfaces of the materials that `belong`, as [`Mesh::defects`] does, and counts what was left out.
+    pub fn defects(&self, belong: impl Fn(u16) -> bool) -> MeshDefects {
         let left_out = |counts: &BTreeMap<u16, u64>| -> u64 {
             counts.iter().filter(|(material, _)| belong(**material)).map(|(_, count)| count).sum()
         };
-        let mut health = self.mesh.health(&belong);
-        health.duplicate_triangles += left_out(&self.duplicate_triangles);
-        health.degenerate_triangles = left_out(&self.degenerate_triangles);
-        health
+        let mut defects = self.mesh.defects(&belong);
+        defects.duplicate_triangles += left_out(&self.duplicate_triangles);
+        defects.degenerate_triangles = left_out(&self.degenerate_triangles);
+        defects
     }
 }
 
 impl Mesh {
     /// Examines the triangles whose material `belongs`, all together: a body may have several materials. Sorts, so
     /// takes n log n of n triangles.
-    pub fn health(&self, belongs: impl Fn(u16) -> bool) -> Health {
+    pub fn defects(&self, belongs: impl Fn(u16) -> bool) -> MeshDefects {
         let (places, points) = self.weld();
         let own = self.triangles.iter().filter(|t| belongs(t.material));
         let mut triangles: Vec<[u32; 3]> = own.map(|t| t.vertices.map(|i| places[i as usize])).collect();
@@ -79,7 +79,7 @@ impl Mesh {
         triangles.dedup_by_key(|t| sorted(t));
         let mut parts = Parts::new(&points, &triangles);
         let [open_edges, flipped_edges] = unmatched_edges(&triangles, |place| parts.open(place));
-        Health {
+        MeshDefects {
             open_edges,
             flipped_edges,
             inward_parts: parts.inward(),

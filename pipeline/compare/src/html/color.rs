@@ -1,15 +1,15 @@
-//! Colours of errors, in the page and in the index.
+//! Colors of errors, in the page and in the index.
 
 use serde::Serialize;
 
-/// Colour maps: sRGB codes at equal steps, linear between them.
+/// Color maps: sRGB codes at equal steps, linear between them.
 #[derive(Serialize)]
 pub(super) struct Maps {
     /// From no error to the largest that the scale has; brightness rises throughout.
     pub absolute: [[u8; 3]; 6],
     /// From the test image darker, by equal, to brighter; equally dark at both ends.
     pub signed: [[u8; 3]; 7],
-    /// NaN and infinity: far from every colour of the maps.
+    /// NaN and infinity: far from every color of the maps.
     pub not_finite: [u8; 3],
 }
 
@@ -27,7 +27,7 @@ pub(super) const MAPS: Maps = Maps {
     not_finite: [255, 0, 212],
 };
 
-/// The colour of an error as part of the scale; no number has a colour of its own.
+/// The color of an error as part of the scale; no number has a color of its own.
 pub(super) fn absolute(part: f64) -> [u8; 3] {
     if part.is_nan() {
         return MAPS.not_finite;

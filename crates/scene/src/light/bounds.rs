@@ -1,6 +1,6 @@
 //! Where lights are and what they can send, one or many of them.
 
-use super::region::Region;
+use super::receiver::ReceiverBounds;
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -9,7 +9,7 @@ const NEAR: f64 = 3.0;
 
 /// Bounds of lights that are not infinitely far away.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Extent {
+pub struct LightBounds {
     /// Box around them, m.
     pub low: DVec3,
     pub high: DVec3,
@@ -22,10 +22,10 @@ pub struct Extent {
     pub range: f64,
 }
 
-impl Extent {
+impl LightBounds {
     /// A light at one place that shines to all sides.
-    pub fn point(position: DVec3, intensity: f64) -> Extent {
-        Extent { low: position, high: position, intensity, axis: DVec3::Z, reach: PI, range: f64::INFINITY }
+    pub fn point(position: DVec3, intensity: f64) -> LightBounds {
+        LightBounds { low: position, high: position, intensity, axis: DVec3::Z, reach: PI, range: f64::INFINITY }
     }
 
     pub fn centre(&self) -> DVec3 {
@@ -33,9 +33,9 @@ impl Extent {
     }
 
     /// The bounds of both.
-    pub fn join(&self, other: &Extent) -> Extent {
+    pub fn join(&self, other: &LightBounds) -> LightBounds {
         let (axis, reach) = join_cones((self.axis, self.reach), (other.axis, other.reach));
-        Extent {
+        LightBounds {
             low: self.low.min(other.low),
             high: self.high.max(other.high),
             intensity: self.intensity + other.intensity,
@@ -63,9 +63,9 @@ fn join_cones(a: (DVec3, f64), b: (DVec3, f64)) -> (DVec3, f64) {
     ((wide.0 * cosine + across * sine).normalize(), angle)
 }
 
-/// An extent as regions are lit by it: the sphere around its box.
+/// An bounds as regions are lit by it: the sphere around its box.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ball {
+pub(super) struct LightSphere {
     centre: DVec3,
     /// m.
     radius: f64,
@@ -75,21 +75,21 @@ pub(super) struct Ball {
     range: f64,
 }
 
-impl Ball {
-    pub fn new(extent: &Extent) -> Ball {
-        Ball {
-            centre: extent.centre(),
-            radius: 0.5 * (extent.high - extent.low).length(),
-            intensity: extent.intensity,
-            axis: extent.axis,
+impl LightSphere {
+    pub fn new(bounds: &LightBounds) -> LightSphere {
+        LightSphere {
+            centre: bounds.centre(),
+            radius: 0.5 * (bounds.high - bounds.low).length(),
+            intensity: bounds.intensity,
+            axis: bounds.axis,
             // Rounding must not hide what lies on the cone.
-            cos_reach: if extent.reach < PI { (extent.reach + 1e-6).min(PI).cos() } else { -1.0 },
-            range: extent.range,
+            cos_reach: if bounds.reach < PI { (bounds.reach + 1e-6).min(PI).cos() } else { -1.0 },
+            range: bounds.range,
         }
     }
 
-    /// Whether places of the region and parts of the ball are so near to each other that distances differ much.
-    pub fn is_near(&self, region: &Region) -> bool {
+    /// Whether places of the region and parts of the sphere are so near to each other that distances differ much.
+    pub fn is_near(&self, region: &ReceiverBounds) -> bool {
         self.centre.distance(region.middle.position) < NEAR * (self.radius + region.radius)
     }
 
@@ -98,10 +98,10 @@ impl Ball {
         self.cos_reach > -1.0 || self.range < f64::INFINITY
     }
 
-    /// Light that arrives at the middle of a region, as if all of it came from the ball's centre; and as much with the
-    /// largest cosine that any place of both can have. The latter is 0 only if no place of the ball can light one of the
+    /// Light that arrives at the middle of a region, as if all of it came from the sphere's centre; and as much with the
+    /// largest cosine that any place of both can have. The latter is 0 only if no place of the sphere can light one of the
     /// region, W/m².
-    pub fn arriving(&self, region: &Region) -> [f64; 2] {
+    pub fn arriving(&self, region: &ReceiverBounds) -> [f64; 2] {
         let offset = self.centre - region.middle.position;
         let length = offset.length();
         let radius = self.radius + region.radius + 1e-9 * length;
@@ -113,14 +113,14 @@ impl Ball {
         let square = (distance * distance).max(f64::MIN_POSITIVE);
         let [cosine, most] = if length > radius {
             let cosine = region.middle.normal.dot(offset) / length;
-            [cosine.clamp(0.0, 1.0), (region.most_cosine(cosine) + radius / length).clamp(0.0, 1.0)]
+            [cosine.clamp(0.0, 1.0), (region.max_cosine(cosine) + radius / length).clamp(0.0, 1.0)]
         } else {
             [1.0; 2]
         };
         [cosine, most].map(|c| (self.intensity * c / square).min(f64::MAX / 1e9))
     }
 
-    /// Whether places within `radius` of one at `-offset` of the centre may lie in the cone of a light of the ball.
+    /// Whether places within `radius` of one at `-offset` of the centre may lie in the cone of a light of the sphere.
     fn shines_towards(&self, offset: DVec3, length: f64, radius: f64) -> bool {
         if length <= radius {
             return true;

@@ -15,7 +15,7 @@ const ACCURACY: f64 = 0.01;
 
 /// Default of `--spp`, and of the most paths that `--target-error` may take.
 const PATHS: u32 = 16;
-const MOST_PATHS: u32 = 4096;
+const MAX_PATHS: u32 = 4096;
 
 pub fn estimator(arguments: &Arguments) -> Result<Estimator, Failure> {
     if arguments.accuracy.is_some() && arguments.estimator != EstimatorName::Cut {
@@ -129,7 +129,7 @@ pub fn settings(
         width,
         height,
         crop: arguments.crop.map(|crop| inside(crop, width, height)).transpose()?,
-        paths_per_pixel: arguments.spp.unwrap_or(if arguments.target_error.is_some() { MOST_PATHS } else { PATHS }),
+        paths_per_pixel: arguments.spp.unwrap_or(if arguments.target_error.is_some() { MAX_PATHS } else { PATHS }),
         filter: match arguments.filter {
             FilterName::Box => Filter::Box,
             FilterName::Point => Filter::Point,

@@ -6,23 +6,13 @@
 //! are compared with each other; each tolerance has its reason beside it. Where the samples differ, means over clouds
 //! are, as in `statistics`. Every test names the planted errors that it was seen to catch.
 
-#[path = "invariance/expected.rs"]
 mod expected;
-#[path = "invariance/figure.rs"]
 mod figure;
-#[path = "invariance/lights.rs"]
 mod lights;
-#[path = "invariance/mirror.rs"]
 mod mirror;
-#[path = "invariance/parts.rs"]
 mod parts;
-#[path = "invariance/picture.rs"]
 mod picture;
-#[path = "invariance/place.rs"]
 mod place;
-#[path = "invariance/scale.rs"]
 mod scale;
-#[path = "invariance/tessellation.rs"]
 mod tessellation;
-#[path = "invariance/unseen.rs"]
 mod unseen;

@@ -2,7 +2,7 @@
 
 use cli::{Common, Progress, count, count_up};
 use formats::cloud::Cloud;
-use gather::{Input, Rendered, Settings, clouds, estimator::Estimator, film::Errors, render, start};
+use gather::{Input, Rendered, Settings, estimator::Estimator, film::Errors, render, shards, start};
 use sums::confidence::Estimate;
 
 pub fn render_all(input: &Input, settings: &Settings, common: &Common) -> Rendered {
@@ -129,7 +129,7 @@ impl Round<'_> {
 
     /// Samples that carry light.
     fn lit(&self) -> u64 {
-        (0..clouds::materials(self.input.clouds).len()).map(|slot| clouds::count(self.input.clouds, slot)).sum()
+        (0..shards::materials(self.input.clouds).len()).map(|slot| shards::count(self.input.clouds, slot)).sum()
     }
 
     /// The relative error of the light of a cloud in which so few samples are lit: that of their number, if it is, as the
@@ -148,7 +148,7 @@ impl Round<'_> {
     /// What to do about a cloud of this error.
     fn way_out(&self, error: f64) -> String {
         // The error of well-spread samples falls at least as their number to the power 3/4.
-        let drawn = clouds::drawn(self.input.clouds) as f64;
+        let drawn = shards::drawn(self.input.clouds) as f64;
         let needed = drawn * (error / (CLOUD_LIMITS * self.target)).powf(4.0 / 3.0);
         if self.input.clouds.len() == 1 {
             format!("sample it again with --samples {}", count_up(needed))

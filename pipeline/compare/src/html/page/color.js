@@ -1,4 +1,4 @@
-// From values to colours.
+// From values to colors.
 
 const BINS = 4096;
 
@@ -25,8 +25,8 @@ function srgbCode(linear) {
   return code;
 }
 
-/** The colour at a part, 0 to 1, of a map. */
-function mapColour(map, part) {
+/** The color at a part, 0 to 1, of a map. */
+function mapColor(map, part) {
   const place = Math.min(Math.max(part, 0), 1) * (map.length - 1);
   const index = Math.min(Math.floor(place), map.length - 2);
   return [0, 1, 2].map((i) => Math.round(map[index][i] + (map[index + 1][i] - map[index][i]) * (place - index)));
@@ -34,12 +34,12 @@ function mapColour(map, part) {
 
 /** A map in 1024 steps, as red, green and blue one after the other. */
 function mapTable(map) {
-  return Uint8ClampedArray.from(Array.from({ length: 1025 }, (_, i) => mapColour(map, i / 1024)).flat());
+  return Uint8ClampedArray.from(Array.from({ length: 1025 }, (_, i) => mapColor(map, i / 1024)).flat());
 }
 
-const mapTables = { signed: mapTable(picture.colours.signed), absolute: mapTable(picture.colours.absolute) };
+const mapTables = { signed: mapTable(picture.colors.signed), absolute: mapTable(picture.colors.absolute) };
 
-const cssColour = (rgb) => `rgb(${rgb.join(" ")})`;
+const cssColor = (rgb) => `rgb(${rgb.join(" ")})`;
 
 /**
  * How a layer, or one channel of it, is shown: numbers of the channels, and `light` (exposure and sRGB) or a range
@@ -48,10 +48,10 @@ const cssColour = (rgb) => `rgb(${rgb.join(" ")})`;
 function look(layer, channel) {
   const names = layer.channels;
   const find = (wanted) => wanted.map((name) => names.indexOf(name));
-  const [colours, vector] = [find(["R", "G", "B"]), find(["X", "Y", "Z"])];
-  const isColour = !colours.includes(-1);
+  const [colors, vector] = [find(["R", "G", "B"]), find(["X", "Y", "Z"])];
+  const isColor = !colors.includes(-1);
   const all = channel < 0;
-  if (all && isColour) return { channels: colours, light: true };
+  if (all && isColor) return { channels: colors, light: true };
   const channels = all && !vector.includes(-1) ? vector : [Math.max(channel, 0)];
   if (["R", "G", "B", "Y"].includes(names[channels[0]])) return { channels, light: true };
   return { channels, light: false, ...range(layer, channels) };

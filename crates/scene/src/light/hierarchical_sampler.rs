@@ -3,10 +3,10 @@
 
 use crate::random::BELOW_ONE;
 
-/// Sums of weights over squares of 1, 2, 4, ... cells a side, the finest first. Weights are relative to each other, and
+/// Sums of weights over normal_bins of 1, 2, 4, ... cells a side, the finest first. Weights are relative to each other, and
 /// the probability of a cell is made of the stored sums: rounding moves no density.
 #[derive(Debug)]
-pub(super) struct Pyramid {
+pub(super) struct HierarchicalSampler2d {
     levels: Vec<Level>,
     /// What a weight of 1 stands for.
     unit: f64,
@@ -35,7 +35,7 @@ impl Level {
         if inside { f64::from(self.weights[row * self.width + column]) } else { 0.0 }
     }
 
-    /// Sums over squares of two cells a side.
+    /// Sums over normal_bins of two cells a side.
     fn coarser(&self) -> Level {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let sum = |k: usize| {
@@ -46,9 +46,9 @@ impl Level {
     }
 }
 
-impl Pyramid {
+impl HierarchicalSampler2d {
     /// The grid of these weights, finite and not negative; `weight` gives one by column and row.
-    pub fn new(width: usize, height: usize, weight: impl Fn(usize, usize) -> f64) -> Pyramid {
+    pub fn new(width: usize, height: usize, weight: impl Fn(usize, usize) -> f64) -> HierarchicalSampler2d {
         let of = |k: usize| weight(k % width, k / width);
         let unit = (0..width * height).map(of).fold(0.0, f64::max);
         // Whatever has a weight keeps one: nothing becomes impossible by rounding.
@@ -58,7 +58,7 @@ impl Pyramid {
         while let Some(finer) = levels.last().filter(|l| l.weights.len() > 1) {
             levels.push(finer.coarser());
         }
-        Pyramid { levels, unit }
+        HierarchicalSampler2d { levels, unit }
     }
 
     /// Sum of all weights.
@@ -122,15 +122,15 @@ mod tests {
     #[test]
     fn cells_are_chosen_in_proportion_to_their_weights() {
         let weights = [[1.0, 0.0, 3.0, 2.0, 4.0], [0.0, 0.0, 0.5, 1.5, 1e-60], [2.0, 6.0, 0.0, 0.0, 5.0]];
-        let pyramid = Pyramid::new(5, 3, |x, y| weights[y][x]);
+        let hierarchical_sampler = HierarchicalSampler2d::new(5, 3, |x, y| weights[y][x]);
         // Weights are rounded to float32.
-        assert!((pyramid.total() - 25.0).abs() < 1e-5);
+        assert!((hierarchical_sampler.total() - 25.0).abs() < 1e-5);
         let n = 1000;
         let mut chosen = [[0u32; 5]; 3];
         let mut rest = [0.0; 2];
         for k in 0..n * n {
             let xi = [k % n, k / n].map(|i| (f64::from(i) + 0.5) / f64::from(n));
-            let cell = pyramid.choose(xi);
+            let cell = hierarchical_sampler.choose(xi);
             chosen[cell.row][cell.column] += 1;
             assert!((cell.probability - weights[cell.row][cell.column] / 25.0).abs() < 1e-6);
             (0..2).for_each(|d| rest[d] += (cell.xi[d] - 0.5) / f64::from(n * n));
@@ -143,19 +143,20 @@ mod tests {
         }
         assert!(rest.iter().all(|r| r.abs() < 1e-3), "{rest:?}");
         // What is tiny has a chance still, and a place of its own.
-        assert!(pyramid.weight(0, 4, 1) > 0.0 && pyramid.weight(0, 1, 1) == 0.0);
-        let last = pyramid.choose([1.0 - f64::EPSILON / 2.0; 2]);
+        assert!(hierarchical_sampler.weight(0, 4, 1) > 0.0 && hierarchical_sampler.weight(0, 1, 1) == 0.0);
+        let last = hierarchical_sampler.choose([1.0 - f64::EPSILON / 2.0; 2]);
         assert_eq!((last.column, last.row), (4, 2));
     }
 
     #[test]
     fn below_a_cell_the_choice_is_among_its_own() {
-        let pyramid = Pyramid::new(8, 4, |x, y| (x + 8 * y) as f64);
-        let level = pyramid.level_within(4, 4);
-        assert_eq!((level, pyramid.size(level)), (1, (4, 2)));
-        let weight = pyramid.weight(level, 3, 1);
+        let hierarchical_sampler = HierarchicalSampler2d::new(8, 4, |x, y| (x + 8 * y) as f64);
+        let level = hierarchical_sampler.level_within(4, 4);
+        assert_eq!((level, hierarchical_sampler.size(level)), (1, (4, 2)));
+        let weight = hierarchical_sampler.weight(level, 3, 1);
         assert!((weight - f64::from(22 + 23 + 30 + 31)).abs() < 1e-5);
-        let cell = pyramid.choose_below(level, Cell { column: 3, row: 1, probability: 0.25, xi: [0.999, 0.0] });
+        let cell =
+            hierarchical_sampler.choose_below(level, Cell { column: 3, row: 1, probability: 0.25, xi: [0.999, 0.0] });
         assert_eq!((cell.column, cell.row), (7, 2));
         assert!((cell.probability - 0.25 * 23.0 / weight).abs() < 1e-6);
     }
