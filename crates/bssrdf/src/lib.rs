@@ -117,9 +117,9 @@ impl Model {
 /// The values of the BSSRDF at one pair of points, one channel (method.md 1.1, 1.2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Values {
-    /// EntryRefraction and exit transmittance included, 1/(m² sr).
+    /// Entry and exit transmittance included, 1/(m² sr).
     pub full: f64,
-    /// EntryRefraction transmittance included, 1/(m² sr).
+    /// Entry transmittance included, 1/(m² sr).
     pub gather: f64,
     /// Neither, 1/(m² sr).
     pub bare: f64,

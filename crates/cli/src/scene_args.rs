@@ -22,8 +22,12 @@ pub struct SceneArgs {
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, value_parser = parse_finite, allow_hyphen_values = true)]
     pub environment_rotation: f64,
     /// Normals that cosines are taken with: interpolated from the vertices, or the triangle's as in the note
-    #[arg(long, value_name = "KIND", default_value = "shading")]
+    #[arg(long, value_name = "KIND", default_value = "shading", default_value_if("note", "true", "geometric"))]
     pub normals: Normals,
+    /// Work as the note does: triangles chosen alike, independent samples, the triangles' normals, and the roulette with
+    /// its mean rule. Options given beside it win
+    #[arg(long)]
+    pub note: bool,
     /// Size of one unit of SCENE, m
     #[arg(long, value_name = "M", default_value_t = 1.0, value_parser = parse_positive)]
     pub metres_per_unit: f64,

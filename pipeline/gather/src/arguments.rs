@@ -26,7 +26,7 @@ pub struct Arguments {
     /// name, or IMAGE.0000.exr by its place, previews and statistics likewise
     #[arg(long, value_name = "FILE.json", value_parser = file_name())]
     pub view: Option<PathBuf>,
-    /// ShardPick the camera about the vertical axis through the view's target, or through the middle of the translucent
+    /// Turn the camera about the vertical axis through the view's target, or through the middle of the translucent
     /// surfaces, in N equal steps: IMAGE.0000.exr and so on, previews and statistics likewise
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub orbit: Option<u32>,
@@ -48,13 +48,13 @@ pub struct Arguments {
     #[arg(long, value_name = "MODEL", default_value = "directional-dipole")]
     pub bssrdf: ModelName,
     /// Sum over the cloud: hierarchical (cut), by the note's roulette, or all samples
-    #[arg(long, value_name = "HOW", default_value = "cut")]
+    #[arg(long, value_name = "HOW", default_value = "cut", default_value_if("note", "true", "roulette"))]
     pub estimator: EstimatorName,
     /// Relative error that the cut may add to a pixel's scattered light [default: 0.01]
     #[arg(long, value_name = "X", value_parser = parse_accuracy)]
     pub accuracy: Option<f64>,
     /// Acceptance rule of the roulette; mean is the note's, and unbounded in variance for colored media
-    #[arg(long, value_name = "RULE", default_value = "mixture")]
+    #[arg(long, value_name = "RULE", default_value = "mixture", default_value_if("note", "true", "mean"))]
     pub roulette: RuleName,
     /// Camera paths a pixel; with --target-error, the most [default: 16; with --target-error 4096]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_048_576))]

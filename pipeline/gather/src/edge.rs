@@ -4,7 +4,7 @@
 //! A path's scattered light is `f = g s`: `g` its share that gets through the first interface, 0 where the path meets
 //! something else, and `s` the light below. Of `g` a pixel has many more values than of `f`, with the mean `G`, so
 //! `f̄ + c (G − ḡ)` has the mean of `f` for any `c` that does not look at the same paths (a control variate). Each half
-//! of of a pixel takes its `c` from the other half, and has rays of its own. A pixel may come out a little below zero: cutting
+//! of a pixel takes its `c` from the other half, and has rays of its own. A pixel may come out a little below zero: cutting
 //! that off would move the mean.
 
 use crate::{film::Layer, path::PathLight};

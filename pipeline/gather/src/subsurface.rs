@@ -30,7 +30,7 @@ impl<M> TranslucentObject<'_, M> {
     }
 }
 
-/// How the samples of a object are summed.
+/// How the samples of an object are summed.
 pub enum Method {
     Exhaustive,
     Roulette(Rates),

@@ -53,14 +53,14 @@ struct Arguments {
     #[arg(long, value_name = "NAME")]
     translucent: Vec<String>,
     /// Which triangle: by area, or every one alike as in the note
-    #[arg(long, default_value = "area")]
+    #[arg(long, default_value = "area", default_value_if("note", "true", "uniform"))]
     choice: Choice,
     /// Share of the samples that is drawn on the surfaces of one material (repeatable); the others share the rest by
     /// --choice
     #[arg(long, value_name = "MATERIAL=F", value_parser = parse_share)]
     share: Vec<(String, f64)>,
     /// Well-spread samples, or independent ones as in the note
-    #[arg(long, default_value = "stratified")]
+    #[arg(long, default_value = "stratified", default_value_if("note", "true", "independent"))]
     pattern: Pattern,
     #[command(flatten)]
     scene_args: SceneArgs,

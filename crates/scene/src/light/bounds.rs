@@ -63,7 +63,7 @@ fn join_cones(a: (DVec3, f64), b: (DVec3, f64)) -> (DVec3, f64) {
     ((wide.0 * cosine + across * sine).normalize(), angle)
 }
 
-/// An bounds as regions are lit by it: the sphere around its box.
+/// The bounding sphere of a light's bounds, by which it lights receivers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LightSphere {
     centre: DVec3,
@@ -88,7 +88,7 @@ impl LightSphere {
         }
     }
 
-    /// Whether places of the region and parts of the sphere are so near to each other that distances differ much.
+    /// Whether points of the receiver and of the sphere are so near to each other that their distances differ much.
     pub fn is_near(&self, region: &ReceiverBounds) -> bool {
         self.centre.distance(region.middle.position) < NEAR * (self.radius + region.radius)
     }
@@ -98,8 +98,8 @@ impl LightSphere {
         self.cos_reach > -1.0 || self.range < f64::INFINITY
     }
 
-    /// Light that arrives at the middle of a region, as if all of it came from the sphere's centre; and as much with the
-    /// largest cosine that any place of both can have. The latter is 0 only if no place of the sphere can light one of the
+    /// The light that arrives at the middle of a receiver, as if all of it came from the sphere's centre; and as much with the
+    /// largest cosine that any two points can have. The latter is 0 only if no point of the sphere can light one of the
     /// region, W/m².
     pub fn arriving(&self, region: &ReceiverBounds) -> [f64; 2] {
         let offset = self.centre - region.middle.position;
@@ -120,7 +120,7 @@ impl LightSphere {
         [cosine, most].map(|c| (self.intensity * c / square).min(f64::MAX / 1e9))
     }
 
-    /// Whether places within `radius` of one at `-offset` of the centre may lie in the cone of a light of the sphere.
+    /// Whether points within `radius` of one at `-offset` of the centre may lie in the cone of a light of the sphere.
     fn shines_towards(&self, offset: DVec3, length: f64, radius: f64) -> bool {
         if length <= radius {
             return true;

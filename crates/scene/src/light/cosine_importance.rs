@@ -8,10 +8,10 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 pub(super) const TILE_COLUMNS: usize = 32;
 pub(super) const TILE_ROWS: usize = 16;
 
-/// Normals are told apart by normal_bins on the sides of a cube, so many along each edge.
+/// Normals fall into bins on the sides of a cube: this many along each edge.
 const BINS: usize = 16;
 
-/// For each square of normals, the tiles' light times a cosine.
+/// For each bin of normals, the light of every tile of the sky times a cosine.
 #[derive(Debug)]
 pub(super) struct CosineImportanceTable {
     normal_bins: Vec<HierarchicalSampler2d>,

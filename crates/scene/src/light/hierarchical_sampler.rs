@@ -3,7 +3,7 @@
 
 use crate::random::BELOW_ONE;
 
-/// Sums of weights over normal_bins of 1, 2, 4, ... cells a side, the finest first. Weights are relative to each other, and
+/// Sums of weights over squares of 1, 2, 4, ... cells a side, the finest first. Weights are relative to each other, and
 /// the probability of a cell is made of the stored sums: rounding moves no density.
 #[derive(Debug)]
 pub(super) struct HierarchicalSampler2d {
@@ -35,7 +35,7 @@ impl Level {
         if inside { f64::from(self.weights[row * self.width + column]) } else { 0.0 }
     }
 
-    /// Sums over normal_bins of two cells a side.
+    /// Sums over squares of two cells a side.
     fn coarser(&self) -> Level {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let sum = |k: usize| {

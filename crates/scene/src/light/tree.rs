@@ -16,7 +16,7 @@ const MIN_SHARE: f64 = 0.5;
 /// Lights, ready to choose from.
 pub struct LightTree<'a> {
     pub(super) lights: &'a [Box<dyn Light>],
-    /// Lights that are weighed at each point: those without an bounds, or all if there are few.
+    /// Lights that are weighed at each point: those without bounds, or all if there are few.
     pub(super) single: Vec<u32>,
     /// The first is the root; the first child of a node follows it.
     nodes: Vec<Node>,

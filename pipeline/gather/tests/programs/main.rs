@@ -9,6 +9,7 @@ mod hostile;
 mod make;
 mod mutations;
 mod names;
+mod note;
 mod opaque;
 mod orbit;
 mod outlook;
