@@ -1,4 +1,4 @@
-//! Equations are cited by the numbers of docs/method.md.
+//! Equations are cited by the numbers of docs/method.md; docs/architecture.md says where those of the note are.
 
 use std::{
     fs,
@@ -52,4 +52,31 @@ fn every_equation_that_is_cited_is_in_the_document() {
         }
     }
     assert!(cited > 40, "only {cited} citations were found");
+}
+
+/// The document of the house names only files that exist, and says of every equation of the note where it is.
+///
+/// Seen to catch: a file that was renamed, a label without its row, a row with another file.
+#[test]
+fn the_architecture_and_the_code_agree() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let document = fs::read_to_string(root.join("docs/architecture.md")).expect("reads");
+    let named: Vec<&str> =
+        document.split('`').filter(|word| word.starts_with("crates/") || word.starts_with("pipeline/")).collect();
+    assert!(named.len() > 30, "only {named:?}");
+    named.iter().for_each(|name| assert!(root.join(name).exists(), "architecture.md names {name}, which is not there"));
+    let mut files = Vec::new();
+    ["crates", "pipeline"].iter().for_each(|folder| sources(&root.join(folder), &mut files));
+    let mut labels = 0;
+    for file in files {
+        let text = fs::read_to_string(&file).expect("reads");
+        let name = file.strip_prefix(&root).expect("a file of the project").to_string_lossy().into_owned();
+        for (at, tag) in text.match_indices("note: [") {
+            let label = text[at + tag.len()..].split(']').next().expect("a label");
+            let row = format!("| `[{label}]` | `{name}` |");
+            assert!(document.contains(&row), "architecture.md has no row {row}");
+            labels += 1;
+        }
+    }
+    assert_eq!(document.matches("| `[").count(), labels, "architecture.md has a row that no code bears out");
 }

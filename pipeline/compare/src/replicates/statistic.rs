@@ -22,7 +22,8 @@ pub enum Kind {
     Light,
     /// The same, of the layer whose scatter between replicates is tested too.
     Scatter,
-    /// A ratio of the radiances of two channels.
+    /// A ratio of the radiances of two channels. Statistics that were stored before have the British spelling.
+    #[serde(alias = "colour")]
     Color,
     /// The mean over pixels of their standard error, W/(m² sr): only its growth is a fault.
     Noise,
@@ -156,6 +157,14 @@ mod tests {
         assert_eq!((value("subsurface tile 0,2 R+G+B"), value("subsurface tile 2,0 R+G+B")), (7.0, 9.0));
         assert_eq!((value("subsurface tile 2,1 R/G"), value("noise B")), (1.5, 2.0));
         assert_eq!(found.len(), 3 + 3 + 2 + 27 + 3);
+    }
+
+    /// Seen to catch: the kind without its older spelling.
+    #[test]
+    fn statistics_with_the_older_spelling_are_read() {
+        let read = |word: &str| serde_json::from_str::<Kind>(word).expect("a kind");
+        assert_eq!([read("\"colour\""), read("\"color\"")], [Kind::Color; 2]);
+        assert_eq!(serde_json::to_string(&Kind::Color).expect("writes"), "\"color\"");
     }
 
     #[test]
