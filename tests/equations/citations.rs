@@ -54,7 +54,7 @@ fn every_equation_that_is_cited_is_in_the_document() {
     assert!(cited > 40, "only {cited} citations were found");
 }
 
-/// The document of the house names only files that exist, and says of every equation of the note where it is.
+/// docs/architecture.md names only files that exist, and says of every equation of the note where it is in the code.
 ///
 /// Seen to catch: a file that was renamed, a label without its row, a row with another file.
 #[test]

@@ -3,9 +3,9 @@
 
 use crate::{
     estimator::{Calibration, Estimator, Sum},
-    path::{Renderer, ThreadContext},
+    path_state::ThreadContext,
+    renderer::{Renderer, TranslucentObject},
     samples::Exit,
-    subsurface::TranslucentObject,
 };
 use bssrdf::lanes::LaneModel;
 use glam::DVec2;

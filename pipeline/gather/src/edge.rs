@@ -7,7 +7,7 @@
 //! of a pixel takes its `c` from the other half, and has rays of its own. A pixel may come out a little below zero: cutting
 //! that off would move the mean.
 
-use crate::{film::Layer, path::PathLight};
+use crate::path_light::{Layer, PathLight};
 use scene::DVec3;
 
 /// A pixel is an edge if `g` at its corners differs by more.

@@ -4,32 +4,11 @@ use crate::{
     Crop,
     edge::Edge,
     freedom::{self, Cells},
-    path::PathLight,
+    path_light::{Guide, LAYERS, Layer, Layers, PathLight},
 };
 use formats::{Channel, Image, Window};
 use scene::DVec3;
 use sums::confidence::Estimate;
-
-/// What a path's light is filed under: its first event.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(usize)]
-pub enum Layer {
-    /// Light sources and the environment, seen directly or through the first interface.
-    Emission = 0,
-    /// Through the first interface and out again without being scattered.
-    Transmission = 1,
-    /// Scattered below the first surface.
-    Subsurface = 2,
-    /// Mirrored by the first interface.
-    Specular = 3,
-    /// Reflected by an opaque surface.
-    Diffuse = 4,
-}
-
-const LAYERS: [&str; 5] = ["emission", "transmission", "subsurface", "specular", "diffuse"];
-
-/// Light of one path, by layer, W/(m² sr).
-pub type Layers = [DVec3; 5];
 
 /// Sums over the paths of one pixel.
 #[derive(Clone, Copy, Debug, Default)]
@@ -156,16 +135,6 @@ impl Errors {
 
 /// Degrees of freedom with which an error is known to an eighth of itself.
 const MANY: f64 = 32.0;
-
-/// What the ray through the pixel's centre meets first; zero where it meets nothing.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Guide {
-    pub normal: DVec3,
-    /// World position, m.
-    pub position: DVec3,
-    /// Distance along the view direction, m.
-    pub depth: f64,
-}
 
 /// The largest variance that a file holds.
 const LARGEST: DVec3 = DVec3::splat(f32::MAX as f64);

@@ -10,8 +10,11 @@ pub mod film;
 mod freedom;
 pub mod media;
 mod passes;
-pub mod path;
+mod path;
+pub mod path_light;
+pub mod path_state;
 pub mod preview;
+pub mod renderer;
 pub mod shards;
 mod subsurface;
 

@@ -6,10 +6,10 @@ use crate::{
     edge::{self, Edge},
     estimator::{Calibration, Estimator, FalloffTables},
     film::{Errors, Pixel, PixelSum},
-    path::{PathIndex, Renderer, ThreadContext},
+    path_state::{PathIndex, ThreadContext},
+    renderer::{Method, Renderer, TranslucentObject},
     samples::LitSamples,
     shards::{self, DrawnCounts},
-    subsurface::{Method, TranslucentObject},
 };
 use bssrdf::{Medium, lanes::LaneModel};
 use formats::cloud::Cloud;
@@ -66,7 +66,7 @@ impl<'a, M: LaneModel> Passes<'a, M> {
             clearance: CLEARANCE * input.scene.mesh.diagonal(),
             paths: Stream::new(settings.seed, Purpose::CameraPath),
             gathers: Stream::new(settings.seed, Purpose::Gather),
-            turns: Stream::new(settings.seed, Purpose::ShardPick),
+            shard_picks: Stream::new(settings.seed, Purpose::ShardPick),
         };
         calibration::calibrate(&mut renderer, size(settings), settings.seed);
         let mut passes = Passes {

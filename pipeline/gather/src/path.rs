@@ -2,128 +2,14 @@
 
 use crate::{
     counts::Counts,
-    estimator::{Estimator, Scratch},
-    film::{Guide, Layer, Layers},
-    shards::{DrawnCounts, ShardPick},
-    subsurface::TranslucentObject,
+    path_light::{Guide, Layer, PathLight},
+    path_state::{PathIndex, PathState, ThreadContext},
+    renderer::{Renderer, TranslucentObject},
+    shards::ShardPick,
 };
 use bssrdf::{fresnel, lanes::LaneModel};
-use scene::{
-    Camera, DVec3, Hit, NormalKind, Rays, Scene, SurfacePoint,
-    light::{Environment, LightTree, all_light_at},
-    random::{Item, Stream},
-};
-use std::{f64::consts::PI, ops::Range};
-
-/// Everything a path needs; shared by all threads.
-pub struct Renderer<'a, M> {
-    pub scene: &'a Scene,
-    pub rays: &'a Rays<'a>,
-    pub lights: LightTree<'a>,
-    pub camera: &'a Camera,
-    /// One entry for each material; none for opaque ones.
-    pub objects: Vec<Option<TranslucentObject<'a, M>>>,
-    /// What rays that escape see.
-    pub environment: Environment,
-    pub normals: NormalKind,
-    pub estimator: Estimator,
-    /// Samples of each cloud, the unlit ones included.
-    pub drawn: DrawnCounts,
-    pub paths_per_pixel: u32,
-    /// Paths of each pixel that are added at once.
-    pub pass: Range<u32>,
-    pub max_depth: u32,
-    /// How far beyond a surface a ray goes on that passes it straight, m.
-    pub clearance: f64,
-    pub paths: Stream,
-    pub gathers: Stream,
-    pub turns: Stream,
-}
-
-/// Which path.
-#[derive(Clone, Copy, Debug)]
-pub struct PathIndex {
-    pub pixel: u64,
-    /// Its number in the pixel. Even ones gather from the first half of the cloud, odd ones from the second.
-    pub path: u32,
-}
-
-/// What one thread counts and keeps between paths.
-#[derive(Clone, Debug, Default)]
-pub struct ThreadContext {
-    pub counts: Counts,
-    /// One for each material.
-    pub(crate) scratch: Vec<Scratch>,
-}
-
-impl ThreadContext {
-    /// For a scene of so many materials.
-    pub fn new(materials: usize) -> ThreadContext {
-        ThreadContext { counts: Counts::default(), scratch: vec![Scratch::default(); materials] }
-    }
-
-    pub fn scratch(&mut self, material: usize) -> &mut Scratch {
-        &mut self.scratch[material]
-    }
-}
-
-/// Light of one path, W/(m² sr).
-#[derive(Clone, Copy, Debug, Default)]
-pub struct PathLight {
-    pub layers: Layers,
-    /// All of it as each half of the cloud alone has it; of a half that the path did not gather from, what is left.
-    pub halves: [DVec3; 2],
-    /// Which share of the light below the first interface gets through to the camera; 0 without such an interface.
-    pub through: f64,
-}
-
-/// A path on its way.
-#[derive(Clone, Copy)]
-pub(crate) struct PathState {
-    origin: DVec3,
-    direction: DVec3,
-    /// The triangle that the ray starts on.
-    from: Option<u32>,
-    /// The material whose medium the ray is in.
-    inside: Option<u16>,
-    pub throughput: DVec3,
-    /// The layer of all further light, once there was an event.
-    layer: Option<Layer>,
-    events: u32,
-    /// Which half of the cloud it gathers from, if it is one.
-    pub half: usize,
-    /// Which of several clouds, if it is one.
-    pub turn: ShardPick,
-    random: Item,
-    pub dimension: u64,
-    pub key: Item,
-}
-
-impl PathState {
-    fn uniform(&mut self) -> f64 {
-        self.dimension += 1;
-        self.random.uniform(self.dimension - 1)
-    }
-
-    fn leave(&mut self, point: &SurfacePoint, direction: DVec3, event: Layer) {
-        self.origin = point.position;
-        self.direction = direction;
-        self.from = Some(point.triangle);
-        self.layer.get_or_insert(event);
-    }
-}
-
-impl PathLight {
-    /// Files light under the path's layer, or under `layer` if nothing happened to it yet.
-    fn add(&mut self, state: &PathState, layer: Layer, radiance: DVec3) {
-        self.add_halves(state, layer, radiance, [radiance; 2]);
-    }
-
-    pub(crate) fn add_halves(&mut self, state: &PathState, layer: Layer, radiance: DVec3, halves: [DVec3; 2]) {
-        self.layers[state.layer.unwrap_or(layer) as usize] += state.throughput * radiance;
-        self.halves.iter_mut().zip(halves).for_each(|(sum, half)| *sum += state.throughput * half);
-    }
-}
+use scene::{DVec3, Hit, SurfacePoint, light::all_light_at};
+use std::f64::consts::PI;
 
 /// Dimensions of the random numbers that one branch of a path may use.
 const BRANCH: u64 = 1 << 32;
@@ -163,7 +49,7 @@ impl<M: LaneModel> Renderer<'_, M> {
         // The first path of this half, at `path` or after it.
         let first = |path: u32| (path + 1 - half) / 2;
         let (start, end) = (first(self.pass.start), first(self.pass.end));
-        let random = || self.turns.item(index.pixel).uniform(u64::from(2 * start + half));
+        let random = || self.shard_picks.item(index.pixel).uniform(u64::from(2 * start + half));
         self.drawn.turn(half as usize, index.path / 2 - start, end - start, random)
     }
 

@@ -1,41 +1,15 @@
 //! The light that leaves a translucent surface scattered: sums over the halves of a cloud.
 
 use crate::{
-    estimator::{Calibration, Cut, Estimator, Exhaustive, FalloffTables, Rates, Roulette, Scratch, Sum},
-    film::Layer,
-    path::{PathLight, PathState, Renderer, ThreadContext},
-    samples::{Exit, LitSamples},
+    estimator::{Cut, Estimator, Exhaustive, Roulette, Scratch, Sum},
+    path_light::{Layer, PathLight},
+    path_state::{PathState, ThreadContext},
+    renderer::{Method, Renderer, TranslucentObject},
+    samples::Exit,
     shards::ShardPick,
 };
-use bssrdf::{Medium, lanes::LaneModel, simd};
+use bssrdf::{lanes::LaneModel, simd};
 use scene::{DVec3, SurfacePoint};
-
-/// A translucent material with its medium and its samples.
-pub struct TranslucentObject<'a, M> {
-    pub medium: Medium,
-    pub model: M,
-    /// `σ̃_t` of light that is not scattered, 1/m.
-    pub unscattered: [f64; 3],
-    pub method: Method,
-    /// What the accuracy asked of the cut is multiplied by, see [`crate::calibration`].
-    pub calibration: Calibration,
-    /// The two independent halves of each cloud.
-    pub parts: Vec<[LitSamples<'a>; 2]>,
-}
-
-impl<M> TranslucentObject<'_, M> {
-    /// Nothing leaves it scattered.
-    pub fn is_dark(&self) -> bool {
-        self.medium.is_clear() || self.parts.iter().flatten().all(|samples| samples.is_empty())
-    }
-}
-
-/// How the samples of an object are summed.
-pub enum Method {
-    Exhaustive,
-    Roulette(Rates),
-    Cut(FalloffTables),
-}
 
 /// A gather is never asked for more than this: beyond, the cut's prediction of its own error means nothing.
 const LOOSEST: f64 = 0.5;
@@ -61,7 +35,7 @@ impl<M: LaneModel> Renderer<'_, M> {
             let key = state.key.bits(2 * state.dimension + half as u64);
             let exit = Exit::new(point.position, normal, key);
             let share = state.throughput.max_element();
-            let scratch = &mut context.scratch[point.material as usize];
+            let scratch = context.scratch(point.material as usize);
             let sum = match part {
                 Some(part) => self.sum(object, half, part, &exit, share, scratch),
                 None => self.whole(object, half, &exit, share, scratch),

@@ -159,7 +159,7 @@ mod tests {
         assert_eq!(found.len(), 3 + 3 + 2 + 27 + 3);
     }
 
-    /// Seen to catch: the kind without its older spelling.
+    /// Seen to catch: the attribute left out.
     #[test]
     fn statistics_with_the_older_spelling_are_read() {
         let read = |word: &str| serde_json::from_str::<Kind>(word).expect("a kind");
