@@ -1,4 +1,4 @@
-//! `contact-sheet -o SHEET.png TITLE=FILE.png ...`: pictures side by side, made smaller, each with its title.
+//! `contact-sheet -o SHEET.png TITLE=FILE.png ...`: puts pictures side by side, reduced, each with its title.
 
 mod sheet;
 
@@ -27,8 +27,8 @@ struct Arguments {
     side: u16,
 }
 
-/// Most pictures of a sheet.
-const MOST: usize = 256;
+/// The largest number of pictures on a sheet.
+const MAX_PICTURES: usize = 256;
 
 fn main() {
     let arguments = Arguments::parse();
@@ -36,8 +36,8 @@ fn main() {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if arguments.pictures.len() > MOST {
-        return Err(Failure::usage(format!("{} pictures; a sheet takes {MOST}", arguments.pictures.len())));
+    if arguments.pictures.len() > MAX_PICTURES {
+        return Err(Failure::usage(format!("{} pictures; a sheet takes {MAX_PICTURES}", arguments.pictures.len())));
     }
     let pictures: Vec<_> = arguments.pictures.iter().map(|text| titled(text)).collect::<Result<_, _>>()?;
     let mut files = Files::default();

@@ -1,4 +1,4 @@
-//! Cells in columns: a picture, its title below.
+//! A sheet of cells in columns, each a picture with its title below.
 
 use picture::{Picture, font};
 
@@ -8,7 +8,7 @@ const PAPER: [u8; 3] = [24, 24, 26];
 const INK: [[u8; 3]; 2] = [[235, 232, 225], [150, 148, 142]];
 
 pub struct Cell {
-    /// Lines; the first is the brightest.
+    /// Lines of the title; the first is the brightest.
     pub title: Vec<String>,
     pub picture: Picture,
 }
