@@ -4,7 +4,7 @@ use crate::meshes::World;
 use bssrdf::{Medium, Model};
 use formats::{
     atomic::Output,
-    cloud::{self, Cloud, Options, Shard},
+    cloud::{self, Cloud, LightUnit, Normals, Options, Shard},
 };
 use gather::{
     Filter,
@@ -58,13 +58,13 @@ pub fn sampled_with(world: &World, sampling: &Sampling, normals: NormalKind) -> 
         options: Options {
             seed: sampling.seed,
             shard: sampling.shard,
-            choice: sampling.choice.name().into(),
-            pattern: sampling.pattern.name().into(),
+            choice: sampling.choice,
+            pattern: sampling.pattern,
             shares,
-            normals: if normals == NormalKind::Geometric { "geometric" } else { "shading" }.into(),
+            normals: if normals == NormalKind::Geometric { Normals::Geometric } else { Normals::Shading },
             metres_per_unit: 1.0,
-            light_unit: "radiometric".into(),
-            emission_unit: "radiometric".into(),
+            light_unit: LightUnit::Radiometric,
+            emission_unit: LightUnit::Radiometric,
             environment: "0,0,0".into(),
         },
     };

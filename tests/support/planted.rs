@@ -1,7 +1,9 @@
 //! Clouds of samples that a test chooses, ordered and filed as phase one does with its own.
 
 use crate::pipeline::filed;
-use formats::cloud::{Cloud, Content, Group, Meta, Options, Record, Sample, SampledMaterial, Shard};
+use formats::cloud::{
+    Choice, Cloud, Content, Group, LightUnit, Meta, Normals, Options, Pattern, Record, Sample, SampledMaterial, Shard,
+};
 use sample_surface::{Sampled, hierarchy};
 use std::collections::BTreeMap;
 
@@ -57,13 +59,13 @@ fn facts() -> Meta {
     let options = Options {
         seed: 0,
         shard: Shard::ALONE,
-        choice: "area".into(),
-        pattern: "independent".into(),
+        choice: Choice::Area,
+        pattern: Pattern::Independent,
         shares: Vec::new(),
-        normals: "geometric".into(),
+        normals: Normals::Geometric,
         metres_per_unit: 1.0,
-        light_unit: "radiometric".into(),
-        emission_unit: "radiometric".into(),
+        light_unit: LightUnit::Radiometric,
+        emission_unit: LightUnit::Radiometric,
         environment: "0,0,0".into(),
     };
     let material = SampledMaterial { name: "test".into(), index: 0, halves: [Group::default(); 2], area_m2: 1.0 };

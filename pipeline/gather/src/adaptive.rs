@@ -1,7 +1,7 @@
 //! How many paths: as many as asked for, or as an error takes.
 
 use cli::{Common, Progress, count, count_up};
-use formats::cloud::Cloud;
+use formats::cloud::{Cloud, Pattern};
 use gather::{Input, Rendered, Settings, estimator::Estimator, film::Errors, render, shards, start};
 use sums::confidence::Estimate;
 
@@ -135,7 +135,7 @@ impl Round<'_> {
     /// The relative error of the light of a cloud in which so few samples are lit: that of their number, if it is, as the
     /// samples are, well spread or independent. The halves of the cloud may agree by luck. None is expected of a dark cloud.
     fn error_of_few(&self) -> f64 {
-        let stratified = |cloud: &Cloud| cloud.meta().options.pattern == "stratified";
+        let stratified = |cloud: &Cloud| cloud.meta().options.pattern == Pattern::Stratified;
         let lit = self.lit().max(1) as f64;
         let independent = lit.powf(-0.5);
         match self.lit() {

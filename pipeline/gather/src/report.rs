@@ -69,8 +69,8 @@ impl Facts<'_> {
             _ => put("pcsss/clouds", Attribute::Texts(shards::describe(self.clouds))),
         }
         put("pcsss/metresPerUnit", Attribute::Double(first.options.metres_per_unit));
-        put("pcsss/lightUnit", Attribute::Text(first.options.light_unit.clone()));
-        put("pcsss/emissionUnit", Attribute::Text(first.options.emission_unit.clone()));
+        put("pcsss/lightUnit", Attribute::Text(first.options.light_unit.to_string()));
+        put("pcsss/emissionUnit", Attribute::Text(first.options.emission_unit.to_string()));
         put("pcsss/originM", Attribute::Vector(first.exchange_origin_m()));
         put("pcsss/seed", Attribute::Text(self.settings.seed.to_string()));
         put("pcsss/bssrdf", text(self.settings.model.name()));

@@ -3,7 +3,7 @@
 use bssrdf::{Medium, Model, built_in};
 use formats::{
     atomic::Output,
-    cloud::{self, Cloud, Options, Shard},
+    cloud::{self, Cloud, LightUnit, Normals, Options, Shard},
 };
 use gather::{
     Filter, Input,
@@ -48,13 +48,13 @@ fn sampling(choice: Choice, pattern: Pattern, normals: NormalKind) -> Settings {
         options: Options {
             seed: 0,
             shard: Shard::ALONE,
-            choice: choice.name().into(),
-            pattern: pattern.name().into(),
+            choice,
+            pattern,
             shares: Vec::new(),
-            normals: if normals == NormalKind::Shading { "shading" } else { "geometric" }.into(),
+            normals: if normals == NormalKind::Shading { Normals::Shading } else { Normals::Geometric },
             metres_per_unit: 1.0,
-            light_unit: "radiometric".into(),
-            emission_unit: "radiometric".into(),
+            light_unit: LightUnit::Radiometric,
+            emission_unit: LightUnit::Radiometric,
             environment: "0,0,0".into(),
         },
     }
