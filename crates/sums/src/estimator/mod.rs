@@ -39,8 +39,8 @@ pub enum Estimator {
 
 impl Estimator {
     /// All estimators with their default parameters, the default estimator first.
-    pub const ALL: &[Estimator] =
-        &[Estimator::Cut { accuracy: 0.01 }, Estimator::Roulette(Rule::Mixture), Estimator::Exhaustive];
+    pub const ALL: [Estimator; 3] =
+        [Estimator::Cut { accuracy: 0.01 }, Estimator::Roulette(Rule::Mixture), Estimator::Exhaustive];
 
     /// The word that users type.
     pub fn name(self) -> &'static str {

@@ -27,7 +27,7 @@ pub enum Rule {
 
 impl Rule {
     /// All rules, the default one first.
-    pub const ALL: &[Rule] = &[Rule::Mixture, Rule::Mean, Rule::Min];
+    pub const ALL: [Rule; 3] = [Rule::Mixture, Rule::Mean, Rule::Min];
 
     /// The word that users type.
     pub fn name(self) -> &'static str {
