@@ -1,60 +1,27 @@
 //! Sums over a cloud at any point, by any model and estimator: phase two without a camera.
 
-use bssrdf::{
-    Medium, Model,
-    lanes::{BetterLanes, DirectionalLanes, LaneModel, StandardLanes},
-    simd,
-};
+use bssrdf::{Medium, Model};
 use formats::cloud::Cloud;
 use gather::{
-    estimator::{Calibration, Cut, Estimator, Exhaustive, FalloffTables, Roulette, Scratch, Sum},
+    Summation,
+    estimator::{Calibration, Estimator, Scatterer, Scratch, Sum},
     samples::{Exit, LitSamples},
 };
 use glam::DVec3;
-use std::sync::OnceLock;
+use std::{
+    f64::consts::SQRT_2,
+    sync::{Arc, LazyLock},
+};
 
-/// A medium under one model, ready for sums over samples.
-pub struct Scatterer {
-    model: Model,
-    medium: Medium,
-    /// Only the cut needs it.
-    tables: OnceLock<FalloffTables>,
+/// The sum over samples, without a calibration.
+pub fn sum(scatterer: &Scatterer, samples: &LitSamples, exit: &Exit, estimator: Estimator) -> Sum {
+    static UNCALIBRATED: LazyLock<Calibration> = LazyLock::new(Calibration::default);
+    estimator.sum(scatterer, &UNCALIBRATED, samples, exit, &mut Scratch::default())
 }
 
-impl Scatterer {
-    pub fn new(model: Model, medium: &Medium) -> Scatterer {
-        Scatterer { model, medium: medium.clone(), tables: OnceLock::new() }
-    }
-
-    /// The tables that the cut decides by.
-    pub fn tables(&self) -> &FalloffTables {
-        self.tables.get_or_init(|| FalloffTables::new(&self.medium, &*self.model.of(&self.medium), f64::INFINITY))
-    }
-
-    /// The sum over samples, with the widest vectors there are.
-    pub fn sum(&self, samples: &LitSamples, exit: &Exit, estimator: Estimator) -> Sum {
-        match self.model {
-            Model::DirectionalDipole => self.sum_with::<DirectionalLanes>(samples, exit, estimator),
-            Model::BetterDipole => self.sum_with::<BetterLanes>(samples, exit, estimator),
-            Model::StandardDipole => self.sum_with::<StandardLanes>(samples, exit, estimator),
-        }
-    }
-
-    fn sum_with<M: LaneModel>(&self, samples: &LitSamples, exit: &Exit, estimator: Estimator) -> Sum {
-        let model = &M::new(&self.medium);
-        match estimator {
-            Estimator::Exhaustive => simd::dispatch(Exhaustive { model, samples, exit }),
-            Estimator::Roulette(rule) => {
-                let rates = rule.rates(self.model.of(&self.medium).transport());
-                simd::dispatch(Roulette { model, samples, exit, rates })
-            }
-            Estimator::Cut { accuracy } => {
-                let (tables, accuracy, scratch) = (self.tables(), accuracy as f32, &mut Scratch::default());
-                let calibration = &Calibration::default();
-                simd::dispatch(Cut { model, samples, tables, exit, accuracy, calibration, scratch })
-            }
-        }
-    }
+/// A medium under a model, on a plane.
+pub fn scatterer(model: Model, medium: &Medium) -> Scatterer {
+    Scatterer::new(model, medium, f64::INFINITY)
 }
 
 /// A point that light leaves from.
@@ -67,43 +34,36 @@ pub struct Point {
 
 /// A cloud lit into a medium, ready for sums at any point of its first material.
 pub struct Lit<'a> {
-    scatterer: Scatterer,
-    halves: [LitSamples<'a>; 2],
-    drawn: [f64; 2],
+    summation: Summation<'a>,
     origin: DVec3,
 }
 
 impl<'a> Lit<'a> {
     pub fn new(cloud: &'a Cloud, medium: &Medium, model: Model) -> Lit<'a> {
-        let meta = cloud.meta();
-        Lit {
-            scatterer: Scatterer::new(model, medium),
-            halves: meta.materials[0].halves.map(|half| LitSamples::new(cloud, &half, medium.eta)),
-            drawn: meta.drawn_by_half().map(|n| n as f64),
-            origin: DVec3::from_array(meta.origin_m),
-        }
+        let clouds = std::slice::from_ref(cloud);
+        let summation = Summation::of_clouds(Arc::new(scatterer(model, medium)), clouds, 0);
+        Lit { summation, origin: DVec3::from_array(cloud.meta().origin_m) }
     }
 
-    /// The sum over one half of the cloud; `key` chooses the random numbers.
+    fn exit(&self, point: Point, key: u64) -> Exit {
+        Exit::new(point.position - self.origin, point.normal, key)
+    }
+
+    /// The sum over one half of the cloud; `key` selects the random numbers.
     pub fn sum(&self, half: usize, estimator: Estimator, point: Point, key: u64) -> Sum {
-        let exit = Exit::new(point.position - self.origin, point.normal, key);
-        self.scatterer.sum(&self.halves[half], &exit, estimator)
+        self.summation.sum(estimator, half, 0, &self.exit(point, key), &mut Scratch::default())
     }
 
     /// `L_r` at a point by one half of the cloud, W/(m² sr).
     pub fn half(&self, half: usize, estimator: Estimator, point: Point, key: u64) -> DVec3 {
-        self.sum(half, estimator, point, key).radiance / self.drawn[half]
+        self.summation.half(estimator, half, &self.exit(point, key), &mut Scratch::default())
     }
 
     /// `L_r` at a point, W/(m² sr). The accuracy of a cut is that of both halves together, whose errors are independent.
     pub fn radiance(&self, estimator: Estimator, point: Point, key: u64) -> DVec3 {
-        let of_half = match estimator {
-            Estimator::Cut { accuracy } => Estimator::Cut { accuracy: accuracy * 2f64.sqrt() },
-            other => other,
-        };
         let keys = [key, key.rotate_left(32) ^ 0x9E37_79B9_7F4A_7C15];
-        let sums = [0, 1].map(|half| self.sum(half, of_half, point, keys[half]).radiance);
-        (sums[0] + sums[1]) / (self.drawn[0] + self.drawn[1])
+        let estimator = estimator.map_accuracy(|accuracy| accuracy * SQRT_2);
+        self.summation.whole(estimator, |half| self.exit(point, keys[half]), &mut Scratch::default()).radiance
     }
 
     /// The mean of `L_r` over points by the whole sum.

@@ -15,7 +15,7 @@ use sample_surface::{Choice, Pattern, Plan, Sampled, Settings};
 use scene::{Camera, NormalKind, Projection};
 use std::path::Path;
 
-pub use crate::lit::{Lit, Point, Scatterer};
+pub use crate::lit::{Lit, Point};
 
 /// How phase one samples in a test.
 #[derive(Clone, Copy, Debug)]
