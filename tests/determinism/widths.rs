@@ -11,7 +11,7 @@ use gather::{
     samples::{Exit, LitSamples},
 };
 use glam::DVec3;
-use support::pipeline::{ESTIMATORS, MODELS, by_area, cloud};
+use test_support::pipeline::{ESTIMATORS, MODELS, by_area, cloud};
 
 /// Sums by the plain body and by every kind of vectors that this processor has.
 fn each_way<M: LaneModel>(

@@ -9,7 +9,7 @@ use formats::Image;
 use gather::{Input, Settings};
 use serde_json::{Value, json};
 use std::{fs, path::Path, slice::from_ref};
-use support::{
+use test_support::{
     meshes::World,
     pipeline::{cloud, settings, stratified},
 };

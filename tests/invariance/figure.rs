@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
 use std::{fs, path::Path};
-use support::meshes::{Mesh, World, imported, quad};
+use test_support::meshes::{Mesh, World, imported, quad};
 
 /// Primitives of this material are the figure.
 pub const FIGURE: usize = 0;

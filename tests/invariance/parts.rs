@@ -7,7 +7,7 @@ use crate::{
 use gather::estimator::{Estimator, Rule};
 use serde_json::{Value, json};
 use std::ops::Range;
-use support::meshes::World;
+use test_support::meshes::World;
 
 /// Primitives with some of the triangles each, in their order: alternately by indices into the figure's own buffers, and
 /// with vertices of their own and no indices.

@@ -12,7 +12,7 @@ use gather::{
     samples::{Exit, LitSamples},
 };
 use glam::{DVec3, Vec3};
-use support::{
+use test_support::{
     meshes::{Light, Part, World, quad, slab, world},
     pipeline::{ESTIMATORS, Lit, MODELS, Point, Scatterer, cloud, grey, settings, stratified},
     planted::{Halves, alternating, cloud_of},

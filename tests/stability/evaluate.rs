@@ -11,7 +11,7 @@ use gather::{
 };
 use glam::{DVec3, Vec3};
 use std::{cell::RefCell, rc::Rc};
-use support::{
+use test_support::{
     pipeline::{ESTIMATORS, MODELS, Scatterer},
     planted::{alternating, cloud_of},
 };

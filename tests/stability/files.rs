@@ -12,7 +12,7 @@ use glam::{DVec3, Vec3};
 use scene::{Scene, View, ViewFile};
 use serde_json::{Value, json};
 use std::path::Path;
-use support::{
+use test_support::{
     meshes::{Light, Part, quad, world},
     pipeline::{by_area, sampled, write},
     planted::{alternating, planted},

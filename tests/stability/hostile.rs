@@ -17,7 +17,7 @@ use std::{
     slice::from_ref,
     time::{Duration, Instant},
 };
-use support::{
+use test_support::{
     meshes::{Light, Part, World, quad, world},
     pipeline::{ESTIMATORS, Scatterer, grey, sampled, settings, stratified, write},
 };
