@@ -2,10 +2,10 @@
 
 use crate::accuracy::sphere::{Plane, SIDE, Setting, brute_force, model};
 use bssrdf::{DVec3, Model, built_in};
-use scene::{Camera, ImportOptions, LightUnit, Rays, Scene};
+use scene::Camera;
 use std::{error::Error, f64::consts::PI, fs, path::Path};
 use test_support::{
-    meshes::World,
+    meshes::repository_scene,
     pipeline::{Lit, MODELS, by_area, cloud, orthographic},
 };
 
@@ -33,26 +33,12 @@ fn setting(radius: f64) -> Setting {
     Setting { radius, to_light, irradiance: PI, camera: upright }
 }
 
-fn sphere_world() -> Result<World, Box<dyn Error>> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/scenes/sphere.glb");
-    let scene = Scene::import(
-        &path,
-        &ImportOptions {
-            metres_per_unit: 1.0,
-            light_unit: LightUnit::Radiometric,
-            emission_unit: LightUnit::Radiometric,
-        },
-    )?;
-    let rays = Rays::new(&scene.mesh);
-    Ok(World { scene, rays })
-}
-
 /// Renders all pictures into `folder`.
 pub fn spheres(folder: &Path) -> Result<Vec<Ratios>, Box<dyn Error>> {
     let medium = built_in(MEDIUM)?;
     let setting = setting(0.02);
     let exact = [0, 1, 2].map(|c| brute_force(&setting, &medium, c, PHOTONS, c as u64 + 1));
-    let world = sphere_world()?;
+    let world = repository_scene("sphere");
     let cloud = cloud(&world, &by_area(SAMPLES, 1));
     let mut all = Vec::new();
     for kind in MODELS {

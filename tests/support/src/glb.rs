@@ -12,6 +12,7 @@ pub const UNSIGNED_INT: u32 = 5125;
 pub const FLOAT: u32 = 5126;
 
 /// A glTF document and its binary buffer.
+#[derive(Clone)]
 pub struct Asset {
     pub json: Value,
     pub binary: Vec<u8>,

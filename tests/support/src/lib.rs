@@ -23,7 +23,7 @@ pub mod walk;
 #[cfg(feature = "transport")]
 pub mod z_test;
 
-pub use bench::{Bench, Limits, Run};
+pub use bench::{Bench, Limits, Run, data, program};
 pub use random::Random;
 
 /// How many times more samples and seeds the statistics use than in the fast run.

@@ -56,8 +56,7 @@ pub struct World {
 
 /// Writes the parts and lights to a file and imports it; `environment` is a constant radiance, W/(m² sr).
 pub fn world(parts: &[Part], lights: &[Light], environment: DVec3) -> World {
-    let bench = Bench::new();
-    scene_file(&bench.write("scene.glb", asset(parts, lights).glb()), environment)
+    imported(&asset(parts, lights), 1.0, environment)
 }
 
 /// A scene in a file of its own, in metres, under a constant environment.
@@ -70,11 +69,10 @@ pub fn repository_scene(name: &str) -> World {
     scene_file(Path::new(&data(&format!("scenes/{name}.glb"))), DVec3::ZERO)
 }
 
-/// A glTF document whose only buffer is `scene.bin`, through a file and the importer.
-pub fn imported(document: &Value, binary: &[u8], metres_per_unit: f64, environment: DVec3) -> World {
+/// A glTF asset through a file and the importer.
+pub fn imported(asset: &Asset, metres_per_unit: f64, environment: DVec3) -> World {
     let bench = Bench::new();
-    bench.write("scene.bin", binary);
-    let path = bench.write("scene.gltf", document.to_string());
+    let path = bench.write("scene.glb", asset.glb());
     imported_with(&path, &ImportOptions { metres_per_unit, ..OPTIONS }, environment)
 }
 

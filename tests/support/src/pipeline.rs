@@ -47,8 +47,15 @@ pub fn sampled(world: &World, sampling: &Sampling) -> Sampled {
 /// Phase one in memory, with these normals.
 pub fn sampled_with(world: &World, sampling: &Sampling, normals: NormalKind) -> Sampled {
     let first = world.scene.materials[0].name.clone();
-    let shares: Vec<(String, f64)> = sampling.share.map(|share| (first, share)).into_iter().collect();
-    let settings = Settings {
+    let settings = sample_settings(sampling, normals, &first);
+    let plan = Plan::new(&world.scene, &settings).expect("the scene has light and a surface");
+    sample_surface::sample(&world.scene, &world.rays, &settings, &plan, |_| ()).expect("every flux is finite")
+}
+
+/// Settings of phase one for a scene whose first material has this name.
+pub fn sample_settings(sampling: &Sampling, normals: NormalKind, first: &str) -> Settings {
+    let shares: Vec<(String, f64)> = sampling.share.map(|share| (first.into(), share)).into_iter().collect();
+    Settings {
         samples: sampling.samples,
         choice: sampling.choice,
         pattern: sampling.pattern,
@@ -67,9 +74,7 @@ pub fn sampled_with(world: &World, sampling: &Sampling, normals: NormalKind) -> 
             emission_unit: "radiometric".into(),
             environment: "0,0,0".into(),
         },
-    };
-    let plan = Plan::new(&world.scene, &settings).expect("the scene has light and a surface");
-    sample_surface::sample(&world.scene, &world.rays, &settings, &plan, |_| ()).expect("every flux is finite")
+    }
 }
 
 /// Writes what phase one made.

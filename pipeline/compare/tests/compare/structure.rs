@@ -7,11 +7,12 @@ use std::process::Command;
 
 use formats::image::{Attribute, Channel, Image};
 
-use crate::support::{Bench, picture, run};
+use crate::support::{Compare, Verdict, bench, picture};
+use test_support::Run;
 
 #[test]
 fn images_of_different_structure_cannot_be_judged() {
-    let bench = Bench::new();
+    let bench = bench();
     let smaller = Image { width: 1, height: 1, channels: vec![], ..picture() };
     let one = |name: &str| Channel { name: name.to_owned(), samples: vec![1.0] };
     let smaller = Image { channels: ["R", "G", "B", "Z", "variance.R"].map(one).to_vec(), ..smaller };
@@ -28,33 +29,33 @@ fn images_of_different_structure_cannot_be_judged() {
 
 #[test]
 fn files_that_are_no_images_cannot_be_judged() {
-    let bench = Bench::new();
-    bench.run("missing.exr", &[]).cannot_judge(&["missing.exr"]);
-    std::fs::write(bench.path("garbage.exr"), "garbage").unwrap();
-    bench.run("garbage.exr", &[]).cannot_judge(&["garbage.exr", "not an OpenEXR file"]);
-    let bytes = std::fs::read(bench.path("reference.exr")).unwrap();
-    std::fs::write(bench.path("half.exr"), &bytes[..bytes.len() / 2]).unwrap();
-    bench.run("half.exr", &[]).cannot_judge(&["half.exr", "truncated"]);
-    bench.run(".", &[]).cannot_judge(&["not a regular file"]);
+    let bench = bench();
+    bench.judge("missing.exr", &[]).cannot_judge(&["missing.exr"]);
+    bench.write("garbage.exr", "garbage");
+    bench.judge("garbage.exr", &[]).cannot_judge(&["garbage.exr", "not an OpenEXR file"]);
+    let bytes = bench.read("reference.exr");
+    bench.write("half.exr", &bytes[..bytes.len() / 2]);
+    bench.judge("half.exr", &[]).cannot_judge(&["half.exr", "truncated"]);
+    bench.judge(".", &[]).cannot_judge(&["not a regular file"]);
 }
 
 #[test]
 fn wrong_usage_cannot_be_judged() {
-    let bench = Bench::new();
+    let bench = bench();
     for options in
         [&["--max-baas", "1"][..], &["--max-bias", "NaN"], &["--max-abs=-1"], &["--max-outliers", "3"], &["third.exr"]]
     {
         let run = bench.compare(|_| (), options);
-        assert_eq!((run.code, run.stdout.as_str()), (Some(2), ""), "{options:?}");
+        assert_eq!((run.code(), run.stdout.as_str()), (Some(2), ""), "{options:?}");
         assert!(run.stderr.contains(options[0].split('=').next().unwrap()), "{}", run.stderr);
     }
-    assert_eq!(run(&mut Command::new(env!("CARGO_BIN_EXE_compare"))).code, Some(2));
+    assert_eq!(Run::of(&mut Command::new(env!("CARGO_BIN_EXE_compare"))).code(), Some(2));
 }
 
 /// Attributes of one image alone are no fault, but other inputs would not be noticed.
 #[test]
 fn a_hash_of_one_image_alone_is_told() {
-    let bench = Bench::new();
+    let bench = bench();
     let run = bench.compare(|image| image.attributes.clear(), &[]);
     run.passes();
     assert!(run.stdout.contains("pcsss/scene is in the reference only"), "{}", run.stdout);
@@ -72,27 +73,27 @@ fn a_hash_of_one_image_alone_is_told() {
 
 #[test]
 fn streams_are_no_images() {
-    let bench = Bench::new();
+    let bench = bench();
     for arguments in [["-", "test.exr"], ["test.exr", "-"]] {
-        let run = run(Command::new(env!("CARGO_BIN_EXE_compare")).args(arguments).current_dir(bench.folder.path()));
-        assert_eq!((run.code, run.stdout.as_str()), (Some(2), ""));
+        let run = Run::of(Command::new(env!("CARGO_BIN_EXE_compare")).args(arguments).current_dir(bench.folder()));
+        assert_eq!((run.code(), run.stdout.as_str()), (Some(2), ""));
         assert!(run.stderr.contains("streams are not accepted"), "{}", run.stderr);
     }
-    assert_eq!(bench.compare(|_| (), &["--json", "-"]).code, Some(2));
+    assert_eq!(bench.compare(|_| (), &["--json", "-"]).code(), Some(2));
 }
 
 #[test]
 fn one_file_twice_is_told() {
-    let bench = Bench::new();
-    let run = bench.run("reference.exr", &["--quiet"]);
-    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
-    assert!(bench.run("reference.exr", &[]).stderr.contains("are one file"));
+    let bench = bench();
+    let run = bench.judge("reference.exr", &["--quiet"]);
+    assert_eq!((run.code(), run.stderr.as_str()), (Some(0), ""));
+    assert!(bench.judge("reference.exr", &[]).stderr.contains("are one file"));
 }
 
 /// A reader that has seen enough does not change the verdict.
 #[test]
 fn a_closed_stdout_keeps_the_exit_code() {
-    let bench = Bench::new();
+    let bench = bench();
     bench.compare(|image| image.channels[0].samples[0] += 9.0, &[]);
     let mut child = Command::new(env!("CARGO_BIN_EXE_compare"))
         .args([bench.path("reference.exr"), bench.path("test.exr")])

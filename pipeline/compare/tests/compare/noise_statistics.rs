@@ -8,8 +8,7 @@ use std::path::{Path, PathBuf};
 
 use compare::replicates::{FALSE_ALARM_RATE, Judged, Kind, NoiseReport, Replicates, Summary, corrected_level, judge};
 
-mod synthetic;
-use synthetic::{Fault, SOUND, replicate};
+use crate::synthetic::{Fault, SOUND, replicate};
 
 const FOLDER: &str = "synthetic";
 
@@ -121,7 +120,7 @@ fn noise_that_grew_is_found_and_noise_that_fell_is_not() {
 #[test]
 fn pixels_that_share_an_error_are_no_evidence() {
     let report = run(1, SOUND);
-    let own = synthetic::OWN / 7.0 * (1.0f64 / 8.0 + 1.0 / 16.0).sqrt();
+    let own = crate::synthetic::OWN / 7.0 * (1.0f64 / 8.0 + 1.0 / 16.0).sqrt();
     let visible = |name: &str| of_all(std::slice::from_ref(&report), name)[0].visible;
     assert!(visible("subsurface R") > 20.0 * own);
     // Ratios of channels do not have it: it is in both.

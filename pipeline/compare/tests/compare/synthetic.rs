@@ -1,6 +1,7 @@
 //! Images as a renderer makes them: all pixels share the error of their cloud, and each has one of its own.
 
 use formats::image::{Attribute, Channel, Image};
+use test_support::Random;
 
 /// Pixels along each side.
 pub const SIZE: usize = 9;
@@ -25,37 +26,20 @@ pub struct Fault {
 /// Nothing is.
 pub const SOUND: Fault = Fault { red: 1.0, scatter: 1.0, claimed: 1.0 };
 
-/// Normally distributed numbers: splitmix64, then Box and Muller.
-struct Normal(u64);
-
-impl Normal {
-    fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn next(&mut self) -> f64 {
-        (-2.0 * (1.0 - self.uniform()).ln()).sqrt() * (std::f64::consts::TAU * self.uniform()).cos()
-    }
-}
-
 /// A replicate from the cloud of this seed: a lit object in front of black, and a layer that is black everywhere.
 pub fn replicate(seed: u64, fault: Fault) -> Image {
-    let mut normal = Normal(seed.wrapping_mul(0xd134_2543_de82_ef95));
-    let shared = 1.0 + fault.scatter * SHARED * normal.next();
+    let mut random = Random(seed.wrapping_mul(0xd134_2543_de82_ef95));
+    let shared = 1.0 + fault.scatter * SHARED * random.normal();
     let mut channels = Vec::new();
     for (name, light) in [("R", 0.5), ("G", 0.4), ("B", 0.2)] {
         let light = if name == "R" { light * fault.red } else { light };
         let mut plane = vec![0.0f32; SIZE * SIZE];
         for y in 2..SIZE {
             for x in 0..SIZE - 2 {
-                plane[y * SIZE + x] = (light * (shared + fault.scatter * OWN * normal.next())) as f32;
+                plane[y * SIZE + x] = (light * (shared + fault.scatter * OWN * random.normal())) as f32;
             }
         }
-        let variance = 1e-4 * fault.claimed * (1.0 + 0.1 * normal.next());
+        let variance = 1e-4 * fault.claimed * (1.0 + 0.1 * random.normal());
         channels.push(Channel { name: format!("variance.{name}"), samples: vec![variance as f32; SIZE * SIZE] });
         channels.push(Channel { name: format!("transmission.{name}"), samples: vec![0.0; SIZE * SIZE] });
         channels.push(Channel { name: name.to_owned(), samples: plane.clone() });

@@ -2,11 +2,11 @@
 
 use formats::image::Image;
 
-use crate::support::{Bench, HEIGHT, WIDTH, documented, key_paths, read_json, scale};
+use crate::support::{Compare, HEIGHT, Verdict, WIDTH, bench, documented, key_paths, scale};
 
 #[test]
 fn quiet_leaves_the_verdict() {
-    let bench = Bench::new();
+    let bench = bench();
     let run = bench.compare(|_| (), &["--quiet"]);
     run.passes();
     assert_eq!(run.stdout.lines().count(), 1);
@@ -15,7 +15,7 @@ fn quiet_leaves_the_verdict() {
 
 #[test]
 fn output_is_the_same_for_any_number_of_threads() {
-    let bench = Bench::new();
+    let bench = bench();
     let brighter = |image: &mut Image| scale(image, 1.37);
     let json = bench.path("report.json").display().to_string();
     let run = |threads: &str| {
@@ -31,12 +31,12 @@ fn output_is_the_same_for_any_number_of_threads() {
 
 #[test]
 fn json_holds_metrics_and_gates_also_on_failure() {
-    let bench = Bench::new();
+    let bench = bench();
     let json = bench.path("report.json");
     let change = |image: &mut Image| image.channels[0].samples[WIDTH] += 2.0;
     let options = ["--max-abs", "1", "--max-outliers", "2@1.5", "--json", json.to_str().unwrap()];
     bench.compare(change, &options).fails("max-abs 2 > 1 (beauty R)");
-    let report = read_json(&json);
+    let report = bench.json("report.json");
     assert_eq!(report["schema"], 1);
     assert_eq!(report["pass"], false);
     assert_eq!(report["verdict"], "FAIL max-abs 2 > 1 (beauty R)");
@@ -57,23 +57,23 @@ fn json_holds_metrics_and_gates_also_on_failure() {
 
 #[test]
 fn json_never_replaces_an_image_and_needs_its_folder() {
-    let bench = Bench::new();
-    let bytes = std::fs::read(bench.path("reference.exr")).unwrap();
+    let bench = bench();
+    let bytes = bench.read("reference.exr");
     let options = |name: &str| ["--json".to_owned(), bench.path(name).display().to_string()];
     let run = |name: &str| bench.compare(|_| (), &options(name).each_ref().map(String::as_str));
     run("reference.exr").cannot_judge(&["reference.exr", "--json"]);
-    assert_eq!(std::fs::read(bench.path("reference.exr")).unwrap(), bytes);
+    assert_eq!(bench.read("reference.exr"), bytes);
     run("no/report.json").cannot_judge(&["no"]);
 }
 
 /// docs/compare.md shows every key, and no key that is not there.
 #[test]
 fn the_documented_report_has_the_keys_of_a_real_one() {
-    let bench = Bench::new();
+    let bench = bench();
     let limits = bench.path("limits.json");
     std::fs::write(&limits, documented("## Limits file").to_string().replace("subsurface", "Z")).unwrap();
     let json = bench.path("report.json");
     let options = ["--limits", limits.to_str().unwrap(), "--flip", "--json", json.to_str().unwrap()];
     bench.compare(|image| scale(image, 1.01), &options).fails("max-bias");
-    assert_eq!(key_paths(&documented("<!-- report -->")), key_paths(&read_json(&json)));
+    assert_eq!(key_paths(&documented("<!-- report -->")), key_paths(&bench.json("report.json")));
 }

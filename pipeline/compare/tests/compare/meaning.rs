@@ -6,22 +6,23 @@
 
 use formats::image::{Attribute, Channel, Image, Window};
 
-use crate::support::{Bench, HEIGHT, Run, WIDTH, picture, read_json};
+use crate::support::{Compare, HEIGHT, Verdict, WIDTH, bench, picture};
+use test_support::Run;
 
 /// The limits that docs/compare.md begins with.
 const LIMITS: [&str; 6] = ["--max-bias", "0.002", "--max-relmse", "0.0005", "--max-outliers", "0@0.1"];
 
 /// Compares images of these channels, each of one value in the reference and another in the test image.
 fn channels(values: &[(&str, f32, f32)], options: &[&str]) -> Run {
-    let bench = Bench::new();
+    let bench = bench();
     let image = |of: fn(&(&str, f32, f32)) -> f32| {
         let channel =
             |all: &(&str, f32, f32)| Channel { name: all.0.to_owned(), samples: vec![of(all); WIDTH * HEIGHT] };
         Image { width: WIDTH, height: HEIGHT, channels: values.iter().map(channel).collect(), ..Image::default() }
     };
-    bench.write("reference.exr", &image(|(_, reference, _)| *reference));
-    bench.write("test.exr", &image(|(_, _, test)| *test));
-    bench.run("test.exr", options)
+    bench.write_image("reference.exr", &image(|(_, reference, _)| *reference));
+    bench.write_image("test.exr", &image(|(_, _, test)| *test));
+    bench.judge("test.exr", options)
 }
 
 #[test]
@@ -43,14 +44,14 @@ fn pictures_without_red_green_and_blue_are_judged_as_a_whole() {
 /// Other layers differ from render to render, so the limits of the picture are not theirs.
 #[test]
 fn layers_that_no_gate_looks_at_are_named() {
-    let bench = Bench::new();
+    let bench = bench();
     let change = |image: &mut Image| image.channels[3].samples.iter_mut().for_each(|z| *z += 1.0);
     let json = bench.path("report.json");
     for options in [&[][..], &LIMITS, &["--quiet"]] {
         let run = bench.compare(change, &[options, &["--json", json.to_str().unwrap()]].concat());
         run.passes();
         assert!(run.verdict().ends_with("; different but not judged: Z"), "{}", run.verdict());
-        assert_eq!(read_json(&json)["unjudged"], serde_json::json!(["Z"]));
+        assert_eq!(bench.json("report.json")["unjudged"], serde_json::json!(["Z"]));
     }
     for options in [&["--max-abs", "2", "--layer", "all"][..], &["--max-abs", "2", "--layer", "Z"]] {
         assert!(!bench.compare(change, options).stdout.contains("not judged"));
@@ -67,7 +68,7 @@ fn layers_that_no_gate_looks_at_are_named() {
 
 #[test]
 fn numbers_of_another_meaning_cannot_be_judged() {
-    let bench = Bench::new();
+    let bench = bench();
     let set = |name: &str, value: &Attribute| {
         let (name, value) = (name.to_owned(), value.clone());
         move |image: &mut Image| drop(image.attributes.insert(name, value))
@@ -98,14 +99,14 @@ fn numbers_of_another_meaning_cannot_be_judged() {
 /// A difference of images of other primaries has these too.
 #[test]
 fn a_difference_keeps_the_meaning_of_its_numbers() {
-    let bench = Bench::new();
+    let bench = bench();
     let mut image = picture();
     image.attributes.insert("whiteLuminance".to_owned(), Attribute::Float(100.0));
     image.display = Some(Window { position: [-5, 0], size: [100, 50] });
-    bench.write("reference.exr", &image);
-    bench.write("test.exr", &image);
+    bench.write_image("reference.exr", &image);
+    bench.write_image("test.exr", &image);
     let path = bench.path("difference.exr");
-    bench.run("test.exr", &["--diff-exr", path.to_str().unwrap()]).passes();
+    bench.judge("test.exr", &["--diff-exr", path.to_str().unwrap()]).passes();
     let found = Image::read(&path).unwrap();
     assert_eq!(found.display, image.display);
     assert_eq!(found.attributes["whiteLuminance"], Attribute::Float(100.0));

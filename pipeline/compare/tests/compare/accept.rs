@@ -8,7 +8,8 @@ use std::process::Command;
 
 use formats::image::Image;
 
-use crate::support::{Bench, Run, documented, key_paths, run, scale};
+use crate::support::{Compare, Verdict, bench, documented, key_paths, picture, scale};
+use test_support::{Bench, Run};
 
 const ACCEPT: [&str; 3] = ["--accept", "--reason", "a lamp was \"too\" dark\n"];
 
@@ -24,18 +25,18 @@ fn log(bench: &Bench) -> Vec<serde_json::Value> {
 
 #[test]
 fn the_reference_becomes_the_test_image_byte_by_byte() {
-    let bench = Bench::new();
-    let before = fs::read(bench.path("reference.exr")).unwrap();
+    let bench = bench();
+    let before = bench.read("reference.exr");
     let mut text = bench.path("reference.exr").into_os_string();
     text.push(".log");
     // A log whose last line was cut off keeps it.
     fs::write(&text, "{}").unwrap();
     let run = accept(&bench, |image| scale(image, 2.0), &["--max-bias", "0.1"]);
-    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{}", run.stdout);
+    assert_eq!((run.code(), run.stderr.as_str()), (Some(0), ""), "{}", run.stdout);
     let last: Vec<&str> = run.stdout.lines().rev().take(2).collect();
     assert!(last[0].starts_with("ACCEPTED ") && last[1].starts_with("FAIL max-bias 1 > 0.1"), "{}", run.stdout);
-    let after = fs::read(bench.path("reference.exr")).unwrap();
-    assert_eq!(after, fs::read(bench.path("test.exr")).unwrap());
+    let after = bench.read("reference.exr");
+    assert_eq!(after, bench.read("test.exr"));
     let lines = log(&bench);
     assert_eq!(lines.len(), 2);
     let line = &lines[1];
@@ -50,26 +51,28 @@ fn the_reference_becomes_the_test_image_byte_by_byte() {
 
 #[test]
 fn what_is_the_reference_already_is_not_logged() {
-    let bench = Bench::new();
+    let bench = bench();
     let run = accept(&bench, |_| (), &[]);
-    assert_eq!(run.code, Some(0));
+    assert_eq!(run.code(), Some(0));
     assert!(run.verdict().starts_with("UNCHANGED "), "{}", run.stdout);
     assert!(!bench.path("reference.exr.log").exists());
 }
 
 #[test]
 fn the_time_is_that_of_source_date_epoch() {
-    let bench = Bench::new();
+    let bench = bench();
     bench.compare(|image| scale(image, 2.0), &[]);
     let with = |epoch: &str| {
-        run(Command::new(env!("CARGO_BIN_EXE_compare"))
-            .args([bench.path("reference.exr"), bench.path("test.exr")])
-            .args(ACCEPT)
-            .env("SOURCE_DATE_EPOCH", epoch))
+        Run::of(
+            Command::new(env!("CARGO_BIN_EXE_compare"))
+                .args([bench.path("reference.exr"), bench.path("test.exr")])
+                .args(ACCEPT)
+                .env("SOURCE_DATE_EPOCH", epoch),
+        )
     };
     with("tomorrow").cannot_judge(&["SOURCE_DATE_EPOCH"]);
     assert!(log(&bench).is_empty());
-    assert_eq!(with("1234").code, Some(0));
+    assert_eq!(with("1234").code(), Some(0));
     assert_eq!(log(&bench)[0]["time"], 1234);
 }
 
@@ -77,13 +80,13 @@ fn the_time_is_that_of_source_date_epoch() {
 /// other's `new`, and lines that were lost.
 #[test]
 fn acceptances_at_once_are_one_chain() {
-    let bench = Bench::new();
-    let first = fs::read(bench.path("reference.exr")).unwrap();
+    let bench = bench();
+    let first = bench.read("reference.exr");
     let start = |number: u8| {
-        let mut image = crate::support::picture();
+        let mut image = picture();
         scale(&mut image, 2.0 + f32::from(number));
         let name = format!("test{number}.exr");
-        bench.write(&name, &image);
+        bench.write_image(&name, &image);
         let images = [bench.path("reference.exr"), bench.path(&name)];
         let mut command = Command::new(env!("CARGO_BIN_EXE_compare"));
         command.args(images).args(["--accept", "--reason", "why", "--threads", "1", "--quiet"]);
@@ -100,15 +103,15 @@ fn acceptances_at_once_are_one_chain() {
         assert_eq!(line["old"], before);
         before = line["new"].as_str().unwrap().to_owned();
     }
-    assert_eq!(before, blake3::hash(&fs::read(bench.path("reference.exr")).unwrap()).to_hex().to_string());
+    assert_eq!(before, blake3::hash(&bench.read("reference.exr")).to_hex().to_string());
 }
 
 #[test]
 fn a_refusal_changes_nothing() {
-    let bench = Bench::new();
-    let before = fs::read(bench.path("reference.exr")).unwrap();
+    let bench = bench();
+    let before = bench.read("reference.exr");
     let unchanged = || {
-        assert_eq!(fs::read(bench.path("reference.exr")).unwrap(), before);
+        assert_eq!(bench.read("reference.exr"), before);
         assert!(!bench.path("reference.exr.log").exists());
     };
     let hole = |image: &mut Image| image.channels[4].samples[0] = f32::INFINITY;
@@ -119,16 +122,16 @@ fn a_refusal_changes_nothing() {
     accept(&bench, |image| scale(image, 2.0), &["--json", bench.path("no/r.json").to_str().unwrap()])
         .cannot_judge(&["no/r.json"]);
     unchanged();
-    bench.run("reference.exr", &ACCEPT).cannot_judge(&["by itself"]);
+    bench.judge("reference.exr", &ACCEPT).cannot_judge(&["by itself"]);
     for wrong in [&["--accept"][..], &["--accept", "--reason", " "], &["--reason", "why"]] {
-        assert_eq!(bench.compare(|image| scale(image, 2.0), wrong).code, Some(2));
+        assert_eq!(bench.compare(|image| scale(image, 2.0), wrong).code(), Some(2));
         unchanged();
     }
     // A log that cannot be written: no silent update.
     fs::create_dir(bench.path("reference.exr.log")).unwrap();
     accept(&bench, |image| scale(image, 2.0), &[]).cannot_judge(&["reference.exr.log"]);
-    assert_eq!(fs::read(bench.path("reference.exr")).unwrap(), before);
+    assert_eq!(bench.read("reference.exr"), before);
     fs::remove_dir(bench.path("reference.exr.log")).unwrap();
-    assert_eq!(accept(&bench, hole, &["--allow-nonfinite"]).code, Some(0));
+    assert_eq!(accept(&bench, hole, &["--allow-nonfinite"]).code(), Some(0));
     assert_eq!(log(&bench).len(), 1);
 }

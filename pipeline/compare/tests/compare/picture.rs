@@ -4,11 +4,9 @@
 //! finite with a difference of zero, the picture's finiteness unchecked, sums over one piece for each thread. (The sum of
 //! a map of FLIP alone is nearly always exact in float64, and would not show that.)
 
-use std::path::Path;
-use std::process::Command;
-
 use formats::image::{Channel, Image};
 use serde_json::Value;
+use test_support::Bench;
 
 /// Wider and higher than a tile of the metrics.
 const SIZE: [usize; 2] = [270, 140];
@@ -23,29 +21,27 @@ fn picture(noise: f32) -> Image {
     Image { width: SIZE[0], height: SIZE[1], channels, ..Image::default() }
 }
 
-/// Exit code, stdout, stderr and the report, if there is one.
-fn compare(folder: &Path, test: &Image, options: &[&str]) -> (Option<i32>, String, String, Value) {
-    let [reference, other, report] = ["reference.exr", "test.exr", "report.json"].map(|name| folder.join(name));
-    std::fs::write(&reference, picture(0.0).encode().unwrap()).unwrap();
-    std::fs::write(&other, test.encode().unwrap()).unwrap();
+/// A comparison with the picture without noise, and its report, if there is one.
+fn compare(bench: &Bench, test: &Image, options: &[&str]) -> (Option<i32>, String, String, Value) {
+    bench.write_image("reference.exr", &picture(0.0));
+    bench.write_image("test.exr", test);
+    let report = bench.path("report.json");
     std::fs::remove_file(&report).ok();
-    let program = env!("CARGO_BIN_EXE_compare");
-    let output = Command::new(program).args([&reference, &other]).args(options).arg("--json").arg(&report).output();
-    let output = output.unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    let json = std::fs::read(&report).map_or(Value::Null, |bytes| serde_json::from_slice(&bytes).unwrap());
-    (output.status.code(), text(output.stdout), text(output.stderr), json)
+    let files = ["reference.exr", "test.exr", "--json", "report.json"];
+    let run = bench.run("compare", &[&files, options].concat());
+    let code = run.code();
+    (code, run.stdout, run.stderr, if report.exists() { bench.json("report.json") } else { Value::Null })
 }
 
 #[test]
 fn flip_is_measured_when_asked_for() {
-    let folder = tempfile::tempdir().unwrap();
-    let (code, stdout, _, json) = compare(folder.path(), &picture(0.1), &[]);
+    let bench = Bench::new();
+    let (code, stdout, _, json) = compare(&bench, &picture(0.1), &[]);
     assert_eq!(code, Some(0));
     assert!(stdout.contains("PSNR") && stdout.contains("SSIM") && !stdout.contains("-FLIP"), "{stdout}");
     assert!(json["picture"]["psnr"].as_f64() > Some(10.0) && json["picture"]["ssim"].as_f64() < Some(1.0));
     assert!(json["picture"]["flip_hdr"].is_null() && json["picture"]["missing"][0] == "flip: not asked for");
-    let (_, stdout, _, json) = compare(folder.path(), &picture(0.1), &["--flip"]);
+    let (_, stdout, _, json) = compare(&bench, &picture(0.1), &["--flip"]);
     assert!(stdout.contains("LDR-FLIP mean 0.") && stdout.contains("HDR-FLIP mean 0."), "{stdout}");
     for key in ["mean", "median", "p99", "max"] {
         assert!(json["picture"]["flip_ldr"][key].as_f64() > Some(0.0), "{json}");
@@ -56,18 +52,17 @@ fn flip_is_measured_when_asked_for() {
 
 #[test]
 fn flip_judges_beside_another_gate_only() {
-    let folder = tempfile::tempdir().unwrap();
-    let run = |noise, options: &[&str]| compare(folder.path(), &picture(noise), options);
+    let bench = Bench::new();
+    let run = |noise, options: &[&str]| compare(&bench, &picture(noise), options);
     let (code, stdout, stderr, _) = run(0.0, &["--max-flip", "0.5"]);
     assert_eq!((code, stdout.as_str(), stderr.lines().count()), (Some(2), "", 1), "{stderr}");
     assert!(["--max-flip", "misses", "--max-bias"].iter().all(|word| stderr.contains(word)), "{stderr}");
     assert_eq!(run(0.0, &["--max-flip", "0", "--max-bias", "0"]).0, Some(0));
     // From a limits file too.
-    let limits = folder.path().join("limits.json");
     let text = r#"{"schema": 1, "limits": [{"gate": "max-flip", "limit": 0.5, "reason": "seen"}]}"#;
-    std::fs::write(&limits, text).unwrap();
-    assert_eq!(run(0.0, &["--limits", limits.to_str().unwrap()]).0, Some(2));
-    assert_eq!(run(0.0, &["--limits", limits.to_str().unwrap(), "--max-abs", "0"]).0, Some(0));
+    bench.write("limits.json", text);
+    assert_eq!(run(0.0, &["--limits", "limits.json"]).0, Some(2));
+    assert_eq!(run(0.0, &["--limits", "limits.json", "--max-abs", "0"]).0, Some(0));
     let beside = ["--max-flip", "0.001", "--max-bias", "1", "--layer", "all"];
     let (code, stdout, _, json) = run(0.3, &beside);
     assert_eq!(code, Some(1));
@@ -78,11 +73,11 @@ fn flip_judges_beside_another_gate_only() {
 
 #[test]
 fn a_picture_that_is_not_finite_never_passes_flip() {
-    let folder = tempfile::tempdir().unwrap();
+    let bench = Bench::new();
     let mut test = picture(0.0);
     test.channels[0].samples[300] = f32::NAN;
     let options = ["--max-flip", "1", "--max-outliers", "1@0", "--allow-nonfinite"];
-    let (code, stdout, _, json) = compare(folder.path(), &test, &options);
+    let (code, stdout, _, json) = compare(&bench, &test, &options);
     assert_eq!(code, Some(1));
     assert!(stdout.contains("FAIL max-flip NaN > 1"), "{stdout}");
     assert!(json["picture"]["psnr"].is_null() && json["picture"]["flip_hdr"]["mean"].is_null());
@@ -90,9 +85,9 @@ fn a_picture_that_is_not_finite_never_passes_flip() {
 
 #[test]
 fn reports_are_the_same_for_any_number_of_threads() {
-    let folder = tempfile::tempdir().unwrap();
+    let bench = Bench::new();
     let run = |threads: &str| {
-        let (_, stdout, _, json) = compare(folder.path(), &picture(0.2), &["--flip", "--threads", threads]);
+        let (_, stdout, _, json) = compare(&bench, &picture(0.2), &["--flip", "--threads", threads]);
         (stdout, json)
     };
     let one = run("1");

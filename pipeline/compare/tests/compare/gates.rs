@@ -2,14 +2,14 @@
 
 use formats::image::Image;
 
-use crate::support::{Bench, WIDTH, picture, scale};
+use crate::support::{Compare, Verdict, WIDTH, bench, picture, scale};
 
 const ALL_GATES: [&str; 11] =
     ["--max-bias", "0", "--max-relmse", "0", "--max-rmse", "0", "--max-abs", "0", "--max-outliers", "0@0", "--exact"];
 
 #[test]
 fn identical_images_pass_every_gate() {
-    let bench = Bench::new();
+    let bench = bench();
     bench.compare(|_| (), &[]).passes();
     bench.compare(|_| (), &ALL_GATES).passes();
     bench.compare(|_| (), &[&ALL_GATES[..], &["--layer", "all"]].concat()).passes();
@@ -17,7 +17,7 @@ fn identical_images_pass_every_gate() {
 
 #[test]
 fn one_per_cent_brighter_is_a_bias() {
-    let bench = Bench::new();
+    let bench = bench();
     let brighter = |image: &mut Image| scale(image, 1.01);
     bench.compare(brighter, &[]).passes();
     bench.compare(brighter, &["--max-bias", "0.02"]).passes();
@@ -32,7 +32,7 @@ fn a_shift_of_color_is_a_bias() {
         image.channels[0].samples.iter_mut().for_each(|sample| *sample += 0.1);
         image.channels[2].samples.iter_mut().for_each(|sample| *sample -= 0.1);
     };
-    Bench::new().compare(shift, &["--max-bias", "0.01"]).fails("max-bias");
+    bench().compare(shift, &["--max-bias", "0.01"]).fails("max-bias");
 }
 
 #[test]
@@ -46,7 +46,7 @@ fn noise_without_bias_is_found() {
                 .for_each(|(i, sample)| *sample += if i % 2 == 0 { 0.5 } else { -0.5 });
         }
     };
-    let bench = Bench::new();
+    let bench = bench();
     bench.compare(noisy, &["--max-bias", "1e-6"]).passes();
     bench.compare(noisy, &["--max-rmse", "0.4"]).fails("max-rmse 0.5 > ");
     bench.compare(noisy, &["--max-rmse", "0.5"]).passes();
@@ -55,7 +55,7 @@ fn noise_without_bias_is_found() {
 
 #[test]
 fn values_that_are_no_numbers_fail() {
-    let bench = Bench::new();
+    let bench = bench();
     let one = |image: &mut Image| image.channels[4].samples[5] = f32::NAN;
     bench.compare(one, &[]).fails("nonfinite 1 > 0");
     bench.compare(one, &["--allow-nonfinite"]).passes();
@@ -70,18 +70,18 @@ fn values_that_are_no_numbers_fail() {
 
 #[test]
 fn equal_nans_do_not_cancel() {
-    let bench = Bench::new();
+    let bench = bench();
     let mut image = picture();
     image.channels[1].samples[3] = f32::NAN;
-    bench.write("reference.exr", &image);
-    bench.write("test.exr", &image);
-    bench.run("test.exr", &[]).fails("nonfinite 2 > 0");
-    bench.run("test.exr", &["--allow-nonfinite", "--max-bias", "1"]).fails("max-bias NaN > 1");
+    bench.write_image("reference.exr", &image);
+    bench.write_image("test.exr", &image);
+    bench.judge("test.exr", &[]).fails("nonfinite 2 > 0");
+    bench.judge("test.exr", &["--allow-nonfinite", "--max-bias", "1"]).fails("max-bias NaN > 1");
 }
 
 #[test]
 fn one_bright_pixel_is_an_outlier() {
-    let bench = Bench::new();
+    let bench = bench();
     let firefly = |image: &mut Image| image.channels[1].samples[2 * WIDTH + 3] = 1e4;
     let run = bench.compare(firefly, &["--max-abs", "100"]);
     run.fails("max-abs 9");
@@ -92,7 +92,7 @@ fn one_bright_pixel_is_an_outlier() {
 
 #[test]
 fn one_bit_fails_the_bitwise_gate_in_any_layer() {
-    let bench = Bench::new();
+    let bench = bench();
     let flip = |image: &mut Image| {
         let sample = &mut image.channels[4].samples[0];
         *sample = f32::from_bits(sample.to_bits() ^ 1);
@@ -103,7 +103,7 @@ fn one_bit_fails_the_bitwise_gate_in_any_layer() {
 
 #[test]
 fn gates_look_at_beauty_unless_told_otherwise() {
-    let bench = Bench::new();
+    let bench = bench();
     let deeper = |image: &mut Image| image.channels[3].samples.iter_mut().for_each(|sample| *sample *= 2.0);
     bench.compare(deeper, &["--max-bias", "0.1"]).passes();
     bench.compare(deeper, &["--max-bias", "0.1", "--layer", "Z"]).fails("max-bias 1 > 0.1 (Z Z)");

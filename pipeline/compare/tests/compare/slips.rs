@@ -4,57 +4,43 @@
 
 use formats::image::{Channel, Image};
 
-use crate::support::{Bench, Run, documented};
+use crate::support::{Compare, Verdict, documented};
+use test_support::{Bench, Random, Run};
 
 const SIDE: usize = 64;
 /// Error of a pixel of an honest render, and that of its cloud, which all pixels share.
 const NOISE: f64 = 0.005;
 const SHARED: f64 = 0.0005;
 
-/// Normal random numbers (Box and Muller 1958), from a linear congruential generator (Knuth, MMIX).
-struct Normal(u64);
-
-impl Normal {
-    fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
-    }
-
-    fn next(&mut self) -> f64 {
-        let radius = (-2.0 * self.uniform().ln()).sqrt();
-        radius * (std::f64::consts::TAU * self.uniform()).cos()
-    }
-}
-
 /// Colors from 0.2 to 0.8, times `gain`, with noise.
 fn image(gain: f64, noise: f64, seed: u64) -> Image {
-    let mut normal = Normal(seed);
+    let mut random = Random(seed);
     let channels = ["R", "G", "B"].into_iter().zip([0.0, 1.0, 2.0]).map(|(name, phase)| {
         let truth = |i: usize| 0.5 + 0.3 * ((i % SIDE) as f64 / 9.0 + phase).sin() * ((i / SIDE) as f64 / 7.0).cos();
-        let samples = (0..SIDE * SIDE).map(|i| (truth(i) * gain + noise * normal.next()) as f32).collect();
+        let samples = (0..SIDE * SIDE).map(|i| (truth(i) * gain + noise * random.normal()) as f32).collect();
         Channel { name: name.to_owned(), samples }
     });
     Image { width: SIDE, height: SIDE, channels: channels.collect(), ..Image::default() }
 }
 
 fn honest(seed: u64) -> Image {
-    image(1.0 + SHARED * Normal(seed + 1000).next(), NOISE, seed)
+    image(1.0 + SHARED * Random(seed + 1000).normal(), NOISE, seed)
 }
 
 /// The limits of the page without the layer that these images lack.
 fn bench() -> Bench {
-    let bench = Bench::new();
-    bench.write("reference.exr", &honest(0));
+    let bench = crate::support::bench();
+    bench.write_image("reference.exr", &honest(0));
     let mut limits = documented("## Limits file");
     limits["limits"].as_array_mut().unwrap().retain(|limit| limit.get("layer").is_none());
     assert_eq!(limits["limits"].as_array().unwrap().len(), 3);
-    std::fs::write(bench.path("limits.json"), limits.to_string()).unwrap();
+    bench.write("limits.json", limits.to_string());
     bench
 }
 
 fn judge(bench: &Bench, image: &Image) -> Run {
-    bench.write("test.exr", image);
-    bench.run("test.exr", &["--limits", bench.path("limits.json").to_str().unwrap()])
+    bench.write_image("test.exr", image);
+    bench.judge("test.exr", &["--limits", bench.path("limits.json").to_str().unwrap()])
 }
 
 #[test]

@@ -8,7 +8,7 @@ use std::path::Path;
 use formats::image::Image;
 use picture::Picture;
 
-use crate::support::{Bench, WIDTH, picture};
+use crate::support::{Compare, Verdict, WIDTH, bench, picture};
 
 fn options<'a>(option: &'a str, path: &'a Path) -> [&'a str; 2] {
     [option, path.to_str().unwrap()]
@@ -16,11 +16,11 @@ fn options<'a>(option: &'a str, path: &'a Path) -> [&'a str; 2] {
 
 #[test]
 fn the_difference_is_signed_and_keeps_names_and_window() {
-    let bench = Bench::new();
+    let bench = bench();
     let shift = |image: &mut Image| image.window = [-3, 5];
     let mut reference = picture();
     shift(&mut reference);
-    bench.write("reference.exr", &reference);
+    bench.write_image("reference.exr", &reference);
     let path = bench.path("difference.exr");
     let change = |image: &mut Image| {
         shift(image);
@@ -42,15 +42,15 @@ fn the_difference_is_signed_and_keeps_names_and_window() {
 /// Caught: infinities written for finite images, with exit code 0.
 #[test]
 fn a_difference_that_float32_does_not_hold_is_not_written() {
-    let bench = Bench::new();
+    let bench = bench();
     let mut reference = picture();
     reference.channels[1].samples[WIDTH + 3] = -3e38;
-    bench.write("reference.exr", &reference);
+    bench.write_image("reference.exr", &reference);
     let (path, json) = (bench.path("difference.exr"), bench.path("report.json"));
     let change = |value: f32| move |image: &mut Image| image.channels[1].samples[WIDTH + 3] = value;
     let outputs = [options("--diff-exr", &path), options("--json", &json)].concat();
     let run = bench.compare(change(3e38), &outputs);
-    assert_eq!((run.code, run.stdout.as_str()), (Some(3), ""), "{}", run.stderr);
+    assert_eq!((run.code(), run.stdout.as_str()), (Some(3), ""), "{}", run.stderr);
     for words in ["difference.exr", "channel G at pixel 3,1", "6.000e38", "--diff-exr"] {
         assert!(run.stderr.contains(words), "{}", run.stderr);
     }
@@ -62,7 +62,7 @@ fn a_difference_that_float32_does_not_hold_is_not_written() {
 /// Two images with different errors share the scale; its end can be set.
 #[test]
 fn the_heatmap_has_a_fixed_scale() {
-    let bench = Bench::new();
+    let bench = bench();
     let path = bench.path("heat.png");
     let draw = |error: f32, more: &[&str]| {
         let change = |image: &mut Image| {
@@ -88,7 +88,7 @@ fn the_heatmap_has_a_fixed_scale() {
 
 #[test]
 fn the_scale_stands_in_the_file() {
-    let bench = Bench::new();
+    let bench = bench();
     let path = bench.path("heat.png");
     bench.compare(|_| (), &[&options("--heatmap", &path)[..], &["--heatmap-max", "0.25"]].concat()).passes();
     let bytes = std::fs::read(&path).unwrap();
@@ -98,14 +98,14 @@ fn the_scale_stands_in_the_file() {
 
 #[test]
 fn no_output_replaces_an_input_or_another_output() {
-    let bench = Bench::new();
+    let bench = bench();
     let (reference, limits) = (bench.path("reference.exr"), bench.path("limits.json"));
     std::fs::write(&limits, r#"{"schema": 1, "limits": [{"gate": "exact", "limit": 0, "reason": "r"}]}"#).unwrap();
     let link = bench.path("link.exr");
     std::os::unix::fs::symlink(&reference, &link).unwrap();
     let before = std::fs::read(&reference).unwrap();
     for option in ["--json", "--diff-exr", "--heatmap"] {
-        for path in [&reference, &bench.path("test.exr"), &link, &bench.folder.path().join("./test.exr")] {
+        for path in [&reference, &bench.path("test.exr"), &link, &bench.path("./test.exr")] {
             bench.compare(|_| (), &options(option, path)).cannot_judge(&[
                 option,
                 "would replace ",
@@ -125,15 +125,15 @@ fn no_output_replaces_an_input_or_another_output() {
 
 #[test]
 fn an_output_that_cannot_be_written_is_an_error() {
-    let bench = Bench::new();
+    let bench = bench();
     for option in ["--json", "--diff-exr", "--heatmap"] {
         bench.compare(|_| (), &options(option, &bench.path("no/file"))).cannot_judge(&["no/file", "cannot write"]);
-        bench.compare(|_| (), &options(option, bench.folder.path())).cannot_judge(&["is a folder"]);
+        bench.compare(|_| (), &options(option, bench.folder())).cannot_judge(&["is a folder"]);
     }
     bench.compare(|_| (), &["--heatmap", "h.png", "--layer", "diffuse"]).cannot_judge(&["no layer `diffuse`"]);
     for wrong in ["0", "-1", "NaN", "inf"] {
-        assert_eq!(bench.compare(|_| (), &["--heatmap", "h.png", &format!("--heatmap-max={wrong}")]).code, Some(2));
+        assert_eq!(bench.compare(|_| (), &["--heatmap", "h.png", &format!("--heatmap-max={wrong}")]).code(), Some(2));
     }
-    assert_eq!(bench.compare(|_| (), &["--heatmap-max", "1"]).code, Some(2));
+    assert_eq!(bench.compare(|_| (), &["--heatmap-max", "1"]).code(), Some(2));
     assert!(!Path::new("h.png").exists());
 }
