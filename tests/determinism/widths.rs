@@ -7,7 +7,7 @@ use gather::{
     samples::{Exit, LitSamples},
 };
 use glam::DVec3;
-use support::{
+use test_support::{
     lit::sum,
     pipeline::{ESTIMATORS, MODELS, by_area, cloud},
 };

@@ -12,7 +12,7 @@ use gather::{
     samples::{Exit, LitSamples},
 };
 use glam::{DVec3, Vec3};
-use support::{
+use test_support::{
     lit::{scatterer, sum},
     meshes::{Light, Part, World, quad, slab, world},
     pipeline::{ESTIMATORS, Lit, MODELS, Point, cloud, grey, settings, stratified},

@@ -11,7 +11,7 @@ use gather::{
 };
 use glam::{DVec3, Vec3};
 use std::{cell::RefCell, rc::Rc};
-use support::{
+use test_support::{
     lit::{scatterer, sum},
     pipeline::{ESTIMATORS, MODELS},
     planted::{alternating, cloud_of},

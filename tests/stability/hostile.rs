@@ -17,7 +17,7 @@ use std::{
     slice::from_ref,
     time::{Duration, Instant},
 };
-use support::{
+use test_support::{
     lit::{scatterer, sum},
     meshes::{Light, Part, World, quad, world},
     pipeline::{ESTIMATORS, grey, sampled, settings, stratified, write},

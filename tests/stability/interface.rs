@@ -5,7 +5,7 @@ use bssrdf::{ETA_MAX, ETA_MIN, Incident, Medium, Separation, fresnel};
 use formats::cloud::Sample;
 use gather::samples::{Exit, LitSamples};
 use glam::{DVec3, Vec3};
-use support::{
+use test_support::{
     lit::{scatterer, sum},
     pipeline::{ESTIMATORS, MODELS, grey},
     planted::{alternating, cloud_of},

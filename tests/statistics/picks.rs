@@ -7,7 +7,7 @@ use gather::{
     samples::{Exit, LitSamples},
 };
 use glam::{DVec3, Vec3};
-use support::{
+use test_support::{
     EFFORT,
     chi_square::assert_fits,
     lit::{scatterer, sum},
