@@ -1,18 +1,20 @@
-# Reports: documents with measured tables, plots and raw data, which programs write. Offers accuracy, curve, curve-full and
-# scale.
+# Reports: documents with measured tables, plots and raw data, which the package reports writes to docs/reports. Offers
+# accuracy, curve, curve-full and scale.
 
 .PHONY: accuracy curve curve-full scale
 
-## accuracy: what the models are worth, against random walks: docs/accuracy.md and its pictures (minutes)
+REPORTS := $(CARGO) run --release --quiet --package reports -- --output docs/reports
+
+## accuracy: what the models are worth, against random walks: docs/reports/accuracy.md and its pictures (minutes)
 accuracy:
-	$(CARGO) run --release --quiet --package pipeline-tests --bin accuracy -- docs
+	$(REPORTS) accuracy
 
 # The folder in which `make curve` finds bunny.glb and dragon.glb, with peers/ in the folder above. Without them it renders a
 # scene of data/.
 MESHES ?= data/scenes
-CURVE  := $(CARGO) run --release --quiet --package pipeline-tests --bin curve -- --meshes $(MESHES) --programs $(BIN) --output docs
+CURVE  := $(REPORTS) speed --meshes $(MESHES) --programs $(BIN)
 
-## curve: time against error: docs/speed.md with its plots and raw data (minutes; MESHES=folder of bunny.glb, dragon.glb)
+## curve: time against error: docs/reports/speed.md with its plots and raw data (minutes; MESHES=folder of bunny.glb, dragon.glb)
 curve: build
 	$(CURVE)
 
@@ -20,6 +22,6 @@ curve: build
 curve-full: build
 	$(CURVE) --full
 
-## scale: what sizes cost, and what that says of farms: docs/scale.md (minutes)
+## scale: what sizes cost, and what that says of farms: docs/reports/scale.md (minutes)
 scale: build
-	$(CURVE) --scale
+	$(REPORTS) scale --programs $(BIN)
