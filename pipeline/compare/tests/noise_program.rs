@@ -1,8 +1,8 @@
-//! `compare --replicates` and `--summarise` as scripts see them.
+//! Tests of `compare --replicates` and `--summarise` as programs.
 //!
-//! Planted errors that these tests caught: the tail of t on one side only, a gate written as `!(p < level)`, samples that
-//! are not finite passing where no statistic holds them, a layer that is no longer black passing, a cloud twice, a cloud of
-//! the reference, too few replicates, another scene, a reference that is not finite, logarithms of one side only.
+//! Seen to catch: one tail of t only, a gate written as `!(p < level)`, samples that are not finite passing because no statistic
+//! holds them, a layer that is no longer black passing, a cloud twice, a cloud of the reference, too few replicates, another
+//! scene, a reference that is not finite, logarithms of one side only.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -12,12 +12,12 @@ use formats::image::{Attribute, Image};
 mod synthetic;
 use synthetic::{Fault, SOUND, replicate};
 
-/// Folders `reference` (twelve replicates) and `test` (eight).
+/// The folders `reference` with twelve replicates and `test` with eight.
 struct Bench {
     folder: tempfile::TempDir,
 }
 
-/// Exit code, standard output, standard error.
+/// The exit code, standard output and standard error of a run.
 struct Run(Option<i32>, String, String);
 
 impl Bench {
@@ -28,7 +28,7 @@ impl Bench {
         bench
     }
 
-    /// The same with one of the test images changed.
+    /// A bench without a fault, but with one of the test images changed.
     fn with(change: impl FnOnce(&mut Image)) -> Bench {
         let bench = Bench::new(SOUND);
         let mut image = replicate(101, SOUND);
@@ -99,10 +99,10 @@ fn sound_images_pass_and_brighter_or_darker_ones_fail() {
 }
 
 #[test]
-fn values_that_are_no_numbers_fail() {
+fn values_that_are_not_finite_fail() {
     Bench::with(|image| image.channels[3].samples[40] = f32::NAN).judge(&[]).fails("1 samples are not finite");
     Bench::with(|image| image.channels[2].samples[0] = f32::INFINITY).judge(&[]).fails("not finite");
-    // Depth is no color, and of no statistic.
+    // Depth is no color, and no statistic holds it.
     Bench::with(|image| channel(image, "Z").fill(f32::NAN)).judge(&[]).fails("81 samples are not finite");
     let bench = Bench::new(SOUND);
     let mut image = replicate(1, SOUND);
@@ -111,7 +111,7 @@ fn values_that_are_no_numbers_fail() {
     bench.judge(&[]).cannot_judge(&["0.exr", "not finite"]);
 }
 
-/// The logarithm of nothing is no number either.
+/// The logarithm of zero is not finite.
 #[test]
 fn a_channel_that_went_black_fails() {
     let bench = Bench::new(SOUND);
@@ -123,7 +123,7 @@ fn a_channel_that_went_black_fails() {
     bench.judge(&[]).fails(" G ");
 }
 
-/// The layer without light has no variance either: it must stay black.
+/// The layer without light has no variance, so it must stay black.
 #[test]
 fn a_black_layer_must_stay_black() {
     let bench = Bench::new(SOUND);
@@ -136,13 +136,17 @@ fn a_black_layer_must_stay_black() {
 }
 
 #[test]
-fn replicates_that_are_none_are_refused() {
+fn images_that_are_no_replicates_are_refused() {
     let set = |name: &'static str, value: &'static str| {
         move |image: &mut Image| {
             image.attributes.insert(name.to_owned(), Attribute::Text(value.to_owned()));
         }
     };
-    Bench::with(set("pcsss/cloud", "0000000000000066")).judge(&[]).cannot_judge(&["same cloud", "1.exr", "--seed"]);
+    Bench::with(set("pcsss/cloud", "0000000000000066")).judge(&[]).cannot_judge(&[
+        "same cloud",
+        "1.exr",
+        "another seed",
+    ]);
     Bench::with(set("pcsss/cloud", "0000000000000005")).judge(&[]).cannot_judge(&["same cloud", "reference"]);
     Bench::with(set("pcsss/scene", "07435")).judge(&[]).cannot_judge(&["scene", "07435", "5ce4e"]);
     Bench::with(|image| image.attributes.clear()).judge(&[]).cannot_judge(&["0.exr", "pcsss/scene"]);
@@ -153,7 +157,7 @@ fn replicates_that_are_none_are_refused() {
     bench.judge(&[]).cannot_judge(&["5.exr", "[0, 2]", "0.exr"]);
     bench.write("test", 5, &replicate(106, SOUND));
     std::fs::remove_file(bench.path("test/3.exr")).unwrap();
-    bench.judge(&[]).cannot_judge(&["test", "7 replicates", "8 are the fewest"]);
+    bench.judge(&[]).cannot_judge(&["test", "7 replicates", "at least 8"]);
     bench.run("--replicates", ["missing", "test"], &[]).cannot_judge(&["missing"]);
     std::fs::write(bench.path("test/3.exr"), "garbage").unwrap();
     bench.judge(&[]).cannot_judge(&["3.exr", "not an OpenEXR file"]);
@@ -177,7 +181,7 @@ fn a_summary_judges_like_the_images_it_was_made_of() {
     bench.run("--replicates", ["golden", "test"], &[]).cannot_judge(&["same cloud", "golden"]);
 }
 
-/// Caught: the mean left among the replicates, so that a second run refused the folder; a summary beside images, which
+/// Seen to catch: the mean written among the replicates, so that a second run refused the folder; a summary beside images, which
 /// would be read instead of them.
 #[test]
 fn a_summary_is_not_written_among_images() {
@@ -187,13 +191,13 @@ fn a_summary_is_not_written_among_images() {
         bench.run("--summarise", ["reference", target], &[]).cannot_judge(&[target, ".exr", "without images"]);
     }
     assert_eq!(names(), 12);
-    // Its own mean of an earlier run is no stranger.
+    // The mean of an earlier run may be replaced.
     for _ in 0..2 {
         assert_eq!(bench.run("--summarise", ["reference", "golden"], &[]).0, Some(0));
     }
 }
 
-/// Caught: a replicate that the report was written over.
+/// Seen to catch: a report written over a replicate.
 #[test]
 fn the_report_does_not_replace_a_replicate() {
     let bench = Bench::new(SOUND);
@@ -204,7 +208,7 @@ fn the_report_does_not_replace_a_replicate() {
     }
 }
 
-/// Caught: primaries and display windows that were never looked at.
+/// Seen to catch: primaries and display windows that were not compared.
 #[test]
 fn replicates_of_another_meaning_are_refused() {
     let aces = Attribute::Chromaticities([0.713, 0.293, 0.165, 0.83, 0.128, 0.044, 0.321_68, 0.337_67]);
@@ -238,7 +242,9 @@ fn a_damaged_summary_is_refused() {
     let damage = |path: &Path, from: &str, to: &str| {
         assert!(text.contains(from));
         std::fs::write(path, text.replacen(from, to, 1)).unwrap();
-        bench.run("--replicates", ["golden", "test"], &[]).cannot_judge(&["statistics.json", "--summarise"]);
+        bench
+            .run("--replicates", ["golden", "test"], &[])
+            .cannot_judge(&["statistics.json", "summarise the images again"]);
     };
     damage(&path, "\"schema\": 1", "\"schema\": 2");
     damage(&path, "\"variance\": ", "\"variance\": -");

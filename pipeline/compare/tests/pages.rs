@@ -1,21 +1,21 @@
-//! `--html` and `--html-index` as scripts see them.
+//! Tests of `compare --html` and `--html-index` as programs.
 //!
-//! Planted errors that these tests caught: the page written only on success, no guard of the inputs, links from the
-//! working folder instead of that of the index, a relMSE that is not finite counted as zero.
+//! Seen to catch: the page written only on success, no guard of the inputs, links from the working folder instead of that of the
+//! index, a relMSE that is not finite counted as zero.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use formats::image::{Channel, Image};
 
-/// A folder with `reference.exr`, a grey picture, in it.
+/// A folder with the gray picture `reference.exr`.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), "reference.exr", &[1.0; 3]);
     folder
 }
 
-/// An image of 8 x 4 pixels with these values in R, G and B.
+/// Writes an image of 8 x 4 pixels with these values in R, G and B.
 fn write(folder: &Path, name: &str, color: &[f32; 3]) {
     let channels = ["R", "G", "B"].iter().zip(color);
     let channels = channels.map(|(name, value)| Channel { name: (*name).to_owned(), samples: vec![*value; 32] });
@@ -27,9 +27,9 @@ fn compare(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_compare")).current_dir(folder).args(arguments).output().unwrap()
 }
 
-/// Compares a picture of this grey with the reference, into a page of this name.
-fn page(folder: &Path, grey: f32, page: &str, options: &[&str]) -> Option<i32> {
-    write(folder, "test.exr", &[grey; 3]);
+/// Compares a gray picture with the reference, and writes the page of this name.
+fn page(folder: &Path, gray: f32, page: &str, options: &[&str]) -> Option<i32> {
+    write(folder, "test.exr", &[gray; 3]);
     compare(folder, &[&["reference.exr", "test.exr", "--html", page], options].concat()).status.code()
 }
 
@@ -47,7 +47,7 @@ fn a_page_is_written_also_on_failure() {
     let text = std::fs::read_to_string(folder.path().join("page.html")).unwrap();
     assert!(text.starts_with("<!DOCTYPE html>") && text.ends_with("</html>\n"));
     assert!(text.contains("FAIL max-bias 0.5 > 0.1 (beauty R)"));
-    // Nothing else was left behind.
+    // No other file was written.
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
 }
 
@@ -75,7 +75,7 @@ fn inputs_are_never_replaced() {
     );
 }
 
-/// Links of the index in its order.
+/// The links of the index in its order.
 fn links(index: &Path) -> Vec<String> {
     let text = std::fs::read_to_string(index).unwrap();
     let links = text.split("\"link\":\"").skip(1);
@@ -107,16 +107,16 @@ fn the_index_begins_with_the_worst() {
 }
 
 #[test]
-fn what_is_no_report_has_no_index() {
+fn files_that_are_no_reports_have_no_index() {
     let folder = folder();
     page(folder.path(), 1.0, "page.html", &[]);
     let run = |report: &str| compare(folder.path(), &["--html-index", "index.html", report]);
-    refused(&run("reference.exr"), &["reference.exr", "not a report of compare", "--html"]);
+    refused(&run("reference.exr"), &["reference.exr", "not an HTML report of compare"]);
     refused(&run("missing.html"), &["missing.html"]);
     refused(&run("."), &["not a regular file"]);
     let text = std::fs::read_to_string(folder.path().join("page.html")).unwrap();
     std::fs::write(folder.path().join("other.html"), text.replace("\"verdict\"", "\"other\"")).unwrap();
-    refused(&run("other.html"), &["other.html", "not a report of compare"]);
+    refused(&run("other.html"), &["other.html", "not an HTML report of compare"]);
     refused(&compare(folder.path(), &["--html-index", "no/index.html", "page.html"]), &["no/index.html"]);
     assert!(!PathBuf::from(folder.path()).join("index.html").exists());
 }

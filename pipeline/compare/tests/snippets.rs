@@ -1,4 +1,4 @@
-//! What docs/ci.md tells others to write into their CI, taken out of the page and run.
+//! Runs the scripts that docs/ci.md gives for a CI.
 #![cfg(unix)]
 
 use std::env;
@@ -12,7 +12,7 @@ use formats::image::{Channel, Image};
 
 const PAGE: &str = include_str!("../../../docs/ci.md");
 
-/// A folder with the limits, the reference `a` and an image of the same values.
+/// A folder with the limits, the reference `a` and an equal image.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("references")).unwrap();
@@ -24,15 +24,15 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
-/// An image of 8 x 4 grey pixels, later than what was there by more than file systems round times to.
-fn write(folder: &Path, name: &str, grey: f32) {
+/// Writes an image of 8 x 4 gray pixels, so much later than the files before it that their times differ in any file system.
+fn write(folder: &Path, name: &str, gray: f32) {
     sleep(Duration::from_millis(20));
-    let channels = ["R", "G", "B"].iter().map(|name| Channel { name: (*name).to_owned(), samples: vec![grey; 32] });
+    let channels = ["R", "G", "B"].iter().map(|name| Channel { name: (*name).to_owned(), samples: vec![gray; 32] });
     let image = Image { width: 8, height: 4, channels: channels.collect(), ..Image::default() };
     fs::write(folder.join(name), image.encode().unwrap()).unwrap();
 }
 
-/// A program in the folder that finds `compare`, and of the environment nothing else.
+/// Runs a program in the folder, in an environment where it finds `compare` and nothing else is set.
 fn run(folder: &Path, program: &str, arguments: &[&str]) -> Output {
     let compare = Path::new(env!("CARGO_BIN_EXE_compare")).parent().unwrap();
     let path = env::var_os("PATH").unwrap_or_default();
@@ -42,7 +42,7 @@ fn run(folder: &Path, program: &str, arguments: &[&str]) -> Output {
     command.args(arguments).output().unwrap()
 }
 
-/// The script of the step of GitHub's, as GitHub runs it.
+/// Runs the step of GitHub Actions like GitHub.
 fn step(folder: &Path) -> Output {
     let (_, step) = PAGE.split_once("- name: compare\n").unwrap();
     let (_, script) = step.split_once("run: |\n").unwrap();
@@ -64,7 +64,7 @@ fn ends_with(output: &Output, code: i32) {
     assert_eq!(output.status.code(), Some(code), "{}", String::from_utf8_lossy(&text));
 }
 
-/// Seen to fail where the second run gave the index itself to `--html-index`, which refuses to write over a report.
+/// Seen to catch: a second run that gives the index itself to `--html-index`, which refuses to write over a report.
 #[test]
 fn the_step_runs_again_in_the_same_folder() {
     let folder = folder();
@@ -77,8 +77,8 @@ fn the_step_runs_again_in_the_same_folder() {
     assert!(index.contains("a.html") && index.contains("b.html"));
 }
 
-/// An image that was not rendered has no page: seen to fail where that of the last run stayed and was listed as new. The
-/// verdict on it, 2, is not hidden by a later image that differs, 1.
+/// An image that was not rendered has no page. Its exit code 2 is not hidden by the 1 of a later image that differs. Seen to
+/// catch: a page of the last run that stays and is listed as new.
 #[test]
 fn the_step_shows_no_page_of_an_earlier_run() {
     let folder = folder();
@@ -98,7 +98,7 @@ fn the_step_fails_without_references() {
     ends_with(&step(folder.path()), 2);
 }
 
-/// Seen to fail where make had nothing to do, and said so with exit code 0.
+/// Seen to catch: exit code 0 of make because it had nothing to do.
 #[test]
 fn the_makefile_fails_without_references() {
     let folder = folder();
@@ -108,9 +108,9 @@ fn the_makefile_fails_without_references() {
     assert!(String::from_utf8_lossy(&output.stderr).contains("nothing would be compared"));
 }
 
-/// Seen to fail where the mark of a pass outlived the failure after it.
+/// Seen to catch: the mark of a pass that stays after a later failure.
 #[test]
-fn the_makefile_judges_again_what_is_new() {
+fn the_makefile_judges_new_images_again() {
     let folder = folder();
     let passed = folder.path().join("out/a.ok");
     ends_with(&make(folder.path()), 0);

@@ -1,4 +1,4 @@
-//! A folder with images, and runs of the program in it.
+//! Runs the program on images in a temporary folder.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -9,19 +9,19 @@ use formats::image::{Attribute, Channel, Image};
 pub const WIDTH: usize = 24;
 pub const HEIGHT: usize = 16;
 
-/// A folder with `reference.exr` in it.
+/// A temporary folder with `reference.exr`.
 pub struct Bench {
     pub folder: tempfile::TempDir,
 }
 
-/// What a run gave.
+/// The result of a run.
 pub struct Run {
     pub code: Option<i32>,
     pub stdout: String,
     pub stderr: String,
 }
 
-/// Colors, one more layer, depth, and the hash of a scene.
+/// An image with colors, one more layer, depth, and the hash of a scene.
 pub fn picture() -> Image {
     let plane = |shift: usize| (0..WIDTH * HEIGHT).map(|i| 0.25 + ((i * 7 + shift) % 13) as f32 / 8.0).collect();
     let names = ["R", "G", "B", "Z", "variance.R"];
@@ -107,7 +107,7 @@ pub fn read_json(path: &Path) -> serde_json::Value {
     serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
 }
 
-/// The first JSON example of docs/compare.md after these words.
+/// The first JSON example of docs/compare.md that follows these words.
 pub fn documented(words: &str) -> serde_json::Value {
     let page = include_str!("../../../../docs/compare.md");
     let (_, rest) = page.split_once(words).unwrap();
@@ -115,7 +115,7 @@ pub fn documented(words: &str) -> serde_json::Value {
     serde_json::from_str(rest.split_once("```").unwrap().0).unwrap()
 }
 
-/// Names of all keys with those above them; items of a list count as one.
+/// The names of all keys with those of the keys above them. The items of a list share their keys.
 pub fn key_paths(value: &serde_json::Value) -> BTreeSet<String> {
     match value {
         serde_json::Value::Object(map) => map
