@@ -83,9 +83,9 @@ impl Gate {
         self.threshold
     }
 
-    /// Whether it is a gate on the picture, which needs FLIP to be measured.
-    pub fn is_of_picture(self) -> bool {
-        matches!(self.kind.value, GateValue::Picture(_))
+    /// Whether it needs FLIP to be measured.
+    pub fn needs_flip(self) -> bool {
+        matches!(self.kind.value, GateValue::Picture(key) if key.starts_with("flip"))
     }
 
     /// The value that it limits.

@@ -93,7 +93,7 @@ fn need(arguments: &Arguments, reference: Dimensions, test: Dimensions) -> u64 {
     let images = product(&[4, samples(reference).saturating_add(samples(test))]);
     let reading = reference.reading_bytes.saturating_add(test.reading_bytes).saturating_sub(images);
     let may_need_flip =
-        arguments.flip || arguments.limits.is_some() || arguments.gates.0.iter().any(|gate| gate.is_of_picture());
+        arguments.flip || arguments.limits.is_some() || arguments.gates.0.iter().any(|gate| gate.needs_flip());
     // The outputs are made one after the other, so only the largest counts.
     let made = [
         (may_need_flip, product(&[FLIP_BYTES, pixels(test)])),

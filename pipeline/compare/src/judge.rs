@@ -36,7 +36,7 @@ fn judge_layer(gate: Gate, layer: &Layer<'_>, report: &Report) -> Judgement {
 
 /// Whether a gate judges a layer. A gate that judges the picture by default judges its alpha too.
 fn judges(gate: Gate, choice: &Choice, layer: &str) -> bool {
-    let whole_picture = *choice == Choice::Default && !gate.is_of_picture();
+    let whole_picture = *choice == Choice::Default && !matches!(gate.value(), GateValue::Picture(_));
     gate.layer(choice).is_none_or(|name| layer == name) || whole_picture && ALPHA.contains(&layer)
 }
 

@@ -30,12 +30,12 @@ impl Settings {
 
     /// Whether FLIP is to be measured.
     pub(crate) fn wants_flip(&self) -> bool {
-        self.flip || self.all_gates().any(|(gate, ..)| gate.is_of_picture())
+        self.flip || self.all_gates().any(|(gate, ..)| gate.needs_flip())
     }
 
-    /// Whether gates on the picture judge alone, which is refused: the mean of FLIP misses single bright pixels and a small
-    /// bias of the whole picture.
+    /// Whether gates on FLIP judge alone, which the program refuses: the mean of FLIP misses single bright pixels and a small bias
+    /// of the whole picture.
     pub fn judges_by_flip_alone(&self) -> bool {
-        self.all_gates().next().is_some() && self.all_gates().all(|(gate, ..)| gate.is_of_picture())
+        self.all_gates().next().is_some() && self.all_gates().all(|(gate, ..)| gate.needs_flip())
     }
 }

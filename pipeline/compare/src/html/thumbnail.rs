@@ -64,7 +64,7 @@ fn white(values: &[f32]) -> f64 {
 }
 
 fn shade(value: f32, white: f64) -> u8 {
-    color::srgb(f64::from(value) / white)
+    ::color::srgb::encode_byte(f64::from(value) / white)
 }
 
 /// The largest error of each block relative to the root of the squared reference plus [`EPSILON`], as in relMSE. It is NaN if any
