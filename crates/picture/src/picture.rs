@@ -18,7 +18,7 @@ pub enum PictureError {
     #[error("{}: not a PNG picture that can be read: {source}", path.display())]
     Decode { path: PathBuf, source: png::DecodingError },
     /// Grey, with alpha, or of other depth.
-    #[error("{}: not red, green and blue of 8 bits; write it with `gather --preview`", .0.display())]
+    #[error("{}: not red, green and blue of 8 bits", .0.display())]
     Kind(PathBuf),
 }
 
