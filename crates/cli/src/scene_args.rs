@@ -6,7 +6,7 @@ use crate::{
 };
 use clap::Args;
 use formats::cloud::{LightUnit, Normals};
-use scene::{DVec3, ImportOptions, MeshDefects, NormalKind, Scene, light::Environment};
+use scene::{DVec3, ImportOptions, MeshDefects, NormalKind, Scene, SceneError, light::Environment};
 use std::path::Path;
 
 /// Arguments about the scene.
@@ -59,7 +59,7 @@ impl SceneArgs {
             light_unit: scene_unit(self.light_unit),
             emission_unit: scene_unit(self.emission_unit()),
         };
-        let mut scene = Scene::import(path, &options)?;
+        let mut scene = Scene::import(path, &options).map_err(with_option)?;
         scene.warnings.iter().for_each(|w| common.warn(format_args!("{}: {w}", path.display())));
         let source = self.environment.as_ref().unwrap_or(&EnvironmentSource::Constant(DVec3::ZERO));
         let environment = source.read(self.environment_scale, self.environment_rotation, common)?;
@@ -101,6 +101,13 @@ impl SceneArgs {
             Normals::Geometric => NormalKind::Geometric,
         }
     }
+}
+
+/// The failure of an import, with the option that helps.
+fn with_option(error: SceneError) -> Failure {
+    let is_too_large = matches!(error, SceneError::TooLarge { .. });
+    let failure = Failure::from(error);
+    if is_too_large { Failure::usage(format!("{}; set --metres-per-unit", failure.message)) } else { failure }
 }
 
 fn scene_unit(unit: LightUnit) -> scene::LightUnit {

@@ -6,18 +6,20 @@ use crate::{
 };
 use std::{collections::BTreeMap, path::PathBuf};
 
-/// A scene or view that cannot be used. The message names the file and the field and, where there is one, the way out.
+/// A scene or view that cannot be used. The message names the file and the field and, where the file can be mended, how.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     #[error("{}: {source}", path.display())]
     Read { path: PathBuf, source: std::io::Error },
     #[error("{}: {what}", path.display())]
     Invalid { path: PathBuf, what: String },
+    #[error("{}: the mesh is too large for float32 coordinates", path.display())]
+    TooLarge { path: PathBuf },
 }
 
-/// No surface that the file marks as a volume has a triangle left. The message names them, why, and the way out.
+/// No surface that the file marks as a volume has a triangle left. The message names the materials and the reason.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("no surface that the file marks as a volume is left ({names}): {why}, or say --translucent NAME")]
+#[error("no surface that the file marks as a volume is left ({names}): {why}")]
 pub struct LostVolumes {
     names: String,
     why: String,

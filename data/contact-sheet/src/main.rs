@@ -5,7 +5,7 @@ mod sheet;
 use clap::Parser;
 use cli::{Failure, Files, file_name};
 use formats::atomic;
-use picture::Picture;
+use picture::{Picture, PictureError};
 use sheet::{Cell, Sheet};
 use std::path::{Path, PathBuf};
 
@@ -60,6 +60,10 @@ fn titled(text: &str) -> Result<(&str, &Path), Failure> {
 }
 
 fn cell((title, file): (&str, &Path), side: usize) -> Result<Cell, Failure> {
-    let picture = Picture::read(file)?.fit(side);
+    let picture = Picture::read(file).map_err(|error| match error {
+        PictureError::Kind(_) => Failure::usage(format!("{error}; write it with `gather --preview`")),
+        error => error.into(),
+    })?;
+    let picture = picture.fit(side);
     Ok(Cell { title: title.split('/').map(String::from).collect(), picture })
 }

@@ -25,7 +25,7 @@ impl Sheet {
         for (k, cell) in cells.iter().enumerate() {
             let (left, top) = (GUTTER + k / rows * step_x, GUTTER + k % rows * step_y);
             let picture = &cell.picture;
-            sheet.place(picture, left + (side - picture.width) / 2, top + (side - picture.height) / 2);
+            sheet.draw(picture, left + (side - picture.width) / 2, top + (side - picture.height) / 2);
             for (line, text) in cell.title.iter().enumerate() {
                 let ink = INK[line.min(1)];
                 let below = top + side + GUTTER / 2 + line * font::LINE;

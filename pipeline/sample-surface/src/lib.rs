@@ -72,7 +72,7 @@ pub enum SampleError {
     ShareSum { sum: f64, wanted: &'static str },
     #[error("the scene has no light: give it one, or light it with --environment")]
     NoLight,
-    #[error(transparent)]
+    #[error("{0}, or pass --translucent NAME")]
     Lost(#[from] scene::LostVolumes),
     #[error("no surface to sample: all of them emit; name one with --translucent")]
     NoSurface,
