@@ -64,7 +64,7 @@ pub fn scene_file(path: &Path, environment: DVec3) -> World {
         emission_unit: LightUnit::Radiometric,
     };
     let mut scene = Scene::import(path, &options).expect("the file is valid glTF");
-    scene.add_environment(environment);
+    scene.environment = environment.into();
     let rays = Rays::new(&scene.mesh);
     World { scene, rays }
 }
@@ -84,7 +84,7 @@ pub fn imported(document: &Value, binary: &[u8], metres_per_unit: f64, environme
     let options =
         ImportOptions { metres_per_unit, light_unit: LightUnit::Radiometric, emission_unit: LightUnit::Radiometric };
     let mut scene = Scene::import(&path, &options).expect("the file is valid glTF");
-    scene.add_environment(environment);
+    scene.environment = environment.into();
     let rays = Rays::new(&scene.mesh);
     World { scene, rays }
 }

@@ -29,7 +29,7 @@ use estimator::Estimator;
 use film::{Errors, Pixel};
 use formats::cloud::Cloud;
 use passes::Passes;
-use scene::{Camera, NormalKind, Rays, Scene, light::Environment};
+use scene::{Camera, NormalKind, Rays, Scene};
 
 /// Over what part of a pixel its paths are spread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,8 +62,6 @@ pub struct Settings {
     pub estimator: Estimator,
     pub model: Model,
     pub normals: NormalKind,
-    /// What rays that escape see.
-    pub environment: Environment,
     pub max_depth: u32,
     pub seed: u64,
 }

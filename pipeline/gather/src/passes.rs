@@ -53,10 +53,9 @@ impl<'a, M: LaneModel> Passes<'a, M> {
         let mut renderer = Renderer {
             scene: input.scene,
             rays: input.rays,
-            lights: LightTree::new(&input.scene.lights),
+            lights: LightTree::new(input.scene.lights()),
             camera: input.camera,
             objects: objects::<M>(input, settings),
-            environment: settings.environment.clone(),
             normals: settings.normals,
             estimator: settings.estimator,
             drawn: DrawnCounts::of(input.clouds),

@@ -6,11 +6,7 @@ use crate::{
     shards::DrawnCounts,
 };
 use bssrdf::Medium;
-use scene::{
-    Camera, NormalKind, Rays, Scene,
-    light::{Environment, LightTree},
-    random::Stream,
-};
+use scene::{Camera, NormalKind, Rays, Scene, light::LightTree, random::Stream};
 use std::ops::Range;
 
 /// Everything a path needs; shared by all threads.
@@ -21,8 +17,6 @@ pub struct Renderer<'a, M> {
     pub camera: &'a Camera,
     /// One entry for each material; none for opaque ones.
     pub objects: Vec<Option<TranslucentObject<'a, M>>>,
-    /// What rays that escape see.
-    pub environment: Environment,
     pub normals: NormalKind,
     pub estimator: Estimator,
     /// Samples of each cloud, the unlit ones included.

@@ -1,6 +1,6 @@
 //! The light of a cloud that leaves the surface at points all over it, by the directional dipole.
 
-use crate::{Numbers, Pattern, Place, Plan, Sampled, Settings};
+use crate::{Numbers, Pattern, Plan, SamplePoint, Sampled, Settings};
 use bssrdf::{
     Medium, Model,
     lanes::{DirectionalLanes, LaneModel},
@@ -27,15 +27,15 @@ pub struct Goal<'a> {
 pub(crate) struct Points<'a> {
     scene: &'a Scene,
     settings: &'a Settings,
-    places: Vec<Place>,
+    points: Vec<SamplePoint>,
 }
 
 impl<'a> Points<'a> {
     pub fn new(scene: &'a Scene, settings: &'a Settings, plan: &Plan, count: u64) -> Self {
         // The points have nothing to do with the samples: another seed.
         let numbers = Numbers::new(Pattern::Stratified, !settings.seed(), count);
-        let places = numbers.places(&plan.choice(scene, settings), 0..count).map(|(_, place)| place).collect();
-        Points { scene, settings, places }
+        let points = numbers.points(&plan.choice(scene, settings), 0..count).map(|(_, point)| point).collect();
+        Points { scene, settings, points }
     }
 
     /// `L_r` as one half of a cloud has it, all channels of all points, each times the root of the area that it stands
@@ -43,14 +43,14 @@ impl<'a> Points<'a> {
     pub fn light(&self, sampled: &Sampled, half: usize, stream: u64, goal: &Goal) -> Vec<f64> {
         let model = DirectionalLanes::new(goal.medium);
         let tables = FalloffTables::new(goal.medium, &*Model::DirectionalDipole.of(goal.medium), f64::INFINITY);
-        let at = |(index, place): (usize, &Place)| {
-            let point = self.scene.mesh.point(place.triangle, place.weights, self.settings.normals);
-            let key = 2 * (stream * self.places.len() as u64 + index as u64) + half as u64;
+        let at = |(index, sample): (usize, &SamplePoint)| {
+            let point = self.scene.mesh.point(sample.triangle, sample.weights, self.settings.normals);
+            let key = 2 * (stream * self.points.len() as u64 + index as u64) + half as u64;
             let light = radiance(sampled, half, &point, key, (&model, &tables, goal));
             // Points are not spread by area under the note's choice of triangles.
-            (light / place.pdf_area.sqrt()).to_array()
+            (light / sample.pdf_area.sqrt()).to_array()
         };
-        self.places.par_iter().enumerate().flat_map_iter(at).collect()
+        self.points.par_iter().enumerate().flat_map_iter(at).collect()
     }
 }
 

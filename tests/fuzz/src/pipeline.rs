@@ -89,7 +89,6 @@ fn render(scene: &Scene, rays: &Rays, cloud: &Cloud, normals: NormalKind, estima
             estimator,
             model: Model::DirectionalDipole,
             normals,
-            environment: scene::DVec3::ONE.into(),
             max_depth: 8,
             seed: 0,
         };

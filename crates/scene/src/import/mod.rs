@@ -26,7 +26,7 @@ mod volumes;
 
 use crate::{
     Material, Scene, SceneError,
-    light::Light,
+    light::{Environment, Light},
     mesh::Mesh,
     unhonoured::{quoted, rest},
 };
@@ -101,7 +101,7 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Fault> 
         warnings.push(format!("{count} triangles lie exactly on others of their material and are left out"));
     }
     let mut lights = lights::punctual(root, &nodes, options, origin, &mut warnings)?;
-    lights.add_emitters(&mesh, &materials);
+    lights.extend(lights::emitters(&mesh, &materials));
     let metres_per_unit = options.metres_per_unit;
     let cameras = cameras::read(root, &nodes, metres_per_unit)?;
     let drawn = RenderedParts { mesh: &mesh, nodes: &nodes, cameras: &cameras, origin, metres_per_unit };
@@ -111,7 +111,8 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Fault> 
         claimed: claimed(root, &nodes),
         mesh,
         materials,
-        lights: lights.list,
+        file_lights: lights,
+        environment: Environment::default(),
         cameras,
         origin,
         warnings,
@@ -119,7 +120,6 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Fault> 
         rounded_triangles: rounded,
         duplicate_triangles: duplicates,
         unhonoured,
-        light_digest: *lights.digest.finalize().as_bytes(),
     })
 }
 
