@@ -4,7 +4,8 @@ use crate::{
     Common, Failure, Files,
     environment::{EnvironmentSource, parse_environment},
 };
-use clap::{Args, ValueEnum};
+use clap::Args;
+use formats::cloud::{LightUnit, Normals};
 use scene::{DVec3, ImportOptions, MeshDefects, NormalKind, Scene};
 use std::path::Path;
 
@@ -42,20 +43,6 @@ pub struct SceneArgs {
     pub strict: bool,
 }
 
-/// Which normals to use.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Normals {
-    Shading,
-    Geometric,
-}
-
-/// What the file's light numbers are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum LightUnit {
-    Radiometric,
-    Photometric,
-}
-
 impl SceneArgs {
     /// Declares the files that these arguments name.
     pub fn declare(&self, files: &mut Files) -> Result<(), Failure> {
@@ -69,8 +56,8 @@ impl SceneArgs {
     pub fn import(&self, path: &Path, common: &Common) -> Result<Scene, Failure> {
         let options = ImportOptions {
             metres_per_unit: self.metres_per_unit,
-            light_unit: self.light_unit.of_scene(),
-            emission_unit: self.emission_unit().of_scene(),
+            light_unit: scene_unit(self.light_unit),
+            emission_unit: scene_unit(self.emission_unit()),
         };
         let mut scene = Scene::import(path, &options)?;
         scene.warnings.iter().for_each(|w| common.warn(format_args!("{}: {w}", path.display())));
@@ -115,28 +102,10 @@ impl SceneArgs {
     }
 }
 
-impl Normals {
-    pub fn name(self) -> &'static str {
-        match self {
-            Normals::Shading => "shading",
-            Normals::Geometric => "geometric",
-        }
-    }
-}
-
-impl LightUnit {
-    fn of_scene(self) -> scene::LightUnit {
-        match self {
-            LightUnit::Radiometric => scene::LightUnit::Radiometric,
-            LightUnit::Photometric => scene::LightUnit::Photometric,
-        }
-    }
-
-    pub fn name(self) -> &'static str {
-        match self {
-            LightUnit::Radiometric => "radiometric",
-            LightUnit::Photometric => "photometric",
-        }
+fn scene_unit(unit: LightUnit) -> scene::LightUnit {
+    match unit {
+        LightUnit::Radiometric => scene::LightUnit::Radiometric,
+        LightUnit::Photometric => scene::LightUnit::Photometric,
     }
 }
 

@@ -1,5 +1,6 @@
 //! A picture: sRGB, eight bits.
 
+use color::srgb;
 use std::{
     fs::File,
     io::BufReader,
@@ -65,8 +66,8 @@ impl Picture {
             let count = (columns.len() * rows.len()) as f64;
             let inside = rows.flat_map(|row| columns.clone().map(move |column| row * self.width + column));
             let mut sum = [0.0; 3];
-            inside.for_each(|k| (0..3).for_each(|c| sum[c] += linear(self.pixels[k][c])));
-            sum.map(|s| encoded(s / count))
+            inside.for_each(|k| (0..3).for_each(|c| sum[c] += srgb::decode_byte(self.pixels[k][c])));
+            sum.map(|s| srgb::encode_byte(s / count))
         };
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| pixel(x, y)).collect();
         Picture { width, height, pixels }
@@ -109,17 +110,6 @@ impl Picture {
         encoder.write_header()?.write_image_data(self.pixels.as_flattened())?;
         Ok(file)
     }
-}
-
-/// The sRGB transfer curve (IEC 61966-2-1), from 8 bits to light and back.
-fn linear(byte: u8) -> f64 {
-    let x = f64::from(byte) / 255.0;
-    if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
-}
-
-fn encoded(x: f64) -> u8 {
-    let y = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
-    (255.0 * y).round() as u8
 }
 
 #[cfg(test)]

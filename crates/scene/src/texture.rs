@@ -1,5 +1,6 @@
 //! Pictures on surfaces: eight bits of sRGB as files have them, looked up in linear light.
 
+use color::srgb;
 use glam::{DVec3, DVec4};
 use std::sync::{Arc, LazyLock};
 
@@ -31,13 +32,8 @@ pub struct Texture {
     pub nearest: bool,
 }
 
-/// sRGB to linear (IEC 61966-2-1).
-static LINEAR: LazyLock<[f64; 256]> = LazyLock::new(|| {
-    std::array::from_fn(|code| {
-        let x = code as f64 / 255.0;
-        if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
-    })
-});
+/// The linear value of each code of sRGB.
+static LINEAR: LazyLock<[f64; 256]> = LazyLock::new(|| std::array::from_fn(|code| srgb::decode_byte(code as u8)));
 
 impl Wrap {
     /// The texel that stands for `index` of so many.
@@ -87,15 +83,6 @@ mod tests {
     fn texture(wrap: Wrap, nearest: bool) -> Texture {
         let texels = (0..6).map(|k| [k % 3, k / 3, 0, 51 * k]).collect();
         Texture { picture: Arc::new(Picture { width: 3, texels }), wrap: [wrap; 2], nearest }
-    }
-
-    /// Planted: 2.2 instead of 2.4.
-    #[test]
-    fn srgb_known_values() {
-        for (code, linear) in [(0, 0.0), (1, 0.000303527), (10, 0.003035270), (127, 0.212230757), (188, 0.502886458)] {
-            assert!((LINEAR[code] - linear).abs() < 1e-9, "{code}: {}", LINEAR[code]);
-        }
-        assert_eq!(LINEAR[255], 1.0);
     }
 
     /// Planted: `v` upwards; the mirror with the edge texel there once; the remainder with the sign of the number.

@@ -99,8 +99,8 @@ impl CloudFiles {
         // The others are as the first.
         let (meta, cloud_path) = (self.clouds[0].meta(), &self.paths[0]);
         let (here, there) = (arguments.scene_args.metres_per_unit, meta.options.metres_per_unit);
-        let unit = arguments.scene_args.light_unit.name();
-        let emission_unit = arguments.scene_args.emission_unit().name();
+        let unit = arguments.scene_args.light_unit;
+        let emission_unit = arguments.scene_args.emission_unit();
         let differs = if here != there {
             format!("--metres-per-unit is {here}, the cloud's {there}")
         } else if unit != meta.options.light_unit {
@@ -120,7 +120,7 @@ impl CloudFiles {
         } else if scene.environment.identity() != meta.options.environment {
             format!("--environment is {}, the cloud's {}", scene.environment.identity(), meta.options.environment)
         } else {
-            let normals = arguments.scene_args.normals.name();
+            let normals = arguments.scene_args.normals;
             if normals != meta.options.normals {
                 arguments.common.warn(format_args!("--normals is {normals}, the cloud's {}", meta.options.normals));
             }

@@ -4,26 +4,8 @@ use crate::{
     hilbert,
     ribbon::{Link, Part, ribbons},
 };
-use clap::ValueEnum;
+pub use formats::cloud::Choice;
 use scene::{Mesh, random::BELOW_ONE, warp};
-
-/// The rule that triangles are chosen by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Choice {
-    /// In proportion to area.
-    Area,
-    /// Every triangle alike, as in the note.
-    Uniform,
-}
-
-impl Choice {
-    pub fn name(self) -> &'static str {
-        match self {
-            Choice::Area => "area",
-            Choice::Uniform => "uniform",
-        }
-    }
-}
 
 /// A triangle that was chosen.
 pub struct Chosen {

@@ -221,13 +221,13 @@ fn settings(arguments: &Arguments, environment: &Environment) -> Settings {
         options: Options {
             seed: arguments.common.seed,
             shard: arguments.shard,
-            choice: arguments.choice.name().into(),
-            pattern: arguments.pattern.name().into(),
+            choice: arguments.choice,
+            pattern: arguments.pattern,
             shares: arguments.share.clone(),
-            normals: scene.normals.name().into(),
+            normals: scene.normals,
             metres_per_unit: scene.metres_per_unit,
-            light_unit: scene.light_unit.name().into(),
-            emission_unit: scene.emission_unit().name().into(),
+            light_unit: scene.light_unit,
+            emission_unit: scene.emission_unit(),
             environment: environment.identity(),
         },
     }

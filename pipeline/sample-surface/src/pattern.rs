@@ -3,31 +3,13 @@
 //! Even and odd samples are two independent halves of a cloud, whose difference estimates the error.
 
 use crate::choice::TriangleChoice;
-use clap::ValueEnum;
+pub use formats::cloud::Pattern;
 use scene::{
     random::{BELOW_ONE, Item, Purpose, Stream, unit},
     sequence::Sequence,
     warp,
 };
 use std::ops::Range;
-
-/// How the samples are spread.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Pattern {
-    /// Evenly: as a lattice along ribbons of triangles, and with a scrambled sequence for the light.
-    Stratified,
-    /// Independently, as in the note.
-    Independent,
-}
-
-impl Pattern {
-    pub fn name(self) -> &'static str {
-        match self {
-            Pattern::Stratified => "stratified",
-            Pattern::Independent => "independent",
-        }
-    }
-}
 
 /// Dimensions of a sample's independent numbers.
 mod dimension {

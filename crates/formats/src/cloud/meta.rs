@@ -1,6 +1,9 @@
 //! What a cloud says of itself.
 
-use super::bounded::{counts, list, shares, text};
+use super::{
+    bounded::{counts, list, shares, text},
+    settings::{Choice, LightUnit, Normals, Pattern},
+};
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, fmt};
 
@@ -79,25 +82,17 @@ impl Meta {
 pub struct Options {
     pub seed: u64,
     pub shard: Shard,
-    /// `area` or `uniform`.
-    #[serde(deserialize_with = "text")]
-    pub choice: String,
-    /// `stratified` or `independent`.
-    #[serde(deserialize_with = "text")]
-    pub pattern: String,
+    pub choice: Choice,
+    pub pattern: Pattern,
     /// Materials with the share of the samples that was asked for.
     #[serde(deserialize_with = "shares")]
     pub shares: Vec<(String, f64)>,
-    /// `shading` or `geometric`.
-    #[serde(deserialize_with = "text")]
-    pub normals: String,
+    pub normals: Normals,
     pub metres_per_unit: f64,
-    /// `radiometric` or `photometric`: the numbers of lights.
-    #[serde(deserialize_with = "text")]
-    pub light_unit: String,
-    /// The same of emitting materials.
-    #[serde(deserialize_with = "text")]
-    pub emission_unit: String,
+    /// Unit of the scene file's lights.
+    pub light_unit: LightUnit,
+    /// Unit of its emitting materials.
+    pub emission_unit: LightUnit,
     /// Light from all around: its radiance, or the identity of a map.
     #[serde(deserialize_with = "text")]
     pub environment: String,

@@ -7,10 +7,12 @@ mod bounded;
 mod layout;
 mod meta;
 mod record;
+mod settings;
 
 pub use layout::version;
 pub use meta::{Group, Meta, Options, SampledMaterial, Shard, hex};
 pub use record::{Node, Record, TILE, Tile, first_leaf, node_count, tile};
+pub use settings::{Choice, LightUnit, Normals, Pattern};
 
 use crate::{Error, atomic::Output, image::parallel::parallel};
 use bytemuck::Pod;

@@ -7,13 +7,13 @@ pub(super) fn meta(count: u64) -> Meta {
     let options = Options {
         seed: 3,
         shard: Shard::ALONE,
-        choice: "area".into(),
-        pattern: "independent".into(),
+        choice: Choice::Area,
+        pattern: Pattern::Independent,
         shares: Vec::new(),
-        normals: "shading".into(),
+        normals: Normals::Shading,
         metres_per_unit: 1.0,
-        light_unit: "radiometric".into(),
-        emission_unit: "radiometric".into(),
+        light_unit: LightUnit::Radiometric,
+        emission_unit: LightUnit::Radiometric,
         environment: "0,0,0".into(),
     };
     Meta {
@@ -271,5 +271,22 @@ fn only_nodes_that_a_tree_can_have_are_good() {
         let beyond = if limits[word] < f32::MAX { 1.01 * limits[word] } else { f32::INFINITY };
         assert!(![f32::NAN, f32::INFINITY, beyond].into_iter().any(with), "word {word}");
         assert!(with(limits[word]) && with(-limits[word]) == (word < 3), "word {word}");
+    }
+}
+
+/// A setting is a length and its name, in a file of any age.
+///
+/// Seen to catch: the number of the variant, as serde would write it.
+#[test]
+fn settings_are_stored_by_name() {
+    let encoded = |meta: &Meta| bincode::serde::encode_to_vec(meta, meta_config()).expect("encodes");
+    let block = encoded(&meta(1));
+    for name in ["area", "independent", "shading", "radiometric"] {
+        let stored = [&(name.len() as u64).to_le_bytes(), name.as_bytes()].concat();
+        let at = block.windows(stored.len()).position(|bytes| bytes == stored).expect(name);
+        let mut unknown = block.clone();
+        unknown[at + 8] = b'?';
+        let read = |block: &[u8]| bincode::serde::borrow_decode_from_slice::<Meta, _>(block, meta_config()).is_ok();
+        assert!(read(&block) && !read(&unknown), "{name}");
     }
 }

@@ -7,8 +7,11 @@ use super::Panorama;
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 
-/// CIE x and y of red, green, blue and white (ITU-R BT.709, table 1).
-const REC_709: [f64; 8] = [0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290];
+/// CIE x and y of red, green, blue and white.
+const REC_709: [f64; 8] = {
+    let ([[rx, ry], [gx, gy], [bx, by]], [wx, wy]) = (color::PRIMARIES, color::WHITE);
+    [rx, ry, gx, gy, bx, by, wx, wy]
+};
 
 /// Coordinates that differ by less are the same, printed with fewer digits.
 const NEAR: f64 = 5e-4;

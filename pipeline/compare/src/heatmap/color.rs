@@ -3,6 +3,7 @@
 //! Equal steps of the error are equal steps of lightness in Oklab (Ottosson, "A perceptual color space for image
 //! processing", 2020), so the picture also reads in grey and without telling red from green.
 
+use color::srgb;
 use std::f64::consts::FRAC_PI_2;
 
 /// Steps of the scale: more than eight bits of lightness can show.
@@ -34,7 +35,7 @@ fn color(part: f64) -> [u8; 3] {
         chroma = (chroma + if shown { step } else { -step }).min(wanted);
         step /= 2.0;
     }
-    linear_srgb(lightness, chroma, hue).map(encoded)
+    linear_srgb(lightness, chroma, hue).map(srgb::encode_byte)
 }
 
 /// Oklab's matrices, from the paper's page.
@@ -50,23 +51,13 @@ fn linear_srgb(lightness: f64, chroma: f64, hue: f64) -> [f64; 3] {
     ]
 }
 
-/// The sRGB transfer curve (IEC 61966-2-1), from light to eight bits.
-fn encoded(light: f64) -> u8 {
-    let x = light.clamp(0.0, 1.0);
-    let y = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
-    (255.0 * y).round() as u8
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     /// The paper's other direction: from sRGB to lightness and hue, degrees.
     fn lightness_and_hue(color: [u8; 3]) -> [f64; 2] {
-        let [r, g, b] = color.map(|byte| {
-            let x = f64::from(byte) / 255.0;
-            if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
-        });
+        let [r, g, b] = color.map(srgb::decode_byte);
         let l = (0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b).cbrt();
         let m = (0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b).cbrt();
         let s = (0.088_302_461_9 * r + 0.281_718_837_6 * g + 0.629_978_700_5 * b).cbrt();

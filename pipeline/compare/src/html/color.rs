@@ -40,22 +40,9 @@ pub(super) fn absolute(part: f64) -> [u8; 3] {
     [0, 1, 2].map(|i| (f64::from(low[i]) * (1.0 - weight) + f64::from(high[i]) * weight).round() as u8)
 }
 
-/// The sRGB code of a scene-linear value, 1 is white.
-pub(super) fn srgb(linear: f64) -> u8 {
-    let linear = linear.clamp(0.0, 1.0);
-    let curve = if linear <= 0.0031308 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
-    (255.0 * curve).round() as u8
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn known_codes() {
-        // 0.5 is 187.5 on the curve; 0.002 * 12.92 * 255 is 6.6.
-        assert_eq!([0.0, 1.0, 0.5, 0.002, -1.0, 9.0].map(srgb), [0, 255, 188, 7, 0, 255]);
-    }
 
     #[test]
     fn ends_middle_and_no_number() {

@@ -63,7 +63,7 @@ fn white(values: &[f32]) -> f64 {
 }
 
 fn shade(value: f32, white: f64) -> u8 {
-    color::srgb(f64::from(value) / white)
+    ::color::srgb::encode_byte(f64::from(value) / white)
 }
 
 /// The largest relative error of each block, as relMSE takes it: over the root of the squared reference plus

@@ -1,9 +1,9 @@
 //! Colors: linear sRGB, the opponents that contrast is filtered in, and the space that differences are measured in.
 
 use crate::metric::elementary::power;
+use color::PRIMARIES;
 
-/// CIE x and y of the primaries of sRGB, and of its white, D65.
-const PRIMARIES: [[f64; 2]; 3] = [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06]];
+/// CIE x and y of D65, with one digit more than sRGB states.
 const WHITE: [f64; 2] = [0.312_71, 0.329_02];
 
 /// From linear R, G, B to X, Y, Z over those of white, and back.
@@ -134,8 +134,7 @@ mod tests {
 
     #[test]
     fn luminance_of_the_primaries() {
-        // IEC 61966-2-1 says 0.2126, 0.7152, 0.0722.
-        for (found, expected) in TO_XYZ[1].iter().zip([0.2126, 0.7152, 0.0722]) {
+        for (found, expected) in TO_XYZ[1].iter().zip(color::LUMINANCE) {
             assert!((found - expected).abs() < 5e-5);
         }
     }

@@ -6,16 +6,24 @@ use serde::Serialize;
 use crate::metric::picture::Picture;
 use crate::metric::select;
 
-/// The curve that is called ACES: Narkowicz, *ACES Filmic Tone Mapping Curve*, 2015, of 0.6 times the light:
-/// x (a x + b) / (x (c x + d) + e).
-const ACES: [f32; 5] = [2.51, 0.03, 2.43, 0.59, 0.14];
+/// The coefficients of [`color::tone::aces`], which shows 0.6 times the light.
+const ACES: [f32; 5] = single(color::tone::ACES);
 const ACES_SCALE: f64 = 0.6;
 
 /// The curve's value of the brightest pixel at the first exposure, and of the median at the last.
 const SHOWN: f64 = 0.85;
 
-/// Luminance of linear R, G, B (IEC 61966-2-1).
-const LUMINANCE: [f32; 3] = [0.2126, 0.7152, 0.0722];
+const LUMINANCE: [f32; 3] = single(color::LUMINANCE);
+
+const fn single<const N: usize>(numbers: [f64; N]) -> [f32; N] {
+    let mut single = [0.0; N];
+    let mut i = 0;
+    while i < N {
+        single[i] = numbers[i] as f32;
+        i += 1;
+    }
+    single
+}
 
 /// How linear light is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
