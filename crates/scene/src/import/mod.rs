@@ -29,6 +29,7 @@ mod volumes;
 
 use crate::{
     Material, Scene, SceneError,
+    light::Environment,
     mesh::Mesh,
     unhonoured::{quoted, rest},
 };
@@ -86,7 +87,7 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
         warnings.push(format!("{count} triangles lie exactly on others of their material and are left out"));
     }
     let mut lights = lights::punctual(root, &nodes, options, origin, &mut warnings)?;
-    lights.add_emitters(&mesh, &materials);
+    lights.extend(lights::emitters(&mesh, &materials));
     let metres_per_unit = options.metres_per_unit;
     let cameras = cameras::read(root, &nodes, metres_per_unit)?;
     let parts = RenderedParts { mesh: &mesh, nodes: &nodes, cameras: &cameras, origin, metres_per_unit };
@@ -96,7 +97,8 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
         claimed: claimed(root, &nodes),
         mesh,
         materials,
-        lights: lights.list,
+        file_lights: lights,
+        environment: Environment::default(),
         cameras,
         origin,
         warnings,
@@ -104,7 +106,6 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
         rounded_triangles: rounded,
         duplicate_triangles: duplicates,
         unhonoured,
-        light_digest: *lights.digest.finalize().as_bytes(),
     })
 }
 
