@@ -10,7 +10,7 @@ pub mod cloud;
 mod error;
 pub mod image;
 mod memory;
-mod octahedral;
+pub mod octahedral;
 mod panorama;
 mod ply;
 

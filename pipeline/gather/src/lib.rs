@@ -5,6 +5,7 @@
 
 mod calibration;
 pub mod counts;
+mod crop;
 mod edge;
 pub mod film;
 mod freedom;
@@ -18,12 +19,10 @@ pub mod renderer;
 pub mod shards;
 mod subsurface;
 
+pub use crop::Crop;
 pub use sums::{estimator, samples};
 
-use bssrdf::{
-    Medium, Model,
-    lanes::{BetterLanes, DirectionalLanes, StandardLanes},
-};
+use bssrdf::{LaneVisitor, Medium, Model, lanes::LaneModel};
 use counts::Counts;
 use estimator::Estimator;
 use film::{Errors, Pixel};
@@ -38,15 +37,6 @@ pub enum Filter {
     Box,
     /// Its centre.
     Point,
-}
-
-/// A part of an image, pixels: its left column, its upper row, columns, rows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Crop {
-    pub x: usize,
-    pub y: usize,
-    pub width: usize,
-    pub height: usize,
 }
 
 /// How to render.
@@ -72,17 +62,6 @@ impl Settings {
     /// What is rendered of the image.
     pub fn part(&self) -> Crop {
         self.crop.unwrap_or(Crop { x: 0, y: 0, width: self.width, height: self.height })
-    }
-}
-
-impl Crop {
-    pub fn pixels(&self) -> usize {
-        self.width * self.height
-    }
-
-    /// Column and row in the whole image of pixel `place` of the part, which are counted row by row.
-    pub fn pixel(&self, place: usize) -> [usize; 2] {
-        [self.x + place % self.width, self.y + place / self.width]
     }
 }
 
@@ -122,11 +101,15 @@ pub trait Session {
 
 /// Prepares an image. Its cut is as accurate as `settings.paths_per_pixel` paths need.
 pub fn start<'a>(input: &Input<'a>, settings: &Settings) -> Box<dyn Session + 'a> {
-    match settings.model {
-        Model::DirectionalDipole => Box::new(Passes::<DirectionalLanes>::new(input, settings)),
-        Model::BetterDipole => Box::new(Passes::<BetterLanes>::new(input, settings)),
-        Model::StandardDipole => Box::new(Passes::<StandardLanes>::new(input, settings)),
+    struct Start<'a, 'b>(&'b Input<'a>, &'b Settings);
+    impl<'a> LaneVisitor for Start<'a, '_> {
+        type Output = Box<dyn Session + 'a>;
+
+        fn visit<M: LaneModel>(self) -> Self::Output {
+            Box::new(Passes::<M>::new(self.0, self.1))
+        }
     }
+    settings.model.visit_lanes(Start(input, settings))
 }
 
 /// Renders an image of `settings.paths_per_pixel` paths; `progress` is told how many pixels were done.

@@ -1,10 +1,11 @@
-//! What all camera paths of an image share: the scene, and the translucent objects with their media and samples.
+//! The data that all camera paths of an image share: the scene, and translucent objects with their media and samples.
 
 use crate::{
     estimator::{Calibration, Estimator, FalloffTables, Rates},
     samples::LitSamples,
     shards::DrawnCounts,
 };
+use bsdf::Surface;
 use bssrdf::Medium;
 use scene::{
     Camera, NormalKind, Rays, Scene,
@@ -13,25 +14,25 @@ use scene::{
 };
 use std::ops::Range;
 
-/// Everything a path needs; shared by all threads.
+/// The data of an image, shared by all threads.
 pub struct Renderer<'a, M> {
     pub scene: &'a Scene,
     pub rays: &'a Rays<'a>,
     pub lights: LightTree<'a>,
     pub camera: &'a Camera,
-    /// One entry for each material; none for opaque ones.
+    /// Of each material; none for opaque ones.
     pub objects: Vec<Option<TranslucentObject<'a, M>>>,
-    /// What rays that escape see.
+    /// The light of rays that leave the scene.
     pub environment: Environment,
     pub normals: NormalKind,
     pub estimator: Estimator,
     /// Samples of each cloud, the unlit ones included.
     pub drawn: DrawnCounts,
     pub paths_per_pixel: u32,
-    /// Paths of each pixel that are added at once.
+    /// Paths of each pixel that the current pass adds.
     pub pass: Range<u32>,
     pub max_depth: u32,
-    /// How far beyond a surface a ray goes on that passes it straight, m.
+    /// Distance beyond a surface at which a ray continues that crosses it straight, m.
     pub clearance: f64,
     pub paths: Stream,
     pub gathers: Stream,
@@ -42,17 +43,22 @@ pub struct Renderer<'a, M> {
 pub struct TranslucentObject<'a, M> {
     pub medium: Medium,
     pub model: M,
-    /// `σ̃_t` of light that is not scattered, 1/m.
+    /// Extinction `σ̃_t` of unscattered light, 1/m (docs/method.md 5.11).
     pub unscattered: [f64; 3],
     pub method: Method,
-    /// What the accuracy asked of the cut is multiplied by, see [`crate::calibration`].
+    /// Factor of the accuracy that is asked of the cut, see [`crate::calibration`].
     pub calibration: Calibration,
     /// The two independent halves of each cloud.
     pub parts: Vec<[LitSamples<'a>; 2]>,
 }
 
 impl<M> TranslucentObject<'_, M> {
-    /// Nothing leaves it scattered.
+    /// What happens to light at its surface.
+    pub fn surface(&self) -> Surface {
+        Surface::dielectric(self.medium.eta)
+    }
+
+    /// True if no scattered light leaves it.
     pub fn is_dark(&self) -> bool {
         self.medium.is_clear() || self.parts.iter().flatten().all(|samples| samples.is_empty())
     }
