@@ -25,7 +25,7 @@ planted=(
   'lost-fresnel-entry|crates/bssrdf/src/lanes/entry.rs|if m > 0.0 \{ value \} else|if m > 0.0 \&\& value > 0.0 { 1.0 } else'
   'lost-cosine|crates/scene/src/light/area.rs|let factor = at.normal.dot\(direction\) \* |let factor = '
   'lost-fresnel-mirror|pipeline/gather/src/path.rs|branch.throughput \*= 1.0 - transmittance;|branch.throughput *= 1.0;'
-  'lost-fresnel-exit|pipeline/gather/src/path.rs|walker.throughput \*= transmittance;|walker.throughput *= 1.0;'
+  'lost-fresnel-exit|pipeline/gather/src/path.rs|state.throughput \*= transmittance;|state.throughput *= 1.0;'
   'triangle-pdf-2-percent-of-half|pipeline/sample-surface/src/choice.rs|pdf_area \* self.factor\(place\)|pdf_area * self.factor(place) * if 2 * place < self.links.len() { 1.02 } else { 1.0 }'
   'wholemilk-eta-2-percent|data/media/wholemilk.json|"eta": 1.3|"eta": 1.326'
   'candle_wax-eta-5-percent|data/media/candle_wax.json|"eta": 1.43|"eta": 1.5015'

@@ -1,6 +1,6 @@
 //! docs/guide.md explains every option of the programs once, and no option that there is not.
 
-use crate::support::program;
+use test_support::program;
 use std::{collections::BTreeSet, process::Command};
 
 const PAGE: &str = include_str!("../../../../docs/guide.md");
