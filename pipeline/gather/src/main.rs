@@ -56,11 +56,11 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let estimator = estimator(arguments)?;
     let files = CloudFiles::open(cloud_paths)?;
     let clouds = files.clouds();
-    let (mut scene, environment) = inputs::import(arguments, scene_path)?;
-    files.check_fit((&scene, &environment), scene_path, arguments)?;
+    let mut scene = inputs::import(arguments, scene_path)?;
+    files.check_fit(&scene, scene_path, arguments)?;
     let sampled = |material| shards::materials(clouds).iter().any(|m| m.index == material);
     let cameras = cameras(arguments, &scene, scene_path, || scene.origin + middle(bounds(&scene, sampled)))?;
-    let shots = shots(arguments, &cameras, |chosen| settings(arguments, chosen, estimator, environment.clone()))?;
+    let shots = shots(arguments, &cameras, |chosen| settings(arguments, chosen, estimator))?;
     warn_of_aspects(&shots, arguments);
     shots.iter().try_for_each(|shot| check_memory(&shot.settings).map_err(|e| shot.failure(e)))?;
     let defects = files.defects();
@@ -247,7 +247,7 @@ fn list_media() -> Result<(), Failure> {
 }
 
 fn list_scene(arguments: &Arguments) -> Result<(), Failure> {
-    let (scene, _) = arguments.scene_args.import(scene_alone(arguments)?, &arguments.common)?;
+    let scene = arguments.scene_args.import(scene_alone(arguments)?, &arguments.common)?;
     let mut text = String::new();
     if arguments.list_cameras {
         text += &camera_table(&scene);
