@@ -64,7 +64,7 @@ impl Scene {
         let images = document.root.images.iter().filter_map(|image| image.uri.as_ref());
         let uris = buffers.chain(images).filter(|uri| !uri.starts_with("data:"));
         let named: BTreeSet<PathBuf> =
-            uris.filter_map(|uri| document.files.borrow().place(uri).ok()).map(|(path, _)| path).collect();
+            uris.filter_map(|uri| document.files.borrow().locate(uri).ok()).map(|(path, _)| path).collect();
         Ok(std::iter::once(path.to_owned()).chain(named).collect())
     }
 }
