@@ -13,7 +13,7 @@ use gather::{
 use glam::DVec3;
 use test_support::pipeline::{ESTIMATORS, MODELS, by_area, cloud};
 
-/// Sums by the plain body and by every kind of vectors that this processor has.
+/// Sums by the scalar body and by every vector width that this processor has.
 fn each_way<M: LaneModel>(
     (medium, kind): (&Medium, Model),
     tables: &FalloffTables,

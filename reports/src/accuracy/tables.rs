@@ -9,7 +9,7 @@ use test_support::{
     walk::{Balance, Matter, chandrasekhar, slab},
 };
 
-/// Walks of each table entry.
+/// Number of walks for each table entry.
 const WALKS: u64 = 1_000_000;
 
 const ALBEDOS: [f64; 12] = [0.02, 0.1, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 0.999, 1.0];
@@ -85,7 +85,7 @@ fn reflectances(text: &mut String, eta: f64) -> Result<(), Error> {
         for (j, angle) in ANGLES.into_iter().enumerate() {
             let cosine = angle.to_radians().cos();
             let seed = 1000 + (eta * 10.0) as u64 * 100 + (i * ANGLES.len() + j) as u64;
-            // Without absorption all that enters leaves again, after any number of steps.
+            // Without absorption all light that enters leaves again, after any number of steps.
             let walk = match albedo {
                 1.0 => fresnel::transmittance(cosine, eta),
                 _ => half_space(albedo, 0.0, eta, cosine, seed).reflected.mean,
