@@ -75,19 +75,19 @@ fn comparison(model: &Model, fitted: &[(Size, [f64; 6])], checked: &[(Size, [f64
         errors.fold(0.0, f64::max)
     };
     let (worst, own) = (percent(all(checked)), percent(all(fitted)));
-    let verdict = format!("The worst of them is off by {worst}; of the runs that it was fitted to, by {own}.\n");
+    let verdict = format!("The largest error is {worst}; among the runs that the model was fitted to it is {own}.\n");
     format!("{}\n{verdict}", table(&["run", "what", "model", "measured", "off by"], &rows))
 }
 
 const HEAD: &str = "\
-# Past one machine
+# Sizes and farms
 
-Made by `make scale`; do not edit. `data/scenes/figure.glb` (its front view, skin1, all settings as they are by default) on \
-one thread. The figure fills most of the middle square of an image; a wide one has floor and background beside it.
+Made by `make scale`; do not edit. The scene is `data/scenes/figure.glb` (its front view, skin1, all settings at their defaults) \
+on one thread. The figure fills most of the middle square of an image; a wider image has floor and background beside it.
 
-What a run costs is the sum of these. Seconds are of one processor, user and system.
+The cost of a run is the sum of the following parts. Seconds are of one processor, user and system.
 ";
 
 const CHECK: &str = "\
-The model against runs of other sizes than those it was fitted to (K of 100k to 10M, images up to 384 x 384, 4 to 64 paths a pixel):
+The model against runs of other sizes than those that it was fitted to (K of 100k to 10M, images up to 384 x 384, 4 to 64 paths a pixel):
 ";
