@@ -1,4 +1,4 @@
-//! Both phases, on a scene that was accepted.
+//! Sampling and gathering on an accepted scene.
 
 use bssrdf::{Medium, Model, built_in};
 use formats::cloud::Cloud;
@@ -12,14 +12,14 @@ use test_support::pipeline::{self, Sampling, by_area, sample_settings};
 
 const SAMPLES: u64 = 40;
 
-/// Pixels a side.
+/// Side of the image, pixels.
 const SIDE: usize = 2;
 
-/// Beyond, numbers may get too large for float32; then the programs end with 3.
+/// Beyond this, numbers may leave float32; the programs then end with exit code 3.
 const SANE: f64 = 1e12;
 
-/// A cloud is drawn or refused. One that was drawn can be read again, and an image is made of it: of finite numbers, unless
-/// the scene's are absurd.
+/// A cloud is drawn or refused. A drawn cloud can be read again, and an image of it has finite numbers, unless those
+/// of the scene are absurd.
 pub fn check_pipeline(scene: &Scene, rays: &Rays) {
     let ways = [
         (Choice::Area, Pattern::Stratified, NormalKind::Shading, Estimator::Cut { accuracy: 0.01 }),
