@@ -5,9 +5,10 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser};
 use compare::heatmap::DEFAULT_MAX;
+use compare::metric::GATES;
 use compare::{Choice, LimitsError, Settings, read_limits};
 
-use crate::gate_options::{self, GateOptions};
+use crate::gate_options::GateOptions;
 
 /// Compare two OpenEXR images.
 ///
@@ -87,7 +88,7 @@ pub(crate) struct NoiseArguments {
 /// The options that are about two images.
 fn options_of_two_images() -> impl Iterator<Item = &'static str> {
     let others = ["limits", "layer", "allow_nonfinite", "flip", "ignore_meta", "diff_exr", "heatmap", "html", "accept"];
-    gate_options::names().chain(others)
+    GATES.iter().map(|kind| kind.name).chain(others)
 }
 
 impl Arguments {
