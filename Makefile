@@ -353,15 +353,18 @@ peers: build
 farm-test:
 	tests/farm/run
 
-## accuracy: what the models are worth, against random walks: docs/accuracy.md and its pictures (minutes)
+# Each writes docs/reports.
+REPORTS := $(CARGO) run --release --quiet --package reports -- --output docs/reports
+
+## accuracy: what the models are worth, against random walks: docs/reports/accuracy.md and its pictures (minutes)
 accuracy:
-	$(CARGO) run --release --quiet --package pipeline-tests --bin accuracy -- docs
+	$(REPORTS) accuracy
 
 # Where `make curve` finds bunny.glb and dragon.glb, and peers/ in the folder above; without them it takes a scene of data/.
 MESHES ?= data/scenes
-CURVE  := $(CARGO) run --release --quiet --package pipeline-tests --bin curve -- --meshes $(MESHES) --programs $(BIN) --output docs
+CURVE  := $(REPORTS) speed --meshes $(MESHES) --programs $(BIN)
 
-## curve: time against error: docs/speed.md with its plots and raw data (minutes; MESHES=folder of bunny.glb, dragon.glb)
+## curve: time against error: docs/reports/speed.md with its plots and raw data (minutes; MESHES=folder of bunny.glb, dragon.glb)
 curve: build
 	$(CURVE)
 
@@ -369,9 +372,9 @@ curve: build
 curve-full: build
 	$(CURVE) --full
 
-## scale: what sizes cost, and what that says of farms: docs/scale.md (minutes)
+## scale: what sizes cost, and what that says of farms: docs/reports/scale.md (minutes)
 scale: build
-	$(CURVE) --scale
+	$(REPORTS) scale --programs $(BIN)
 
 ## bench: the kernels, the trees and the rays by themselves
 bench:

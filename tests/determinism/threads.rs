@@ -9,7 +9,7 @@ use gather::{
 use glam::DVec3;
 use scene::NormalKind;
 use std::fs;
-use support::{
+use test_support::{
     meshes::{Light, Part, World, slab, sphere, world},
     pipeline::{Sampling, by_area, cloud, orthographic, sampled, settings, stratified, write},
     planted::stored,

@@ -7,7 +7,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use sample_surface::Choice;
 use scene::NormalKind;
-use support::{
+use test_support::{
     EFFORT,
     meshes::World,
     pipeline::{Sampling, by_area, filed, medium, sampled_with, settings},

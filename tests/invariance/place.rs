@@ -10,7 +10,7 @@ use glam::{DQuat, DVec3};
 use sample_surface::{Bounce, LitSurface, Numbers, SampleOutcome, TriangleChoice, draw};
 use scene::light::LightTree;
 use serde_json::json;
-use support::{
+use test_support::{
     meshes::World,
     pipeline::{MODELS, filed, sampled_with},
     planted::{Halves, planted},

@@ -6,7 +6,7 @@ use crate::{
 };
 use glam::{DVec3, Vec3};
 use sample_surface::Choice;
-use support::{
+use test_support::{
     meshes::{Mesh, slab},
     pipeline::MODELS,
 };

@@ -6,7 +6,7 @@ use bssrdf::{Model, fresnel};
 use gather::{Filter, Settings};
 use glam::DVec3;
 use scene::Camera;
-use support::{
+use test_support::{
     meshes::{Mesh, Part, quad, slab, sphere, world},
     pipeline::{by_area, cloud, grey, settings},
     random::Random,

@@ -8,7 +8,7 @@ use scene::{
     SurfacePoint,
     light::{Light as _, LightChoice, LightTree, Lit as Lighting, PointLight, ReceiverBounds, Spot, light_at},
 };
-use support::{
+use test_support::{
     meshes::{Light, Part, World, quad, rectangle, slab, world},
     pipeline::{ESTIMATORS, MODELS, by_area, cloud, grey, settings},
 };

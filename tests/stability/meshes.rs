@@ -10,7 +10,7 @@ use gather::{Filter, Settings, estimator::Estimator};
 use glam::{DVec3, Vec3};
 use sample_surface::Choice;
 use scene::NormalKind;
-use support::{
+use test_support::{
     meshes::{Light, Mesh, Part, World, quad, rectangle, slab, sphere, world},
     pipeline::{Lit, MODELS, Point, Sampling, by_area, cloud, grey, settings},
 };

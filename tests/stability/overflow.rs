@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 use sample_surface::{Plan, SampleError};
 use scene::NormalKind;
 use std::slice::from_ref;
-use support::{
+use test_support::{
     meshes::{Light, Part, World, quad, world},
     pipeline::{MODELS, by_area, cloud, filed, grey, orthographic, sampled, settings},
     planted::{Halves, planted, stored},

@@ -5,7 +5,7 @@ use formats::cloud::Cloud;
 use gather::{Input, Rendered, Settings, counts::Counts, film};
 use glam::DVec3;
 use scene::Camera;
-use support::{
+use test_support::{
     meshes::World,
     pipeline::{by_area, cloud, grey, orthographic},
 };

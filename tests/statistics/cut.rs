@@ -10,7 +10,7 @@ use scene::{
     NormalKind, SurfacePoint,
     light::{LightTree, all_light_at},
 };
-use support::{
+use test_support::{
     EFFORT,
     meshes::{Part, World, repository_scene, sphere, world},
     pipeline::{Lit, MODELS, Point, Sampling, cloud, stratified},

@@ -11,7 +11,7 @@ use std::{
     f64::consts::{PI, TAU},
     slice::from_ref,
 };
-use support::{
+use test_support::{
     EFFORT,
     meshes::{Part, World, sphere, world},
     pipeline::{cloud, grey, orthographic, settings, stratified},
@@ -96,9 +96,9 @@ fn a_convex_body_gathers_what_its_shadow_would() {
     let area: f64 = facets.iter().map(|facet| facet.length()).sum();
     let expected = area / 4.0 * TAU * 1.125 + (f64::from(sun) - 1.0) * solid_angle * mean_shadow;
     let runs: Vec<f64> = (0..16 * EFFORT)
-        .map(|seed| support::pipeline::sampled(&world, &stratified(1 << 12, seed)).meta.mean_flux_w[1])
+        .map(|seed| test_support::pipeline::sampled(&world, &stratified(1 << 12, seed)).meta.mean_flux_w[1])
         .collect();
     let flux = Estimate::of(&runs);
     assert!(flux.relative_error() < 0.005, "{flux:?}");
-    support::z_test::assert_mean("flux", flux, expected);
+    test_support::z_test::assert_mean("flux", flux, expected);
 }

@@ -6,7 +6,7 @@ use formats::cloud::{Cloud, Shard};
 use gather::{Filter, Input, Settings, estimator::Estimator, film::Pixel};
 use glam::DVec3;
 use rayon::prelude::*;
-use support::{
+use test_support::{
     EFFORT,
     meshes::{Part, World, slab, world},
     pipeline::{Sampling, by_area, cloud, grey, orthographic, settings, stratified},

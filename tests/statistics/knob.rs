@@ -11,7 +11,7 @@ use scene::{
     light::{LightTree, all_light_at},
 };
 use std::path::Path;
-use support::{
+use test_support::{
     EFFORT,
     meshes::{World, repository_scene, scene_file},
     pipeline::{cloud, orthographic, settings, stratified},

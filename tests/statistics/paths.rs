@@ -5,7 +5,7 @@ use gather::{Filter, Input, Rendered, Settings};
 use glam::DVec3;
 use scene::Camera;
 use std::slice::from_ref;
-use support::{
+use test_support::{
     EFFORT,
     meshes::{Part, World, slab, sphere, world},
     pipeline::{by_area, cloud, grey, orthographic, settings},

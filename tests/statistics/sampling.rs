@@ -9,7 +9,7 @@ use scene::{
     warp,
 };
 use std::f64::consts::PI;
-use support::{
+use test_support::{
     EFFORT,
     chi_square::assert_fits,
     meshes::{Light, Part, World, graded_disc, slab, world},

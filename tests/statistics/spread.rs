@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use sample_surface::{Choice, Numbers, Pattern, Place, TriangleChoice};
 use scene::NormalKind;
-use support::{
+use test_support::{
     EFFORT,
     chi_square::assert_fits,
     meshes::{Mesh, Part, World, graded_disc, repository_scene, slab, world},

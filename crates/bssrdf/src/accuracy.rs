@@ -13,7 +13,7 @@ struct Row {
     standard: [f64; 2],
 }
 
-/// From the random walks of `docs/accuracy.md`, which `make accuracy` makes anew.
+/// From the random walks of `docs/reports/accuracy.md`, which `make accuracy` makes anew.
 const ROWS: &[Row] = &[
     Row { albedo: 0.02, directional: [91.67, 101.50], better: [-1.00, -1.00], standard: [0.13, 0.60] },
     Row { albedo: 0.1, directional: [17.46, 18.68], better: [-0.90, -0.89], standard: [0.11, 0.50] },

@@ -36,6 +36,8 @@ pub use medium_file::{MediumFile, Optics, Unit};
 pub use simd;
 pub use standard_dipole::StandardDipole;
 
+use lanes::{BetterLanes, DirectionalLanes, LaneModel, StandardLanes};
+
 /// Where light enters: position (m), outward unit normal, unit direction towards the light.
 #[derive(Clone, Copy, Debug)]
 pub struct Incident {
@@ -104,6 +106,15 @@ impl Model {
         }
     }
 
+    /// The model of one medium, as an evaluator of sixteen samples at a time in float32.
+    pub fn lanes(self, medium: &Medium) -> AnyLanes {
+        match self {
+            Model::DirectionalDipole => AnyLanes::Directional(DirectionalLanes::new(medium)),
+            Model::BetterDipole => AnyLanes::Better(BetterLanes::new(medium)),
+            Model::StandardDipole => AnyLanes::Standard(StandardLanes::new(medium)),
+        }
+    }
+
     /// `σ̃_t` of the unscattered light that `L_t` follows through the medium, 1/m (method.md 5.11): the delta-Eddington
     /// extinction goes with the directional dipole, which counts forward scattered light as unscattered.
     pub fn unscattered_extinction(self, medium: &Medium) -> [f64; 3] {
@@ -111,6 +122,32 @@ impl Model {
             Model::DirectionalDipole => c.sigma_a + (1.0 - c.asymmetry * c.asymmetry) * c.sigma_s,
             Model::BetterDipole | Model::StandardDipole => c.extinction(),
         })
+    }
+}
+
+/// A model in float32 that is chosen when the program runs.
+#[derive(Clone, Debug)]
+pub enum AnyLanes {
+    Directional(DirectionalLanes),
+    Better(BetterLanes),
+    Standard(StandardLanes),
+}
+
+/// Work that is compiled once for each model, so that the model's evaluation is inlined into its loops.
+pub trait LaneWork {
+    type Output;
+
+    fn run<M: LaneModel>(self, model: &M) -> Self::Output;
+}
+
+impl AnyLanes {
+    /// Does the work with this model.
+    pub fn run<W: LaneWork>(&self, work: W) -> W::Output {
+        match self {
+            AnyLanes::Directional(model) => work.run(model),
+            AnyLanes::Better(model) => work.run(model),
+            AnyLanes::Standard(model) => work.run(model),
+        }
     }
 }
 

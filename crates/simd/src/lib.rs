@@ -42,7 +42,7 @@ impl Level {
     }
 
     /// The widest level that this processor can run.
-    fn widest() -> Level {
+    pub fn widest() -> Level {
         Level::ALL.into_iter().rev().find(|level| level.is_available()).unwrap_or(Level::Plain)
     }
 }

@@ -18,17 +18,14 @@ pub mod renderer;
 pub mod shards;
 mod subsurface;
 
-pub use sums::{estimator, samples};
+pub use passes::Passes;
+pub use sums::{Summation, estimator, samples};
 
-use bssrdf::{
-    Medium, Model,
-    lanes::{BetterLanes, DirectionalLanes, StandardLanes},
-};
+use bssrdf::{Medium, Model};
 use counts::Counts;
 use estimator::Estimator;
-use film::{Errors, Pixel};
+use film::Pixel;
 use formats::cloud::Cloud;
-use passes::Passes;
 use scene::{Camera, NormalKind, Rays, Scene, light::Environment};
 
 /// Over what part of a pixel its paths are spread.
@@ -108,30 +105,9 @@ pub struct Rendered {
     pub non_finite_count: u64,
 }
 
-/// An image on its way: paths are added to all pixels in passes.
-pub trait Session {
-    /// Adds so many paths to every pixel; `progress` is told how many pixels were done.
-    fn pass(&mut self, paths: u32, progress: &(dyn Fn(u64) + Sync));
-
-    /// The image's errors so far; none of a black image.
-    fn errors(&self) -> Option<Errors>;
-
-    /// The image.
-    fn finish(self: Box<Self>) -> Rendered;
-}
-
-/// Prepares an image. Its cut is as accurate as `settings.paths_per_pixel` paths need.
-pub fn start<'a>(input: &Input<'a>, settings: &Settings) -> Box<dyn Session + 'a> {
-    match settings.model {
-        Model::DirectionalDipole => Box::new(Passes::<DirectionalLanes>::new(input, settings)),
-        Model::BetterDipole => Box::new(Passes::<BetterLanes>::new(input, settings)),
-        Model::StandardDipole => Box::new(Passes::<StandardLanes>::new(input, settings)),
-    }
-}
-
-/// Renders an image of `settings.paths_per_pixel` paths; `progress` is told how many pixels were done.
+/// Renders an image of `settings.paths_per_pixel` paths; `progress` is called with numbers of pixels that are done.
 pub fn render(input: &Input, settings: &Settings, progress: impl Fn(u64) + Sync) -> Rendered {
-    let mut session = start(input, settings);
-    session.pass(settings.paths_per_pixel, &progress);
-    session.finish()
+    let mut passes = Passes::new(input, settings);
+    passes.pass(settings.paths_per_pixel, progress);
+    passes.finish()
 }

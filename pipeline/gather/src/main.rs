@@ -139,7 +139,7 @@ fn show_scale(arguments: &Arguments, scene: &Scene, clouds: &[Cloud], media: &[M
         if let Some(errors) = model.poor_reflectance(medium) {
             let [r, g, b] = errors.map(|e| format!("{:+.0}", 100.0 * e));
             arguments.common.say(format_args!(
-                "  {} reflects {r} {g} {b} % more than {} does (red, green, blue; docs/accuracy.md)",
+                "  {} reflects {r} {g} {b} % more than {} does (red, green, blue; docs/reports/accuracy.md)",
                 model.name(),
                 medium.name
             ));

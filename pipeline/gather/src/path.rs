@@ -7,14 +7,14 @@ use crate::{
     renderer::{Renderer, TranslucentObject},
     shards::ShardPick,
 };
-use bssrdf::{fresnel, lanes::LaneModel};
+use bssrdf::fresnel;
 use scene::{DVec3, Hit, SurfacePoint, light::all_light_at};
 use std::f64::consts::PI;
 
 /// Dimensions of the random numbers that one branch of a path may use.
 const BRANCH: u64 = 1 << 32;
 
-impl<M: LaneModel> Renderer<'_, M> {
+impl Renderer<'_> {
     /// Light that arrives at the camera along one path. At its first interface the path splits in two.
     pub fn trace(&self, index: PathIndex, origin: DVec3, direction: DVec3, context: &mut ThreadContext) -> PathLight {
         let item = index.pixel << 32 | u64::from(index.path);
@@ -50,7 +50,7 @@ impl<M: LaneModel> Renderer<'_, M> {
         let first = |path: u32| (path + 1 - half) / 2;
         let (start, end) = (first(self.pass.start), first(self.pass.end));
         let random = || self.shard_picks.item(index.pixel).uniform(u64::from(2 * start + half));
-        self.drawn.turn(half as usize, index.path / 2 - start, end - start, random)
+        self.drawn.pick_shard(half as usize, index.path / 2 - start, end - start, random)
     }
 
     fn follow(
@@ -178,7 +178,7 @@ impl<M: LaneModel> Renderer<'_, M> {
     fn meet_from_outside(
         &self,
         state: &mut PathState,
-        object: &TranslucentObject<M>,
+        object: &TranslucentObject,
         point: &SurfacePoint,
         mirrored: &mut Option<PathState>,
         light: &mut PathLight,
@@ -235,7 +235,7 @@ impl<M: LaneModel> Renderer<'_, M> {
     fn meet_from_inside(
         &self,
         state: &mut PathState,
-        object: &TranslucentObject<M>,
+        object: &TranslucentObject,
         point: &SurfacePoint,
         counts: &mut Counts,
     ) -> bool {

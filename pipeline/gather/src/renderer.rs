@@ -1,10 +1,6 @@
 //! What all camera paths of an image share: the scene, and the translucent objects with their media and samples.
 
-use crate::{
-    estimator::{Calibration, Estimator, FalloffTables, Rates},
-    samples::LitSamples,
-    shards::DrawnCounts,
-};
+use crate::{estimator::Estimator, shards::DrawnCounts};
 use bssrdf::Medium;
 use scene::{
     Camera, NormalKind, Rays, Scene,
@@ -12,15 +8,16 @@ use scene::{
     random::Stream,
 };
 use std::ops::Range;
+use sums::Summation;
 
 /// Everything a path needs; shared by all threads.
-pub struct Renderer<'a, M> {
+pub struct Renderer<'a> {
     pub scene: &'a Scene,
     pub rays: &'a Rays<'a>,
     pub lights: LightTree<'a>,
     pub camera: &'a Camera,
     /// One entry for each material; none for opaque ones.
-    pub objects: Vec<Option<TranslucentObject<'a, M>>>,
+    pub objects: Vec<Option<TranslucentObject<'a>>>,
     /// What rays that escape see.
     pub environment: Environment,
     pub normals: NormalKind,
@@ -39,28 +36,16 @@ pub struct Renderer<'a, M> {
 }
 
 /// A translucent material with its medium and its samples.
-pub struct TranslucentObject<'a, M> {
+pub struct TranslucentObject<'a> {
     pub medium: Medium,
-    pub model: M,
     /// `σ̃_t` of light that is not scattered, 1/m.
     pub unscattered: [f64; 3],
-    pub method: Method,
-    /// What the accuracy asked of the cut is multiplied by, see [`crate::calibration`].
-    pub calibration: Calibration,
-    /// The two independent halves of each cloud.
-    pub parts: Vec<[LitSamples<'a>; 2]>,
+    pub summation: Summation<'a>,
 }
 
-impl<M> TranslucentObject<'_, M> {
+impl TranslucentObject<'_> {
     /// Nothing leaves it scattered.
     pub fn is_dark(&self) -> bool {
-        self.medium.is_clear() || self.parts.iter().flatten().all(|samples| samples.is_empty())
+        self.medium.is_clear() || self.summation.is_empty()
     }
-}
-
-/// How the samples of an object are summed.
-pub enum Method {
-    Exhaustive,
-    Roulette(Rates),
-    Cut(FalloffTables),
 }

@@ -2,12 +2,10 @@
 
 use crate::{file::with_file, medium::check_medium, pipeline::check_pipeline, view::check_camera};
 use scene::{
-    DVec3, ImportOptions, LightUnit, NormalKind, Rays, Scene,
+    DVec3, NormalKind, Rays, Scene,
     light::{LightTree, all_light_at},
 };
-
-const OPTIONS: ImportOptions =
-    ImportOptions { metres_per_unit: 1.0, light_unit: LightUnit::Radiometric, emission_unit: LightUnit::Radiometric };
+use test_support::glb::OPTIONS;
 
 /// Larger scenes are read and no more.
 const MAX_TRIANGLES: usize = 1 << 12;

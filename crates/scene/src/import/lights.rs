@@ -2,7 +2,7 @@
 
 use super::{
     fault::{Fault, get},
-    nodes::Placed,
+    nodes::SceneNode,
     options::ImportOptions,
 };
 use crate::{
@@ -75,7 +75,7 @@ impl Lights {
 
 /// Position and orientation of a light.
 struct Pose<'a> {
-    node: &'a Placed<'a>,
+    node: &'a SceneNode<'a>,
     /// m, relative to the scene's origin.
     position: DVec3,
 }
@@ -92,7 +92,7 @@ impl Pose<'_> {
 /// its node, whose scale does not matter.
 pub(super) fn punctual(
     root: &Root,
-    nodes: &[Placed],
+    nodes: &[SceneNode],
     options: &ImportOptions,
     origin: DVec3,
     warnings: &mut Vec<String>,

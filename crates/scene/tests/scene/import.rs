@@ -1,8 +1,8 @@
 //! Geometry of glTF files in every layout that glTF allows.
 
-use crate::asset::{Asset, OPTIONS, TETRAHEDRON, UNSIGNED_BYTE, UNSIGNED_INT, tetrahedron};
 use scene::{DVec3, ImportOptions, Mesh, NormalKind, Scene};
 use serde_json::{Value, json};
+use test_support::glb::{Asset, OPTIONS, TETRAHEDRON, UNSIGNED_BYTE, UNSIGNED_INT, tetrahedron};
 
 fn import(asset: &Asset) -> Scene {
     asset.import().expect("a good file")
@@ -68,7 +68,8 @@ fn indices_of_every_width() {
     let expected = corners(&import(&tetrahedron()));
     for (component, width) in [(UNSIGNED_BYTE, 1), (UNSIGNED_INT, 4)] {
         let mut asset = tetrahedron();
-        let bytes = crate::asset::TETRAHEDRON_SIDES.iter().flat_map(|i| u32::from(*i).to_le_bytes()[..width].to_vec());
+        let bytes =
+            test_support::glb::TETRAHEDRON_SIDES.iter().flat_map(|i| u32::from(*i).to_le_bytes()[..width].to_vec());
         let bytes: Vec<u8> = bytes.collect();
         let indices = asset.accessor(&bytes, "SCALAR", component, 12);
         asset.set("/meshes/0/primitives/0/indices", json!(indices));

@@ -1,10 +1,11 @@
 //! Every fault of a glTF file is an error that names the file, the field and, where there is one, the way out.
 
-use crate::asset::{
-    Asset, FLOAT, Folder, OPTIONS, UNSIGNED_INT, UNSIGNED_SHORT, container, fault, import_bytes, tetrahedron,
-};
 use scene::Scene;
 use serde_json::{Value, json};
+use test_support::{
+    Bench,
+    glb::{Asset, FLOAT, OPTIONS, UNSIGNED_INT, UNSIGNED_SHORT, container, fault, import_bytes, tetrahedron},
+};
 
 /// Sets one value of a good file at a time. A row is a JSON pointer, the value, and words of the message.
 fn assert_faults(base: impl Fn() -> Asset, cases: &[(&str, Value, &str)]) {
@@ -287,8 +288,8 @@ fn instances_are_counted_before_they_are_made() {
     asset.set("/meshes/0/primitives", json!(vec![nothing; 2000]));
     assert!(fault(&asset).contains("8000000 primitives"), "{}", fault(&asset));
     asset.set("/meshes/0/primitives", json!([vec![lines; 2000], vec![primitive]].concat()));
-    let folder = Folder::new();
-    let imported = Scene::import(&folder.write("lines.glb", &asset.glb()), &OPTIONS);
+    let bench = Bench::new();
+    let imported = Scene::import(&bench.write("lines.glb", &asset.glb()), &OPTIONS);
     assert!(imported.is_err(), "the triangles are still too many");
     assert!(start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
 }

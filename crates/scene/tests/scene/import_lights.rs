@@ -1,8 +1,8 @@
 //! Lights, cameras and materials of glTF files.
 
-use crate::asset::{Asset, OPTIONS, tetrahedron};
 use scene::{DVec3, ImportOptions, LightUnit, NormalKind, Projection, Scene, SurfacePoint};
 use serde_json::{Value, json};
+use test_support::glb::{Asset, OPTIONS, tetrahedron};
 
 /// A point at `position` in the world that faces `normal`.
 fn facing(scene: &Scene, position: DVec3, normal: DVec3) -> SurfacePoint {

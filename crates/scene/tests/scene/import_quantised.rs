@@ -1,8 +1,8 @@
 //! KHR_mesh_quantization: positions and normals as integers.
 
-use crate::asset::{Asset, TETRAHEDRON, fault, tetrahedron};
 use scene::{DVec3, NormalKind, Scene};
 use serde_json::json;
+use test_support::glb::{Asset, TETRAHEDRON, fault, tetrahedron};
 
 const BYTE: u32 = 5120;
 const UNSIGNED_BYTE: u32 = 5121;

@@ -1,11 +1,14 @@
 //! Base colors: factors, textures and vertex colors, at known points of a square.
 
-use crate::asset::{Asset, FLOAT, Folder, OPTIONS, UNSIGNED_BYTE, UNSIGNED_SHORT, fault};
 use base64::{Engine, engine::general_purpose::STANDARD};
 use image::{ImageFormat, Rgba, RgbaImage};
 use scene::{DVec4, Scene};
 use serde_json::{Value, json};
 use std::io::Cursor;
+use test_support::{
+    Bench,
+    glb::{Asset, FLOAT, OPTIONS, UNSIGNED_BYTE, UNSIGNED_SHORT, fault},
+};
 
 /// Linear values of some sRGB codes (IEC 61966-2-1).
 const LINEAR_64: f64 = 0.051_269_458;
@@ -124,15 +127,15 @@ fn a_jpeg_in_the_uri_times_the_factor() {
 
 #[test]
 fn a_picture_beside_the_scene() {
-    let folder = Folder::new();
+    let bench = Bench::new();
     let mut asset = with_picture(&[], textured(json!({})), json!({ "magFilter": NEAREST }));
     asset.set("/images/0", json!({ "uri": "my%20w%C3%A9ave.png" }));
-    let path = folder.write("cloth.glb", &asset.glb());
+    let path = bench.write("cloth.glb", &asset.glb());
     let message = Scene::import(&path, &OPTIONS).err().expect("it is not there").to_string();
     for word in ["cloth.glb", "`Cloth`", "images[0] `my%20w%C3%A9ave.png`", "my wéave.png", "beside it"] {
         assert!(message.contains(word), "{word}: {message}");
     }
-    folder.write("my wéave.png", &png());
+    bench.write("my wéave.png", &png());
     assert_color(&Scene::import(&path, &OPTIONS).expect("imports"), [0.7, 0.2], linear(1, 0));
     asset.set("/images/0", json!({ "uri": "../weave.png" }));
     assert!(fault(&asset).contains("not a file in the scene's folder"));

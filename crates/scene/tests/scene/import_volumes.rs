@@ -1,8 +1,8 @@
 //! Import of the medium below a surface: both drafts, both spellings, every default.
 
-use crate::asset::{Asset, OPTIONS, fault, import_bytes, tetrahedron};
 use scene::{DVec3, ImportOptions, Material, Scatter, ScatterExtension, Volume};
 use serde_json::{Value, json};
+use test_support::glb::{Asset, OPTIONS, fault, import_bytes, tetrahedron};
 
 /// The tetrahedron's material with these extensions, and the warnings.
 fn material(extensions: Value) -> (Material, Vec<String>) {

@@ -1,9 +1,6 @@
 //! Work that a short file can cause: time and memory grow with the length of the file, and not with the number of references.
 
-use crate::{
-    asset::{Asset, UNSIGNED_SHORT, fault, tetrahedron},
-    import_textures::{encoded, textured, with_picture},
-};
+use crate::import_textures::{encoded, textured, with_picture};
 use image::{ImageFormat, RgbaImage};
 use scene::Scene;
 use serde_json::{Value, json};
@@ -11,6 +8,7 @@ use std::{
     sync::Arc,
     time::{Duration, Instant},
 };
+use test_support::glb::{Asset, UNSIGNED_SHORT, fault, tetrahedron};
 
 /// Longest time of the files below, on any machine. With the errors named it is several times as long.
 const SOON: Duration = Duration::from_secs(15);
@@ -156,7 +154,8 @@ fn many_buffers_and_many_accessors_without() {
     buffers.resize(COUNT, json!({ "uri": "data:;base64,AAAA", "byteLength": 3 }));
     asset.json["buffers"] = json!(buffers);
     let start = Instant::now();
-    let scene = crate::asset::import_bytes("many.gltf", asset.json.to_string().as_bytes(), &crate::asset::OPTIONS);
+    let scene =
+        test_support::glb::import_bytes("many.gltf", asset.json.to_string().as_bytes(), &test_support::glb::OPTIONS);
     assert_eq!(scene.expect("a good file").mesh.triangles.len(), 4);
     assert!(start.elapsed() < SOON, "{:?}", start.elapsed());
 }

@@ -1,6 +1,5 @@
 //! Import, rays and lights from outside the crate.
 
-mod asset;
 mod copies;
 mod cutouts;
 mod environment;

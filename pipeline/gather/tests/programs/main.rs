@@ -16,7 +16,6 @@ mod outlook;
 mod outputs;
 mod pipeline;
 mod shards;
-mod support;
 mod targets;
 mod user_files;
 mod views;

@@ -3,7 +3,6 @@
 mod clean;
 mod pictures;
 
-use crate::support::{Bench, program};
 use formats::{Channel, Image};
 use serde_json::json;
 use std::{
@@ -13,6 +12,7 @@ use std::{
     process::{Command, Output},
     time::{Duration, SystemTime},
 };
+use test_support::{Bench, program};
 
 /// Where the images of `thing` lie.
 const IMAGES: &str = "out/thing/k500-s0/marble-directional-dipole";

@@ -1,0 +1,136 @@
+//! The properties that are not honoured, of all parts of the file that the image shows or that light it.
+
+use super::{
+    clipping,
+    container::Document,
+    honoured::{self, Fate},
+    nodes::SceneNode,
+    survey::{Finding, Survey},
+};
+use crate::{
+    Camera,
+    mesh::Mesh,
+    unhonoured::{Holder, Unhonoured},
+};
+use glam::DVec3;
+use gltf::json::{self, Root};
+use std::collections::BTreeSet;
+
+/// The parts of the scene.
+pub(super) struct RenderedParts<'a> {
+    pub mesh: &'a Mesh,
+    pub nodes: &'a [SceneNode<'a>],
+    /// One camera for each node that carries one, in the order of the nodes.
+    pub cameras: &'a [Camera],
+    pub origin: DVec3,
+    pub metres_per_unit: f64,
+}
+
+/// Collects the properties that are not honoured.
+pub(super) fn of(document: &Document, parts: &RenderedParts) -> Vec<Unhonoured> {
+    let root = &document.root;
+    let mut list = Collected { survey: &document.survey, list: Vec::new() };
+    let materials: BTreeSet<u16> = parts.mesh.triangles.iter().map(|t| t.material).collect();
+    for k in &materials {
+        list.add(honoured::MATERIALS, usize::from(*k), Some(Holder::Material(*k)));
+    }
+    list.add_pictures(root, &materials);
+    list.add_nodes(root, parts.nodes);
+    list.add_cameras(root, parts);
+    let scene = root.scene.as_ref().map_or(0, |s| s.value());
+    let name = |s: &json::Scene| s.name.clone();
+    list.add(honoured::SCENES, scene, Some(holder(root.scenes.get(scene).and_then(name), scene)));
+    for name in [honoured::ACCESSORS, honoured::VIEWS, honoured::BUFFERS] {
+        (0..list.survey.len(name)).for_each(|k| list.add(name, k, Some(Holder::Numbered(k))));
+    }
+    list.add(honoured::DOCUMENT, 0, None);
+    list.list
+}
+
+fn holder(name: Option<String>, index: usize) -> Holder {
+    name.map_or(Holder::Numbered(index), Holder::Named)
+}
+
+struct Collected<'a> {
+    survey: &'a Survey,
+    list: Vec<Unhonoured>,
+}
+
+impl Collected<'_> {
+    /// Adds the findings about an element.
+    fn add(&mut self, list: &'static str, index: usize, holder: Option<Holder>) {
+        self.add_if(list, index, holder, |_| true);
+    }
+
+    fn add_if(&mut self, list: &'static str, index: usize, holder: Option<Holder>, accept: impl Fn(&Finding) -> bool) {
+        for find in self.survey.of(list, index).iter().filter(|find| accept(find)) {
+            let start = if list == honoured::DOCUMENT { String::new() } else { format!("{list}[].") };
+            let taken = |fate: Fate| if let Fate::TakenAs(numbers) = fate { numbers } else { &[][..] };
+            let on = find.on.map(|fate| fate.map(taken));
+            self.list.push(Unhonoured { property: format!("{start}{}", find.path), holder: holder.clone(), on });
+        }
+    }
+
+    /// Adds the base color textures with their samplers and images.
+    fn add_pictures(&mut self, root: &Root, materials: &BTreeSet<u16>) {
+        let materials = materials.iter().filter_map(|k| root.materials.get(usize::from(*k)));
+        let infos = materials.filter_map(|m| m.pbr_metallic_roughness.base_color_texture.as_ref());
+        let textures: BTreeSet<usize> = infos.map(|info| info.index.value()).collect();
+        let (mut samplers, mut images) = (BTreeSet::new(), BTreeSet::new());
+        for k in textures {
+            let Some(texture) = root.textures.get(k) else { continue };
+            samplers.extend(texture.sampler.as_ref().map(|s| s.value()));
+            images.insert(texture.source.value());
+            self.add(honoured::TEXTURES, k, Some(holder(texture.name.clone(), k)));
+        }
+        for k in samplers {
+            self.add(honoured::SAMPLERS, k, Some(Holder::Numbered(k)));
+        }
+        for k in images {
+            let name = root.images.get(k).and_then(|image| image.name.clone());
+            self.add(honoured::IMAGES, k, Some(holder(name, k)));
+        }
+    }
+
+    /// Adds the nodes of the scene with their meshes and lights.
+    fn add_nodes(&mut self, root: &Root, nodes: &[SceneNode]) {
+        let (mut meshes, mut lights) = (BTreeSet::new(), BTreeSet::new());
+        for placed in nodes {
+            self.add(honoured::NODES, placed.index, Some(Holder::Named(placed.name.clone())));
+            meshes.extend(placed.node.mesh.as_ref().map(|m| m.value()));
+            let light = placed.node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
+            lights.extend(light.map(|l| l.light.value()));
+        }
+        for k in meshes {
+            let name = root.meshes.get(k).and_then(|mesh| mesh.name.clone());
+            self.add(honoured::MESHES, k, Some(holder(name, k)));
+        }
+        let defined = root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
+        for k in lights {
+            let name = defined.and_then(|d| d.lights.get(k)).and_then(|light| light.name.clone());
+            self.add(honoured::LIGHTS, k, Some(holder(name, k)));
+        }
+    }
+
+    /// Adds the cameras. Their planes are added only where they would cut anything off.
+    fn add_cameras(&mut self, root: &Root, parts: &RenderedParts) {
+        let (mut room, bounds) = (clipping::MAX_TESTS, parts.mesh.bounds());
+        let indices = parts.nodes.iter().filter_map(|placed| placed.node.camera.as_ref());
+        for (index, camera) in indices.zip(parts.cameras) {
+            let Some(planes) = root.cameras.get(index.value()).and_then(planes) else { continue };
+            let planes = planes.map(|z| z * parts.metres_per_unit);
+            let cut = clipping::cuts((parts.mesh, bounds), parts.origin, camera, planes, &mut room);
+            self.add_if(honoured::CAMERAS, index.value(), Some(Holder::Named(camera.name.clone())), |find| {
+                let [near, far] = [".znear", ".zfar"].map(|plane| find.path.ends_with(plane));
+                find.on[0] != Some(Fate::Cuts) || near && cut[0] || far && cut[1]
+            });
+        }
+    }
+}
+
+/// Distances of the near and far planes, in units of the file.
+fn planes(camera: &json::Camera) -> Option<[f64; 2]> {
+    let perspective = camera.perspective.as_ref().map(|p| [Some(p.znear), p.zfar]);
+    let planes = perspective.or_else(|| camera.orthographic.as_ref().map(|o| [Some(o.znear), Some(o.zfar)]))?;
+    Some([planes[0].map_or(0.0, f64::from), planes[1].map_or(f64::INFINITY, f64::from)])
+}
