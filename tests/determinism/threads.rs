@@ -9,7 +9,7 @@ use gather::{
 use glam::DVec3;
 use scene::NormalKind;
 use std::fs;
-use support::{
+use test_support::{
     meshes::{Light, Part, World, slab, sphere, world},
     pipeline::{Sampling, by_area, cloud, orthographic, sampled, settings, stratified, write},
     planted::stored,
@@ -78,7 +78,6 @@ fn render(world: &World, cloud: &Cloud, estimator: Estimator) -> Rendered {
         filter: Filter::Box,
         estimator,
         normals: NormalKind::Shading,
-        environment: DVec3::splat(0.2).into(),
         ..settings(Model::DirectionalDipole, 40, 30)
     };
     let input = Input {

@@ -1,52 +1,16 @@
-//! The same bits for any vector width.
+//! Sums have the same bits for any vector width.
 
 use crate::threads::still_life;
-use bssrdf::{
-    Medium, Model, built_in,
-    lanes::{BetterLanes, DirectionalLanes, LaneModel, StandardLanes},
-    simd::{self, Kernel, Level},
-};
+use bssrdf::{built_in, simd::Level};
 use gather::{
-    estimator::{Calibration, Cut, Estimator, Exhaustive, FalloffTables, Roulette, Scratch, Sum},
+    estimator::{Scatterer, Sum},
     samples::{Exit, LitSamples},
 };
 use glam::DVec3;
-use support::pipeline::{ESTIMATORS, MODELS, by_area, cloud};
-
-/// Sums by the plain body and by every kind of vectors that this processor has.
-fn each_way<M: LaneModel>(
-    (medium, kind): (&Medium, Model),
-    tables: &FalloffTables,
-    samples: &LitSamples,
-    exit: &Exit,
-    estimator: Estimator,
-) -> Vec<Sum> {
-    let model = &M::new(medium);
-    match estimator {
-        Estimator::Exhaustive => all_ways(|| Exhaustive { model, samples, exit }),
-        Estimator::Roulette(rule) => {
-            let rates = rule.rates(kind.of(medium).transport());
-            all_ways(|| Roulette { model, samples, exit, rates })
-        }
-        Estimator::Cut { accuracy } => {
-            let (accuracy, calibration) = (accuracy as f32, &Calibration::default());
-            levels()
-                .map(|level| {
-                    let scratch = &mut Scratch::default();
-                    simd::run_as(level, Cut { model, samples, tables, exit, accuracy, calibration, scratch })
-                })
-                .collect()
-        }
-    }
-}
-
-fn all_ways<K: Kernel<Output = Sum>>(kernel: impl Fn() -> K) -> Vec<Sum> {
-    levels().map(|level| simd::run_as(level, kernel())).collect()
-}
-
-fn levels() -> impl Iterator<Item = Level> {
-    Level::ALL.into_iter().filter(|level| level.is_available())
-}
+use test_support::{
+    lit::sum,
+    pipeline::{ESTIMATORS, MODELS, by_area, cloud},
+};
 
 #[test]
 fn sums_have_the_same_bits_for_any_vector_width() {
@@ -56,18 +20,18 @@ fn sums_have_the_same_bits_for_any_vector_width() {
     for medium in ["skin1", "marble", "espresso"].map(|name| built_in(name).expect("a built-in medium")) {
         let samples = LitSamples::new(&cloud, &cloud.meta().materials[0].halves[0], medium.eta);
         for model in MODELS {
-            let tables = FalloffTables::new(&medium, &*model.of(&medium), 5e-3);
-            let sums = match model {
-                Model::DirectionalDipole => each_way::<DirectionalLanes>,
-                Model::BetterDipole => each_way::<BetterLanes>,
-                Model::StandardDipole => each_way::<StandardLanes>,
-            };
+            let mut scatterer = Scatterer::new(model, &medium, 5e-3);
             for (estimator, normal) in ESTIMATORS
                 .into_iter()
                 .flat_map(|e| [DVec3::Z, DVec3::NEG_X, DVec3::new(0.6, -0.8, 0.0)].map(|n| (e, n)))
             {
                 let exit = Exit::new(normal * 4e-3, normal, 77);
-                let sums = sums((&medium, model), &tables, &samples, &exit, estimator);
+                let at_level = |level: Level| {
+                    scatterer.level = level;
+                    sum(&scatterer, &samples, &exit, estimator)
+                };
+                let sums: Vec<Sum> =
+                    Level::ALL.into_iter().filter(|level| level.is_available()).map(at_level).collect();
                 let bits = |s: &Sum| (s.radiance.to_array().map(f64::to_bits), s.evaluations, s.nodes);
                 let same = sums.iter().all(|s| bits(s) == bits(&sums[0]));
                 assert!(same, "{} {} {estimator:?}: {sums:?}", medium.name, model.name());

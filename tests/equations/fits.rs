@@ -2,7 +2,7 @@
 
 use bssrdf::{Interface, fresnel};
 use std::f64::consts::PI;
-use support::quadrature::integrate;
+use test_support::quadrature::integrate;
 
 /// `∫₀¹ f(c) dc` where f has a root's cusp at the critical angle of an interface to `eta_ratio`: split there, with the
 /// root taken out by squaring the variable.

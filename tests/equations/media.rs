@@ -3,7 +3,7 @@
 use bssrdf::{DVec3, Exitant, Incident, Medium, MediumError, Model, built_in, evaluate, single_scattering_albedo};
 use serde_json::Value;
 use std::f64::consts::PI;
-use support::{
+use test_support::{
     pipeline::{MODELS, grey},
     quadrature::{Extent, plane_integral},
     random::Random,

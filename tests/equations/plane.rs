@@ -3,7 +3,7 @@
 use bssrdf::{Medium, Model};
 use serde_json::Value;
 use std::f64::consts::PI;
-use support::{
+use test_support::{
     pipeline::grey,
     quadrature::{Extent, plane_integral},
 };

@@ -10,7 +10,7 @@ use bssrdf::{
 };
 use glam::DVec3;
 use serde_json::Value;
-use support::pipeline::{MODELS, grey};
+use test_support::pipeline::{MODELS, grey};
 
 /// One reference vector.
 struct Vector {

@@ -1,7 +1,7 @@
 //! Scenes whose picture was looked at and kept: a mirrored instance, a node under a stretched parent, two media.
 
 use crate::{
-    figure::{FIGURE, Figure, push},
+    figure::{FIGURE, Figure},
     picture::{SIZE, SUBSURFACE, channel},
 };
 use bssrdf::built_in;
@@ -9,7 +9,7 @@ use formats::Image;
 use gather::{Input, Settings};
 use serde_json::{Value, json};
 use std::{fs, path::Path, slice::from_ref};
-use support::{
+use test_support::{
     meshes::World,
     pipeline::{cloud, settings, stratified},
 };
@@ -35,19 +35,19 @@ fn mirrored_instance() -> Figure {
 fn nested_parents() -> Figure {
     let mut figure = Figure::read();
     let turned = json!({ "mesh": 0, "rotation": [0.0, 0.0, 0.258_819_05, 0.965_925_83], "scale": [0.4, 0.4, 0.4] });
-    let turned = push(&mut figure.document["nodes"], turned);
+    let turned = figure.0.push("nodes", turned);
     figure.with_node(json!({ "translation": [0.02, 0.0, 0.03], "scale": [1.5, 0.75, 1.0], "children": [turned] }))
 }
 
 /// The mirrored instance in a material of its own.
 fn two_media() -> Figure {
     let mut figure = Figure::read();
-    let mut material = figure.document["materials"][FIGURE].clone();
+    let mut material = figure.0.json["materials"][FIGURE].clone();
     material["name"] = json!("Second");
-    let material = push(&mut figure.document["materials"], material);
-    let mut mesh = figure.document["meshes"][0].clone();
+    let material = figure.0.push("materials", material);
+    let mut mesh = figure.0.json["meshes"][0].clone();
     mesh["primitives"][0]["material"] = json!(material);
-    let mesh = push(&mut figure.document["meshes"], mesh);
+    let mesh = figure.0.push("meshes", mesh);
     figure.with_node(json!({ "mesh": mesh, "translation": [0.02, 0.0, 0.03], "scale": [-0.5, 0.5, 0.5] }))
 }
 

@@ -2,8 +2,12 @@
 
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
-use std::{fs, path::Path};
-use support::meshes::{Mesh, World, imported, quad};
+use std::fs;
+use test_support::{
+    data,
+    glb::Asset,
+    meshes::{Mesh, World, imported, quad},
+};
 
 /// Primitives of this material are the figure.
 pub const FIGURE: usize = 0;
@@ -13,26 +17,14 @@ pub const FLOOR: usize = 1;
 /// Radiance of a panel that lights the figure as the other lights do, W/(m² sr).
 pub const PANEL: f64 = 4.0;
 
-/// A document with its only buffer.
+/// The figure's file, as it is in the repository or changed.
 #[derive(Clone)]
-pub struct Figure {
-    pub document: Value,
-    pub binary: Vec<u8>,
-}
+pub struct Figure(pub Asset);
 
 impl Figure {
     /// As it is in the repository.
     pub fn read() -> Figure {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/scenes/figure.glb");
-        let bytes = fs::read(&path).expect("the repository has the figure");
-        // A header of 12 bytes, then chunks: length, type, content; first JSON, then the buffer.
-        let chunk = |at: usize| {
-            let length = u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]) as usize;
-            (&bytes[at + 8..at + 8 + length], at + 8 + length)
-        };
-        let (text, next) = chunk(12);
-        let document = serde_json::from_slice(text).expect("the figure has a JSON chunk");
-        Figure { document, binary: chunk(next).0.to_vec() }
+        Figure(Asset::read(&fs::read(data("scenes/figure.glb")).expect("the repository has the figure")))
     }
 
     /// Imported under a constant environment.
@@ -50,23 +42,21 @@ impl Figure {
     }
 
     fn world_of(&self, metres_per_unit: f64, environment: DVec3) -> World {
-        let mut document = self.document.clone();
-        document["buffers"] = json!([{ "uri": "scene.bin", "byteLength": self.binary.len() }]);
-        imported(&document, &self.binary, metres_per_unit, environment)
+        imported(&self.0, metres_per_unit, environment)
     }
 
     /// Everything, lights and cameras too, below a new node with this transform.
     pub fn under(mut self, transform: Value) -> Figure {
         let mut parent = transform;
-        parent["children"] = self.document["scenes"][0]["nodes"].take();
-        let index = push(&mut self.document["nodes"], parent);
-        self.document["scenes"][0]["nodes"] = json!([index]);
+        parent["children"] = self.0.json["scenes"][0]["nodes"].take();
+        let index = self.0.push("nodes", parent);
+        self.0.json["scenes"][0]["nodes"] = json!([index]);
         self
     }
 
     /// Every light with this many times the power.
     pub fn brighter(mut self, factor: f64) -> Figure {
-        for light in list(&mut self.document["extensions"]["KHR_lights_punctual"]["lights"]) {
+        for light in list(&mut self.0.json["extensions"]["KHR_lights_punctual"]["lights"]) {
             light["intensity"] = json!(number(&light["intensity"]) * factor);
         }
         self
@@ -83,36 +73,30 @@ impl Figure {
     /// One more light in the place of a node's light, with a color of its own.
     pub fn with_copy_of(mut self, name: &str, color: DVec3) -> Figure {
         let node = self.node(name).clone();
-        let lights = &mut self.document["extensions"]["KHR_lights_punctual"]["lights"];
-        let original = &lights[index_of(&node["extensions"]["KHR_lights_punctual"]["light"])];
-        let mut light = original.clone();
+        let index = index_of(&node["extensions"]["KHR_lights_punctual"]["light"]);
+        let mut light = self.0.json["extensions"]["KHR_lights_punctual"]["lights"][index].clone();
         light["color"] = json!(color.to_array());
-        let light = push(lights, light);
-        let mut copy = node;
-        copy["name"] = json!(format!("copy {light} of {name}"));
-        copy["extensions"]["KHR_lights_punctual"]["light"] = json!(light);
-        self.with_node(copy)
+        self.0.light(light, node);
+        self
     }
 
     /// One more node at the root.
     pub fn with_node(mut self, node: Value) -> Figure {
-        let index = push(&mut self.document["nodes"], node);
-        push(&mut self.document["scenes"][0]["nodes"], json!(index));
+        self.0.node(node);
         self
     }
 
     /// One more light at the root: a point light with this intensity, W/sr.
     pub fn with_lamp(mut self, position: DVec3, intensity: f64) -> Figure {
-        let lights = &mut self.document["extensions"]["KHR_lights_punctual"]["lights"];
-        let light = push(lights, json!({ "type": "point", "intensity": intensity }));
-        let extensions = json!({ "KHR_lights_punctual": { "light": light } });
-        self.with_node(json!({ "name": "lamp", "translation": position.to_array(), "extensions": extensions }))
+        let node = json!({ "name": "lamp", "translation": position.to_array() });
+        self.0.light(json!({ "type": "point", "intensity": intensity }), node);
+        self
     }
 
     /// One more mesh, without normals, at the root.
     pub fn with_mesh(mut self, mesh: &Mesh, material: usize) -> Figure {
         let primitive = self.primitive(mesh, material);
-        let index = push(&mut self.document["meshes"], json!({ "primitives": [primitive] }));
+        let index = self.0.push("meshes", json!({ "primitives": [primitive] }));
         self.with_node(json!({ "mesh": index }))
     }
 
@@ -120,7 +104,7 @@ impl Figure {
     pub fn with_panel(mut self, radiance: f64) -> Figure {
         let strength = json!({ "KHR_materials_emissive_strength": { "emissiveStrength": radiance } });
         let material = json!({ "name": "Panel", "emissiveFactor": [1.0, 0.75, 0.5], "extensions": strength });
-        let material = push(&mut self.document["materials"], material);
+        let material = self.0.push("materials", material);
         let mut square = quad(0.05, -0.125, 2);
         square.positions.iter_mut().for_each(|p| p.y += 0.0625);
         self.with_mesh(&square, material)
@@ -128,18 +112,18 @@ impl Figure {
 
     /// The node of this name.
     pub fn node(&mut self, name: &str) -> &mut Value {
-        let node = list(&mut self.document["nodes"]).iter_mut().find(|n| n["name"] == name);
+        let node = list(&mut self.0.json["nodes"]).iter_mut().find(|n| n["name"] == name);
         node.expect("the figure has such a node")
     }
 
     /// The figure's own primitives, one in the file.
     pub fn primitives(&mut self) -> &mut Value {
-        &mut self.document["meshes"][0]["primitives"]
+        &mut self.0.json["meshes"][0]["primitives"]
     }
 
     /// The figure's positions and triangles, its normals left out.
     pub fn mesh(&self) -> Mesh {
-        let primitive = &self.document["meshes"][0]["primitives"][0];
+        let primitive = &self.0.json["meshes"][0]["primitives"][0];
         let indices: Vec<u32> = self.words(index_of(&primitive["indices"])).collect();
         let triangles = indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
         Mesh { positions: self.vectors(index_of(&primitive["attributes"]["POSITION"])), triangles }
@@ -153,10 +137,10 @@ impl Figure {
 
     /// The buffer view of an accessor, which has all of it.
     fn words(&self, accessor: usize) -> impl Iterator<Item = u32> {
-        let view = index_of(&self.document["accessors"][accessor]["bufferView"]);
-        let view = &self.document["bufferViews"][view];
+        let view = index_of(&self.0.json["accessors"][accessor]["bufferView"]);
+        let view = &self.0.json["bufferViews"][view];
         let (start, length) = (index_of(&view["byteOffset"]), index_of(&view["byteLength"]));
-        let words = self.binary[start..start + length].chunks_exact(4);
+        let words = self.0.binary[start..start + length].chunks_exact(4);
         words.map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
     }
 
@@ -169,28 +153,11 @@ impl Figure {
 
     /// A primitive for a mesh, without normals, whose numbers are added to the buffer.
     fn primitive(&mut self, mesh: &Mesh, material: usize) -> Value {
-        let floats = mesh.positions.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes).collect();
-        let indices = mesh.triangles.as_flattened().iter().flat_map(|i| i.to_le_bytes()).collect();
-        let positions = self.accessor(floats, 5126, "VEC3", mesh.positions.len());
-        let indices = self.accessor(indices, 5125, "SCALAR", 3 * mesh.triangles.len());
+        let corners: Vec<[f32; 3]> = mesh.positions.iter().map(Vec3::to_array).collect();
+        let positions = self.0.vectors(&corners);
+        let indices = self.0.long_indices(mesh.triangles.as_flattened());
         json!({ "attributes": { "POSITION": positions }, "indices": indices, "material": material })
     }
-
-    /// Adds numbers to the buffer.
-    pub fn accessor(&mut self, bytes: Vec<u8>, component: u32, kind: &str, count: usize) -> usize {
-        let view = json!({ "buffer": 0, "byteOffset": self.binary.len(), "byteLength": bytes.len() });
-        self.binary.extend(bytes);
-        let view = push(&mut self.document["bufferViews"], view);
-        let accessor = json!({ "bufferView": view, "componentType": component, "count": count, "type": kind });
-        push(&mut self.document["accessors"], accessor)
-    }
-}
-
-/// Appends to a list of the document; the new element's index.
-pub fn push(values: &mut Value, value: Value) -> usize {
-    let values = list(values);
-    values.push(value);
-    values.len() - 1
 }
 
 /// A list of the document.

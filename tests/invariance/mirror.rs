@@ -13,7 +13,7 @@ use formats::cloud::{Cloud, Sample};
 use glam::{DVec3, Vec3};
 use sample_surface::Choice;
 use serde_json::json;
-use support::{
+use test_support::{
     meshes::World,
     pipeline::{MODELS, filed, sampled_with},
     planted::{planted, stored},
@@ -27,7 +27,7 @@ fn mirrored() -> World {
 
 /// A medium with the index 1: no path is reflected, whatever its random numbers, which belong to the pixel.
 fn matched(medium: &Medium) -> Medium {
-    support::pipeline::medium(medium.channels, 1.0)
+    test_support::pipeline::medium(medium.channels, 1.0)
 }
 
 /// The mirror image of a cloud.

@@ -1,13 +1,13 @@
 //! The same triangles of the same material in one primitive or in many, on one node or on many.
 
 use crate::{
-    figure::{FIGURE, Figure, index_of, push},
+    figure::{FIGURE, Figure, index_of},
     picture::{Shot, assert_multiple, channel},
 };
 use gather::estimator::{Estimator, Rule};
 use serde_json::{Value, json};
 use std::ops::Range;
-use support::meshes::World;
+use test_support::meshes::World;
 
 /// Primitives with some of the triangles each, in their order: alternately by indices into the figure's own buffers, and
 /// with vertices of their own and no indices.
@@ -21,10 +21,10 @@ fn portions(figure: &mut Figure, count: usize) -> Vec<Value> {
 /// A primitive that takes some of the indices.
 fn indexed(figure: &mut Figure, triangles: Range<usize>) -> Value {
     let mut primitive = figure.primitives()[0].clone();
-    let mut accessor = figure.document["accessors"][index_of(&primitive["indices"])].clone();
+    let mut accessor = figure.0.json["accessors"][index_of(&primitive["indices"])].clone();
     accessor["byteOffset"] = json!(12 * triangles.start);
     accessor["count"] = json!(3 * triangles.len());
-    primitive["indices"] = json!(push(&mut figure.document["accessors"], accessor));
+    primitive["indices"] = json!(figure.0.push("accessors", accessor));
     primitive
 }
 
@@ -34,9 +34,8 @@ fn soup(figure: &mut Figure, triangles: Range<usize>) -> Value {
     let mut attributes = figure.primitives()[0]["attributes"].clone();
     for name in ["POSITION", "NORMAL"] {
         let vectors = figure.vectors(index_of(&attributes[name]));
-        let floats = corners.iter().flat_map(|i| vectors[*i as usize].to_array());
-        let bytes = floats.flat_map(f32::to_le_bytes).collect();
-        attributes[name] = json!(figure.accessor(bytes, 5126, "VEC3", corners.len()));
+        let own: Vec<[f32; 3]> = corners.iter().map(|i| vectors[*i as usize].to_array()).collect();
+        attributes[name] = json!(figure.0.vectors(&own));
     }
     json!({ "attributes": attributes, "material": FIGURE })
 }
@@ -74,9 +73,9 @@ fn nodes_of_one_material() {
     let parts = portions(&mut figure, 5);
     let mut nodes = Vec::new();
     for part in parts {
-        let mesh = push(&mut figure.document["meshes"], json!({ "primitives": [part] }));
+        let mesh = figure.0.push("meshes", json!({ "primitives": [part] }));
         let node = json!({ "mesh": mesh, "scale": [0.25, 0.25, 0.25] });
-        nodes.push(push(&mut figure.document["nodes"], node));
+        nodes.push(figure.0.push("nodes", node));
     }
     let node = figure.node("Figure");
     *node = json!({ "name": "Figure", "scale": [4.0, 4.0, 4.0], "children": nodes });

@@ -7,7 +7,7 @@ use crate::{
 use gather::estimator::{Estimator, Rule};
 use sample_surface::Choice;
 use serde_json::json;
-use support::{meshes::World, pipeline::MODELS};
+use test_support::{meshes::World, pipeline::MODELS};
 
 /// The figure before a panel, whose radiance does not depend on the scale.
 fn figure() -> Figure {

@@ -8,7 +8,7 @@ use crate::{
 };
 use sample_surface::{Choice, Pattern};
 use std::collections::HashMap;
-use support::{
+use test_support::{
     meshes::{Mesh, World},
     pipeline::Sampling,
     random::Random,

@@ -12,9 +12,10 @@ use gather::{
     samples::{Exit, LitSamples},
 };
 use glam::{DVec3, Vec3};
-use support::{
+use test_support::{
+    lit::{scatterer, sum},
     meshes::{Light, Part, World, quad, slab, world},
-    pipeline::{ESTIMATORS, Lit, MODELS, Point, Scatterer, cloud, grey, settings, stratified},
+    pipeline::{ESTIMATORS, Lit, MODELS, Point, cloud, grey, settings, stratified},
     planted::{Halves, alternating, cloud_of},
     random::Random,
 };
@@ -22,7 +23,7 @@ use support::{
 /// What the program renders with if it is told nothing.
 fn default_settings(model: Model) -> Settings {
     let estimator = Estimator::Cut { accuracy: 0.01 };
-    Settings { estimator, paths_per_pixel: 16, filter: Filter::Box, environment: SKY.into(), ..settings(model, 8, 8) }
+    Settings { estimator, paths_per_pixel: 16, filter: Filter::Box, ..settings(model, 8, 8) }
 }
 
 fn milky() -> Medium {
@@ -31,7 +32,7 @@ fn milky() -> Medium {
 
 fn sunny_slab() -> World {
     let sun = Light::Directional { towards: DVec3::new(0.36, 0.48, 0.8), irradiance: DVec3::ONE };
-    world(&[Part::translucent(slab(DVec3::new(5e-3, 5e-3, 2e-3), 2))], &[sun], DVec3::ZERO)
+    world(&[Part::translucent(slab(DVec3::new(5e-3, 5e-3, 2e-3), 2))], &[sun], SKY)
 }
 
 /// K = 1, 2, 3 by the defaults of both programs: every image is fit for a file, lit where a sample is, and says how little
@@ -181,7 +182,7 @@ fn samples_and_nodes_that_were_never_checked_do_no_harm() {
     let group = cloud.meta().materials[0].halves[0];
     let (tiles, nodes) = cloud.group(&group);
     let numbers = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -1.0, -1e30, 0.0, 1e-45];
-    let (mut random, scatterer) = (Random(3), Scatterer::new(Model::StandardDipole, &milky()));
+    let (mut random, scatterer) = (Random(3), scatterer(Model::StandardDipole, &milky()));
     for round in 0..500 {
         let (mut tiles, mut nodes) = (tiles.to_vec(), nodes.to_vec());
         let mut number = || numbers[random.bits() as usize % numbers.len()];
@@ -196,7 +197,7 @@ fn samples_and_nodes_that_were_never_checked_do_no_harm() {
             let samples = LitSamples::of(&tiles, &nodes, len, 1.3);
             let exit = Exit::new(DVec3::X * random.between(-5e-3, 5e-3), DVec3::Z, round);
             for estimator in ESTIMATORS {
-                let sum = scatterer.sum(&samples, &exit, estimator);
+                let sum = sum(&scatterer, &samples, &exit, estimator);
                 assert!(sum.evaluations <= 16 * tiles.len() as u64);
             }
         }

@@ -1,9 +1,9 @@
 //! The smallest glTF scene with everything a number can be wrong in: a triangle with normals, three kinds of light, two
 //! kinds of camera.
 
-use scene::{ImportOptions, LightUnit, Scene, SceneError};
+use scene::{Scene, SceneError};
 use serde_json::{Value, json};
-use std::{fs, path::PathBuf};
+use test_support::{Bench, glb::OPTIONS};
 
 /// Positions, normals and indices of one triangle.
 pub fn binary() -> Vec<u8> {
@@ -63,32 +63,14 @@ pub fn document() -> Value {
     })
 }
 
-/// A folder for the two files.
-pub struct Folder(tempfile::TempDir);
+/// A folder with the binary.
+pub fn bench(binary: &[u8]) -> Bench {
+    let bench = Bench::new();
+    bench.write("scene.bin", binary);
+    bench
+}
 
-impl Folder {
-    pub fn new(binary: &[u8]) -> Folder {
-        let folder = Folder(tempfile::tempdir().expect("the temporary folder is writable"));
-        folder.put("scene.bin", binary);
-        folder
-    }
-
-    pub fn put(&self, name: &str, content: &[u8]) {
-        fs::write(self.path(name), content).expect("the temporary folder is writable");
-    }
-
-    pub fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    /// Imports a document together with the binary that lies there.
-    pub fn import(&self, document: &str) -> Result<Scene, SceneError> {
-        self.put("scene.gltf", document.as_bytes());
-        let options = ImportOptions {
-            metres_per_unit: 1.0,
-            light_unit: LightUnit::Radiometric,
-            emission_unit: LightUnit::Radiometric,
-        };
-        Scene::import(&self.path("scene.gltf"), &options)
-    }
+/// Imports a document together with the binary that lies there.
+pub fn import(bench: &Bench, document: &str) -> Result<Scene, SceneError> {
+    Scene::import(&bench.write("scene.gltf", document), &OPTIONS)
 }

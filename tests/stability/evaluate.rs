@@ -6,13 +6,14 @@ use bssrdf::{
 };
 use formats::cloud::{Cloud, Record, Sample};
 use gather::{
-    estimator::Estimator,
+    estimator::{Estimator, Scatterer},
     samples::{Exit, LitSamples},
 };
 use glam::{DVec3, Vec3};
 use std::{cell::RefCell, rc::Rc};
-use support::{
-    pipeline::{ESTIMATORS, MODELS, Scatterer},
+use test_support::{
+    lit::{scatterer, sum},
+    pipeline::{ESTIMATORS, MODELS},
     planted::{alternating, cloud_of},
 };
 
@@ -105,7 +106,7 @@ pub fn gather(medium: &Medium, incident: &Incident, exitant: &Exitant) -> [Value
     let Incident { position, normal, direction } = *incident;
     let sample = Sample { position: position.as_vec3(), normal, direction, flux: Vec3::ONE };
     let cloud = CLOUD.with(|last| kept(last, &sample, || cloud_of(&alternating([sample]))));
-    let scatterers = SCATTERERS.with(|last| kept(last, medium, || MODELS.map(|m| Scatterer::new(m, medium))));
+    let scatterers = SCATTERERS.with(|last| kept(last, medium, || MODELS.map(|m| scatterer(m, medium))));
     let samples = LitSamples::new(&cloud, &cloud.meta().materials[0].halves[0], medium.eta);
     let exit = |key: u64| Exit::new(exitant.position, exitant.normal, key);
     MODELS.map(|model| {
@@ -113,11 +114,11 @@ pub fn gather(medium: &Medium, incident: &Incident, exitant: &Exitant) -> [Value
         let value = |c| evaluate(&*of, medium.eta, c, incident, exitant).gather;
         let exact = DVec3::from_array([0, 1, 2].map(value));
         let scatterer = &scatterers[model as usize];
-        let fast = scatterer.sum(&samples, &exit(0), Estimator::Exhaustive).radiance;
+        let fast = sum(scatterer, &samples, &exit(0), Estimator::Exhaustive).radiance;
         assert_sane(exact, (model, medium, incident, exitant));
         assert_sane(fast, (model, medium, incident, exitant));
         for (estimator, key) in ESTIMATORS.into_iter().flat_map(|e| (0..8).map(move |key| (e, key))) {
-            let chosen = scatterer.sum(&samples, &exit(key), estimator).radiance;
+            let chosen = sum(scatterer, &samples, &exit(key), estimator).radiance;
             assert_sane(chosen, (model, estimator, medium, incident, exitant));
             let weighted = chosen.cmpge(fast * (1.0 - 1e-6)).all();
             let refused = chosen == DVec3::ZERO && exitant.position != position;

@@ -1,7 +1,7 @@
 //! NaN and infinity in every input file: an error that names the file or the field, never a panic, and never a number
 //! that is not finite in what was read.
 
-use crate::document::{Folder, binary, document};
+use crate::document::{bench, binary, document, import};
 use bssrdf::{Medium, MediumFile, Optics};
 use compare::compare;
 use formats::{
@@ -12,7 +12,8 @@ use glam::{DVec3, Vec3};
 use scene::{Scene, View, ViewFile};
 use serde_json::{Value, json};
 use std::path::Path;
-use support::{
+use test_support::{
+    Bench,
     meshes::{Light, Part, quad, world},
     pipeline::{by_area, sampled, write},
     planted::{alternating, planted},
@@ -52,7 +53,7 @@ fn assert_finite(scene: &Scene, what: &str) {
         assert!(material.base_color.is_finite() && material.emission.is_finite(), "{what}");
     }
     let point = scene.mesh.point(0, [0.3, 0.3, 0.4], scene::NormalKind::Geometric);
-    for light in &scene.lights {
+    for light in scene.lights() {
         assert!(light.importance(&point).is_finite(), "{what}");
         assert!(light.illuminate(&point, [0.5; 2]).is_none_or(|l| l.irradiance.is_finite()), "{what}");
     }
@@ -61,22 +62,22 @@ fn assert_finite(scene: &Scene, what: &str) {
 /// Each number of a glTF file in turn: by name, beyond float64, and beyond the float32 that the parser rounds to.
 #[test]
 fn gltf_json() {
-    let (folder, document) = (Folder::new(&binary()), document());
-    let good = folder.import(&document.to_string()).expect("the file is valid");
-    assert_eq!((good.cameras.len(), good.lights.len()), (2, 4));
+    let (bench, document) = (bench(&binary()), document());
+    let good = import(&bench, &document.to_string()).expect("the file is valid");
+    assert_eq!((good.cameras.len(), good.lights().count()), (2, 4));
     assert_finite(&good, "as it is");
     // Finite numbers whose product is not.
-    let error = folder.import(&replaced(&document, "/nodes/6/scale/2", "1e308")).err().expect("refused").to_string();
+    let error = import(&bench, &replaced(&document, "/nodes/6/scale/2", "1e308")).err().expect("refused").to_string();
     assert!(error.contains("scene.gltf") && error.contains("transform is not finite"), "{error}");
     let mut paths = Vec::new();
     numbers(&document, "", &mut paths);
     assert!(paths.len() > 90);
     for path in &paths {
         for number in NO_NUMBERS {
-            assert!(folder.import(&replaced(&document, path, number)).is_err(), "{path} is {number}");
+            assert!(import(&bench, &replaced(&document, path, number)).is_err(), "{path} is {number}");
         }
         for number in ["1e39", "-1e39", "1e200", "-1e308", "1e308", "1e-320"] {
-            if let Ok(scene) = folder.import(&replaced(&document, path, number)) {
+            if let Ok(scene) = import(&bench, &replaced(&document, path, number)) {
                 assert_finite(&scene, &format!("{path} is {number}"));
             }
         }
@@ -86,18 +87,18 @@ fn gltf_json() {
 /// Each float of the binary in turn; indices have no such values, and are checked against their count.
 #[test]
 fn gltf_binary() {
-    let import = |at: usize, number: f32| {
+    let changed = |at: usize, number: f32| {
         let mut binary = binary();
         binary[at..at + 4].copy_from_slice(&number.to_le_bytes());
-        Folder::new(&binary).import(&document().to_string())
+        import(&bench(&binary), &document().to_string())
     };
     for at in (0..72).step_by(4) {
         for number in [f32::NAN, -f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-            let error = import(at, number).err().expect("refused").to_string();
+            let error = changed(at, number).err().expect("refused").to_string();
             assert!(error.contains("scene.gltf") && error.contains("not finite"), "{error}");
         }
         for number in [f32::MAX, f32::MIN, 1e30, f32::MIN_POSITIVE, 1e-45] {
-            if let Ok(scene) = import(at, number) {
+            if let Ok(scene) = changed(at, number) {
                 assert_finite(&scene, &format!("{number} at {at}"));
             }
         }
@@ -106,11 +107,10 @@ fn gltf_binary() {
 
 #[test]
 fn view() {
-    let folder = Folder::new(&[]);
+    let bench = Bench::new();
     let view = json!({ "eye": [0, 0, 3], "target": [0, 0, 0], "up": [0, 1, 0], "yfov": 30, "width": 4, "height": 3 });
     let read = |text: &str| {
-        folder.put("view.json", text.as_bytes());
-        View::read(&folder.path("view.json")).map(|file| match file {
+        View::read(&bench.write("view.json", text)).map(|file| match file {
             ViewFile::One(one) => one.1,
             ViewFile::List(views) => panic!("a list of {}", views.len()),
         })
@@ -179,8 +179,8 @@ fn verdict(path: &Path, sample: Sample, change: impl Fn(&mut Meta)) -> Result<()
 /// Every float of a sample and of the facts about a cloud.
 #[test]
 fn cloud() {
-    let folder = Folder::new(&[]);
-    let path = folder.path("test.cloud");
+    let bench = Bench::new();
+    let path = bench.path("test.cloud");
     let good = Sample { position: Vec3::ZERO, normal: DVec3::Z, direction: DVec3::Z, flux: Vec3::ONE };
     verdict(&path, good, |_| ()).expect("the cloud is valid");
     let facts: [fn(&mut Meta, f64); 6] = [

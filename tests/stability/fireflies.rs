@@ -8,7 +8,7 @@ use gather::{
 };
 use glam::DVec3;
 use std::slice::from_ref;
-use support::{
+use test_support::{
     meshes::{Light, Part, sphere, world},
     pipeline::{by_area, cloud, orthographic, settings},
     z_test::Estimate,

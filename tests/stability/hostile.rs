@@ -5,7 +5,7 @@ use bssrdf::Model;
 use formats::cloud::{Cloud, Meta};
 use gather::{
     Input, Settings,
-    estimator::Estimator,
+    estimator::{Estimator, Scatterer},
     samples::{Exit, LitSamples},
 };
 use glam::DVec3;
@@ -17,9 +17,10 @@ use std::{
     slice::from_ref,
     time::{Duration, Instant},
 };
-use support::{
+use test_support::{
+    lit::{scatterer, sum},
     meshes::{Light, Part, World, quad, world},
-    pipeline::{ESTIMATORS, Scatterer, grey, sampled, settings, stratified, write},
+    pipeline::{ESTIMATORS, grey, sampled, settings, stratified, write},
 };
 
 /// Stored samples: five tiles in each half. Their trees have room for eight: nodes that hold nothing.
@@ -50,7 +51,7 @@ impl Lab {
         write(&drawn, &path);
         let good = Forged(fs::read(&path).expect("the cloud was written"));
         let camera = aimed_at(DVec3::ZERO, DVec3::new(0.3, 0.2, 1.0), 2e-3);
-        let scatterer = Scatterer::new(Model::StandardDipole, &grey(100.0, 1000.0, 0.0, 1.3));
+        let scatterer = scatterer(Model::StandardDipole, &grey(100.0, 1000.0, 0.0, 1.3));
         Lab { folder, world, camera, scatterer, good }
     }
 
@@ -72,7 +73,7 @@ impl Lab {
             for x in [0.0, 5e-3, 1.0] {
                 let exit = Exit::new(DVec3::new(x, 0.0, 0.0), DVec3::Z, forged.0[20].into());
                 for estimator in ESTIMATORS {
-                    self.scatterer.sum(&samples, &exit, estimator);
+                    sum(&self.scatterer, &samples, &exit, estimator);
                 }
             }
         }

@@ -5,8 +5,9 @@ use bssrdf::{ETA_MAX, ETA_MIN, Incident, Medium, Separation, fresnel};
 use formats::cloud::Sample;
 use gather::samples::{Exit, LitSamples};
 use glam::{DVec3, Vec3};
-use support::{
-    pipeline::{ESTIMATORS, MODELS, Scatterer, grey},
+use test_support::{
+    lit::{scatterer, sum},
+    pipeline::{ESTIMATORS, MODELS, grey},
     planted::{alternating, cloud_of},
 };
 
@@ -87,7 +88,7 @@ fn total_reflection_outside() {
         let samples = LitSamples::new(&cloud, &half, 0.7);
         let exit = Exit::new(DVec3::X, DVec3::Z, 3);
         for (model, estimator) in MODELS.into_iter().flat_map(|m| ESTIMATORS.map(|e| (m, e))) {
-            let radiance = Scatterer::new(model, &medium(0.7)).sum(&samples, &exit, estimator).radiance;
+            let radiance = sum(&scatterer(model, &medium(0.7)), &samples, &exit, estimator).radiance;
             assert_eq!(radiance, DVec3::ZERO, "{model:?} {estimator:?}");
         }
     }

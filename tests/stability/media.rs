@@ -3,7 +3,7 @@
 use crate::evaluate::{along_plane, assert_close, assert_is, bare, gather, onto_plane, out_of_plane};
 use bssrdf::{Coefficients, Medium, Model, Separation, built_in, built_in_names};
 use glam::DVec3;
-use support::pipeline::{MODELS, grey, medium};
+use test_support::pipeline::{MODELS, grey, medium};
 
 /// Lit from the front, and from behind through a sheet; `scale` in m.
 fn separations(scale: f64) -> [Separation; 3] {

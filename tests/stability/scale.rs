@@ -4,7 +4,7 @@ use crate::scenes::{aimed_at, render};
 use bssrdf::Coefficients;
 use gather::{Filter, Settings, estimator::Estimator};
 use glam::DVec3;
-use support::{
+use test_support::{
     meshes::{Light, Part, World, slab, world},
     pipeline::{ESTIMATORS, MODELS, by_area, cloud, grey, medium, settings},
 };

@@ -6,7 +6,7 @@ use crate::evaluate::{along_plane, assert_close, assert_is, bare, gather, onto_p
 use bssrdf::{Exitant, Medium, Model, Separation, fresnel};
 use glam::DVec3;
 use std::f64::consts::PI;
-use support::{pipeline::grey, random::Random};
+use test_support::{pipeline::grey, random::Random};
 
 /// α' = 0.9.
 fn medium() -> Medium {

@@ -6,7 +6,7 @@ use bssrdf::{Coefficients, Exitant, Incident, Medium, Separation, evaluate};
 use gather::estimator::Estimator;
 use glam::DVec3;
 use std::f64::consts::PI;
-use support::{
+use test_support::{
     meshes::{Light, Part, slab, world},
     pipeline::{Lit, MODELS, Point, by_area, cloud, grey},
 };

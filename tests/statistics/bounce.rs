@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 use sample_surface::Pattern;
-use support::{
+use test_support::{
     EFFORT,
     meshes::{Light, Part, World, quad, world},
     pipeline::{Sampling, by_area, sampled},

@@ -5,7 +5,7 @@ use gather::{Input, Settings, estimator::Estimator, film::Pixel};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::slice::from_ref;
-use support::{
+use test_support::{
     EFFORT,
     pipeline::{cloud, grey, orthographic},
     z_test::{Estimate, assert_equal},

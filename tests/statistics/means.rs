@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use sample_surface::Choice;
 use scene::Camera;
 use std::ops::Range;
-use support::{
+use test_support::{
     EFFORT,
     meshes::{Light, Part, World, quad, rectangle, slab, world},
     pipeline::{Sampling, by_area, cloud, grey, orthographic, sampled, settings, stratified},

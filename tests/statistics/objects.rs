@@ -9,7 +9,7 @@ use scene::{
     Camera,
     random::{Purpose, Stream},
 };
-use support::{
+use test_support::{
     EFFORT,
     chi_square::assert_fits,
     meshes::{Light, Mesh, Part, World, rectangle, slab, world},

@@ -6,7 +6,7 @@ use gather::{Input, Settings, estimator::Estimator};
 use glam::{DVec3, Vec3};
 use sample_surface::{Choice, Pattern};
 use std::slice::from_ref;
-use support::{
+use test_support::{
     EFFORT,
     meshes::{Part, World, rectangle, slab, world},
     pipeline::{Sampling, by_area, cloud, settings, stratified},

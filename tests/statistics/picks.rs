@@ -3,14 +3,15 @@
 use bssrdf::Model;
 use formats::cloud::{Cloud, Sample};
 use gather::{
-    estimator::{Estimator, Sum},
+    estimator::{Estimator, Scatterer, Sum},
     samples::{Exit, LitSamples},
 };
 use glam::{DVec3, Vec3};
-use support::{
+use test_support::{
     EFFORT,
     chi_square::assert_fits,
-    pipeline::{Scatterer, grey},
+    lit::{scatterer, sum},
+    pipeline::grey,
     planted::cloud_of,
     random::Random,
 };
@@ -36,7 +37,7 @@ struct Experiment {
 
 impl Experiment {
     fn new(seed: u64) -> Experiment {
-        let scatterer = Scatterer::new(Model::StandardDipole, &grey(1.0, 10.0, 0.0, 1.3));
+        let scatterer = scatterer(Model::StandardDipole, &grey(1.0, 10.0, 0.0, 1.3));
         Experiment { scatterer, random: Random(seed) }
     }
 
@@ -44,7 +45,7 @@ impl Experiment {
     fn sum(&mut self, cloud: &Cloud, x: f64) -> Sum {
         let samples = LitSamples::new(cloud, &cloud.meta().materials[0].halves[0], 1.3);
         let exit = Exit::new(DVec3::new(x, 0.0, 0.0), DVec3::Z, self.random.bits());
-        self.scatterer.sum(&samples, &exit, LOOSE)
+        sum(&self.scatterer, &samples, &exit, LOOSE)
     }
 }
 

@@ -1,7 +1,7 @@
 //! The table of reflectance errors that users are warned by, against random walks.
 
 use bssrdf::Coefficients;
-use support::{
+use test_support::{
     EFFORT,
     half_space::reflectance,
     pipeline::MODELS,

@@ -11,7 +11,7 @@ use gather::{
     samples::{Exit, LitSamples},
 };
 use glam::{DVec3, Vec3};
-use support::{
+use test_support::{
     EFFORT,
     meshes::{Light, Part, slab, world},
     pipeline::{Lit, Point, RULES, by_area, cloud, grey},

@@ -9,7 +9,7 @@ use gather::{
 };
 use glam::DVec3;
 use rayon::prelude::*;
-use support::{
+use test_support::{
     EFFORT,
     pipeline::{Sampling, cloud, orthographic},
     z_test::{Estimate, assert_equal},

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use sample_surface::Choice;
 use serde_json::Value;
 use std::{f64::consts::PI, slice::from_ref};
-use support::{
+use test_support::{
     EFFORT,
     meshes::{Light, Part, World, graded_disc, world},
     pipeline::{Lit, Point, Sampling, by_area, cloud, orthographic, settings},

@@ -13,6 +13,7 @@ use bssrdf::{
     simd::{self, Kernel, Level},
 };
 use divan::{Bencher, black_box, counter::ItemsCount};
+use test_support::Random;
 
 fn main() {
     divan::main();
@@ -20,29 +21,6 @@ fn main() {
 
 /// Blocks of one sum: they stay in the second-level cache, as packets of samples do in a gather.
 const BLOCKS: usize = 512;
-
-/// SplitMix64 (Steele, Lea and Flood 2014).
-struct Random(u64);
-
-impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * ((self.bits() >> 11) as f64 / (1u64 << 53) as f64)
-    }
-
-    fn direction(&mut self) -> DVec3 {
-        let z = self.between(-1.0, 1.0);
-        let (sine, cosine) = self.between(0.0, std::f64::consts::TAU).sin_cos();
-        let radius = (1.0 - z * z).sqrt();
-        DVec3::new(radius * cosine, radius * sine, z)
-    }
-}
 
 /// The sum of a model over blocks, in float64 and a fixed order, as a gather does it.
 struct Sum<'a, M> {

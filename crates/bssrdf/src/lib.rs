@@ -44,5 +44,5 @@ pub use glam::DVec3;
 pub use media::{built_in, built_in_names};
 pub use medium::{Coefficients, ETA_MAX, ETA_MIN, Interface, Medium};
 pub use medium_file::{MediumFile, Optics, Unit};
-pub use model::{BetterDipole, DirectionalDipole, LaneVisitor, Model, StandardDipole};
+pub use model::{AnyLanes, BetterDipole, DirectionalDipole, LaneWork, Model, StandardDipole};
 pub use simd;

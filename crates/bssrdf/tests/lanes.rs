@@ -9,7 +9,7 @@ use bssrdf::{
     },
     simd::{self, Kernel, Level},
 };
-use std::f64::consts::TAU;
+use test_support::Random;
 
 /// Distances in reduced mean free paths, `σ_t' r`.
 const RANGES: [[f64; 2]; 4] = [[1e-3, 1.0], [1.0, 10.0], [10.0, 100.0], [100.0, 1000.0]];
@@ -19,34 +19,6 @@ const BLOCKS: usize = 8000;
 
 /// What 999 of 1000 values keep to, relative: far below the grain of any image.
 const TOLERANCE: f64 = 1e-5;
-
-/// SplitMix64 (Steele, Lea and Flood 2014): test data only.
-struct Random(u64);
-
-impl Random {
-    fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.uniform()
-    }
-
-    fn log_between(&mut self, low: f64, high: f64) -> f64 {
-        self.between(low.ln(), high.ln()).exp()
-    }
-
-    fn direction(&mut self) -> DVec3 {
-        let z = self.between(-1.0, 1.0);
-        let (sine, cosine) = self.between(0.0, TAU).sin_cos();
-        let radius = (1.0 - z * z).sqrt();
-        DVec3::new(radius * cosine, radius * sine, z)
-    }
-}
 
 /// From clear to white, a tenth of the channels without absorption; 1/m.
 fn medium(random: &mut Random) -> Medium {

@@ -26,7 +26,7 @@ pub use named::{Thing, Unclear, the_one, word_for};
 pub use printable::printable;
 pub use progress::Progress;
 pub use rgb::parse_rgb;
-pub use scene_args::{LightUnit, Normals, SceneArgs};
+pub use scene_args::SceneArgs;
 pub use tables::{camera_names, camera_table, material_table};
 
 use clap::{Args, ValueEnum};

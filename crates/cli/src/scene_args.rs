@@ -4,8 +4,9 @@ use crate::{
     Common, Failure, Files,
     environment::{EnvironmentSource, parse_environment},
 };
-use clap::{Args, ValueEnum};
-use scene::{DVec3, ImportOptions, MeshDefects, NormalKind, Scene, light::Environment};
+use clap::Args;
+use formats::cloud::{LightUnit, Normals};
+use scene::{DVec3, ImportOptions, MeshDefects, NormalKind, Scene, SceneError};
 use std::path::Path;
 
 /// Arguments about the scene.
@@ -42,20 +43,6 @@ pub struct SceneArgs {
     pub strict: bool,
 }
 
-/// Which normals to use.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Normals {
-    Shading,
-    Geometric,
-}
-
-/// What the file's light numbers are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum LightUnit {
-    Radiometric,
-    Photometric,
-}
-
 impl SceneArgs {
     /// Declares the files that these arguments name.
     pub fn declare(&self, files: &mut Files) -> Result<(), Failure> {
@@ -65,19 +52,18 @@ impl SceneArgs {
         }
     }
 
-    /// Reads the scene and the environment that it is given; prints the import's warnings.
-    pub fn import(&self, path: &Path, common: &Common) -> Result<(Scene, Environment), Failure> {
+    /// Reads the scene and its environment; prints the import's warnings.
+    pub fn import(&self, path: &Path, common: &Common) -> Result<Scene, Failure> {
         let options = ImportOptions {
             metres_per_unit: self.metres_per_unit,
-            light_unit: self.light_unit.of_scene(),
-            emission_unit: self.emission_unit().of_scene(),
+            light_unit: scene_unit(self.light_unit),
+            emission_unit: scene_unit(self.emission_unit()),
         };
-        let mut scene = Scene::import(path, &options)?;
+        let mut scene = Scene::import(path, &options).map_err(with_option)?;
         scene.warnings.iter().for_each(|w| common.warn(format_args!("{}: {w}", path.display())));
         let source = self.environment.as_ref().unwrap_or(&EnvironmentSource::Constant(DVec3::ZERO));
-        let environment = source.read(self.environment_scale, self.environment_rotation, common)?;
-        scene.add_environment(environment.clone());
-        Ok((scene, environment))
+        scene.environment = source.read(self.environment_scale, self.environment_rotation, common)?;
+        Ok(scene)
     }
 
     /// Warns of what is not honoured of the scene, of what is not used on the surfaces of the translucent materials, and of
@@ -116,28 +102,17 @@ impl SceneArgs {
     }
 }
 
-impl Normals {
-    pub fn name(self) -> &'static str {
-        match self {
-            Normals::Shading => "shading",
-            Normals::Geometric => "geometric",
-        }
-    }
+/// The failure of an import, with the option that helps.
+fn with_option(error: SceneError) -> Failure {
+    let is_too_large = matches!(error, SceneError::TooLarge { .. });
+    let failure = Failure::from(error);
+    if is_too_large { Failure::usage(format!("{}; set --metres-per-unit", failure.message)) } else { failure }
 }
 
-impl LightUnit {
-    fn of_scene(self) -> scene::LightUnit {
-        match self {
-            LightUnit::Radiometric => scene::LightUnit::Radiometric,
-            LightUnit::Photometric => scene::LightUnit::Photometric,
-        }
-    }
-
-    pub fn name(self) -> &'static str {
-        match self {
-            LightUnit::Radiometric => "radiometric",
-            LightUnit::Photometric => "photometric",
-        }
+fn scene_unit(unit: LightUnit) -> scene::LightUnit {
+    match unit {
+        LightUnit::Radiometric => scene::LightUnit::Radiometric,
+        LightUnit::Photometric => scene::LightUnit::Photometric,
     }
 }
 

@@ -5,11 +5,12 @@
 
 use divan::{Bencher, counter::ItemsCount};
 use scene::{
-    DVec3, ImportOptions, LightUnit, NormalKind, Rays, Scene,
+    DVec3, NormalKind, Rays, Scene,
     random::{Item, Purpose, Stream},
     warp,
 };
 use std::{path::PathBuf, sync::LazyLock};
+use test_support::{data, glb::OPTIONS};
 
 /// Width and height of the image that the camera rays are of.
 const PIXELS: usize = 256;
@@ -21,14 +22,8 @@ struct Ray {
 }
 
 static SCENE: LazyLock<Scene> = LazyLock::new(|| {
-    let default = || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../data/scenes/figure.glb");
-    let path = std::env::var_os("SCENE").map_or_else(default, PathBuf::from);
-    let options = ImportOptions {
-        metres_per_unit: 1.0,
-        light_unit: LightUnit::Radiometric,
-        emission_unit: LightUnit::Radiometric,
-    };
-    Scene::import(&path, &options).expect("the scene can be read")
+    let path = std::env::var_os("SCENE").map_or_else(|| data("scenes/figure.glb").into(), PathBuf::from);
+    Scene::import(&path, &OPTIONS).expect("the scene can be read")
 });
 
 static RAYS: LazyLock<Rays<'static>> = LazyLock::new(|| Rays::new(&SCENE.mesh));

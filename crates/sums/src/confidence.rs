@@ -1,9 +1,10 @@
-//! What an estimated standard error is worth, by how many independent values it was estimated from.
+//! Confidence intervals of errors that were estimated from few independent values.
 //!
-//! An error that is estimated from few values may be small by luck, and whoever stops at the first small one is lucky
-//! often. Student's law says how much wider the interval must be that holds the true value in 95 of 100 cases.
+//! An error that is estimated from few values may be small by chance, and a program that stops at the first small one
+//! favours that chance. Student's distribution says by how much the interval that contains the true value in 95 of 100
+//! cases must be wider.
 
-/// `(ν, t)`: Student's t of `ν` degrees of freedom is beyond `±t` in 5 of 100 cases.
+/// Pairs `(ν, t)`: Student's t with `ν` degrees of freedom lies outside `±t` in 5 of 100 cases.
 const QUANTILES: [(f64, f64); 14] = [
     (1.0, 12.7062),
     (1.5, 6.0167),
@@ -21,39 +22,39 @@ const QUANTILES: [(f64, f64); 14] = [
     (f64::INFINITY, 1.959_964),
 ];
 
-/// The t that Student's t of `freedom` degrees of freedom, at least one, is beyond in 5 of 100 cases, either way. Between
-/// the values of the table its logarithm is taken as linear in `1/ν`, which is at most 2 % too large and never too small.
+/// The `t` such that Student's t with `freedom` degrees of freedom, of which there is at least one, lies outside `±t` in
+/// 5 of 100 cases. Between the entries of the table, `ln t` is interpolated linearly in `1/ν`, which is at most 2 % too
+/// large and never too small.
 pub fn student(freedom: f64) -> f64 {
-    // NaN counts as the least that is possible.
+    // NaN counts as one degree of freedom.
     let inverse = if freedom > 1.0 { 1.0 / freedom } else { 1.0 };
-    let place = QUANTILES.partition_point(|(freedom, _)| 1.0 / freedom > inverse).clamp(1, QUANTILES.len() - 1);
-    let [(a, low), (b, high)] = [QUANTILES[place - 1], QUANTILES[place]].map(|(f, t)| (1.0 / f, f64::ln(t)));
+    let above = QUANTILES.partition_point(|(freedom, _)| 1.0 / freedom > inverse).clamp(1, QUANTILES.len() - 1);
+    let [(a, low), (b, high)] = [QUANTILES[above - 1], QUANTILES[above]].map(|(f, t)| (1.0 / f, f64::ln(t)));
     (low + (high - low) * (inverse - a) / (b - a)).exp()
 }
 
-/// A standard error, relative to what it is the error of, and what is known of it.
+/// A relative standard error that was estimated, and how well it is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// Estimated relative standard error.
     pub error: f64,
-    /// Degrees of freedom that it was estimated with: independent values, less their mean.
+    /// Degrees of freedom of the estimate: the number of independent values, less one for their mean.
     pub freedom: f64,
 }
 
 impl Estimate {
-    /// The relative error is below this with 95 % confidence.
+    /// The bound of the relative error with 95 % confidence.
     pub fn within(&self) -> f64 {
         self.error * student(self.freedom)
     }
 
-    /// The standard error that would have this interval were it known exactly: what a target is compared with, so that an
-    /// error beyond twice the target is as rare as it is for a known one.
+    /// The standard error that, known exactly, would have the same interval. Compared with a target, it makes an error
+    /// above twice the target as rare as it is for a known standard error.
     pub fn safe(&self) -> f64 {
         self.within() / student(f64::INFINITY)
     }
 }
 
-/// A relative error in per cent; a small one is not said to be zero.
+/// A relative error in per cent, with two significant digits where two decimals would show 0.
 pub fn percent(error: f64) -> String {
     if error == 0.0 || error >= 1e-4 { format!("{:.2} %", 100.0 * error) } else { format!("{:.1e} %", 100.0 * error) }
 }

@@ -1,4 +1,4 @@
-//! The lit samples of one material and half as the estimators read them: tiles as they lie in the file.
+//! The lit samples of one material and half, as the estimators read them from the tiles of the file.
 
 use bssrdf::{
     lanes::{Block, EntryRefraction, LANES, Lane},
@@ -12,7 +12,7 @@ use glam::DVec3;
 
 const _: () = assert!(LANES == TILE, "a tile is evaluated as one block");
 
-/// Samples that carry light into one medium.
+/// Samples whose light enters one medium.
 #[derive(Clone, Copy, Debug)]
 pub struct LitSamples<'a> {
     tiles: &'a [Tile],
@@ -23,16 +23,16 @@ pub struct LitSamples<'a> {
     scale: f32,
 }
 
-/// The exitant point that a sum is for.
+/// The exitant point of a sum.
 #[derive(Clone, Copy, Debug)]
 pub struct Exit {
-    /// `x_o` as float32, m.
+    /// `x_o` rounded to float32, m.
     high: [f32; 3],
-    /// What float32 left over of it: `x_o − x_i` then has the digits of float64.
+    /// The remainder of `x_o`, m, with which `x_o − x_i` has the precision of float64.
     low: [f32; 3],
     /// `n_o`.
     pub normal: [f32; 3],
-    /// Random numbers of this gather.
+    /// Selects the random numbers of the sum.
     pub key: u64,
 }
 
@@ -43,9 +43,9 @@ impl Exit {
         Exit { high: high.to_array(), low: low.to_array(), normal: normal.as_vec3().to_array(), key }
     }
 
-    /// The same with random numbers for one of several parts of the samples; the first has those of this gather.
-    pub fn of_part(&self, part: usize) -> Exit {
-        Exit { key: self.key.wrapping_add((part as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15)), ..*self }
+    /// The same point with the random numbers of one of several shards; the first shard keeps those of this point.
+    pub fn of_shard(&self, shard: usize) -> Exit {
+        Exit { key: self.key.wrapping_add((shard as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15)), ..*self }
     }
 
     /// `x_o − x_i`, m.
@@ -60,26 +60,26 @@ impl Exit {
 }
 
 impl<'a> LitSamples<'a> {
-    /// The samples of one group of a cloud, entering a medium of relative index `eta`.
+    /// The samples of one group of a cloud; their light enters a medium of relative index `eta`.
     pub fn new(cloud: &'a Cloud, group: &Group, eta: f64) -> LitSamples<'a> {
         let (tiles, nodes) = cloud.group(group);
         LitSamples::of(tiles, nodes, group.samples as usize, eta)
     }
 
-    /// `len` samples in tiles with the tree over them: as many as the tiles hold, if that is less.
+    /// The first `len` samples of the tiles, or all if there are fewer, with the tree over them.
     pub fn of(tiles: &'a [Tile], nodes: &'a [Node], len: usize, eta: f64) -> LitSamples<'a> {
         let scale = nodes.get(1).map_or(1.0, |root| unit_of(root.flux));
         LitSamples { tiles, nodes, len: len.min(tiles.len() * TILE), entry: EntryRefraction::new(eta), scale }
     }
 
-    /// What makes the flux of all samples together about 1: a power of two, so that nothing is rounded by it. Squares and
-    /// sums of so many fluxes then have room in float32, however strong or weak the light is.
+    /// The power of two that scales the total flux to about 1. Squares and sums of fluxes then neither overflow nor vanish
+    /// in float32, however strong or weak the light is, and a power of two rounds nothing.
     #[inline(always)]
     pub fn scale(&self) -> f32 {
         self.scale
     }
 
-    /// Samples, fillers not counted.
+    /// The number of samples, without the fillers of the last tile.
     pub fn len(&self) -> usize {
         self.len
     }
@@ -112,7 +112,7 @@ impl<'a> LitSamples<'a> {
         self.nodes
     }
 
-    /// One whole tile as seen from `exit`, with its flux `T12 Φ`, W.
+    /// The samples of one tile as seen from `exit`, with their flux `T12 Φ`, W.
     #[inline(always)]
     pub fn block(&self, index: usize, exit: &Exit) -> (Block, [Lane; 3]) {
         let mut words = Words::default();
@@ -134,7 +134,7 @@ impl<'a> LitSamples<'a> {
         self.enter(&words, exit)
     }
 
-    /// Asks for the memory of a sample that will be picked soon.
+    /// Prefetches a sample that will be picked soon.
     #[inline(always)]
     pub fn prefetch(&self, index: u32) {
         simd::prefetch(&self.tiles.as_flattened()[index as usize]);
@@ -154,7 +154,7 @@ impl<'a> LitSamples<'a> {
     }
 }
 
-/// The power of two that makes a number about 1, as far as float32 has it.
+/// The power of two that scales a number into [1, 2), within the exponents of normal float32 numbers.
 fn unit_of(number: f32) -> f32 {
     let exponent = ((number.to_bits() >> 23) & 0xFF) as i32 - 127;
     2f32.powi(-exponent.clamp(-126, 126))
@@ -186,7 +186,7 @@ impl Words {
 mod tests {
     use super::*;
 
-    /// Seen to catch: an exponent that is not held within those of normal numbers, whose power is infinite or 0.
+    /// Seen to catch: an exponent outside those of normal numbers, whose power is infinite or 0.
     #[test]
     fn the_unit_of_any_number_is_a_power_of_two() {
         for number in [1.0, 1.5, 3e-20, 3e20, 1e38] {

@@ -1,8 +1,8 @@
-//! How many paths: as many as asked for, or as an error takes.
+//! Renders with a given number of paths, or with as many as an error target takes.
 
 use cli::{Common, Progress, count, count_up};
-use formats::cloud::Cloud;
-use gather::{Input, Rendered, Settings, estimator::Estimator, film::Errors, render, shards, start};
+use formats::cloud::{Cloud, Pattern};
+use gather::{Input, Passes, Rendered, Settings, estimator::Estimator, film::Errors, render, shards};
 use sums::confidence::Estimate;
 
 pub fn render_all(input: &Input, settings: &Settings, common: &Common) -> Rendered {
@@ -12,18 +12,19 @@ pub fn render_all(input: &Input, settings: &Settings, common: &Common) -> Render
     rendered
 }
 
-/// Doubles the paths until the error is the target, or the cloud's own error is most of it, or there are enough.
+/// Doubles the paths until the error meets the target, or the cloud's own error exceeds it, or `settings.paths_per_pixel`
+/// are reached.
 pub fn render_to(target: f64, input: &Input, settings: &Settings, common: &Common) -> Rendered {
-    let most = settings.paths_per_pixel;
-    let mut paths = FIRST_PATHS.min(most);
-    let mut session = start(input, &Settings { paths_per_pixel: paths, ..settings.clone() });
+    let max_paths = settings.paths_per_pixel;
+    let mut paths = FIRST_PATHS.min(max_paths);
+    let mut passes = Passes::new(input, &Settings { paths_per_pixel: paths, ..settings.clone() });
     let pixels = settings.part().pixels() as u64;
     let (mut done, mut before) = (0, f64::INFINITY);
     loop {
         let progress = Progress::start(common, "gathering", pixels, &steps(done + 1, paths));
-        session.pass(paths - done, &|n| progress.add(n));
+        passes.pass(paths - done, |n| progress.add(n));
         progress.finish();
-        let errors = session.errors();
+        let errors = passes.errors();
         let round = Round { target, input, paths, done, before };
         match round.judge(errors.as_ref(), settings) {
             Verdict::Met => break,
@@ -33,41 +34,43 @@ pub fn render_to(target: f64, input: &Input, settings: &Settings, common: &Commo
             }
             Verdict::More => {}
         }
-        if paths >= most {
+        if paths >= max_paths {
             common.warn(format_args!(
                 "--target-error is not met with {} paths a pixel; --spp allows more",
-                count(u64::from(most))
+                count(u64::from(max_paths))
             ));
             break;
         }
         before = errors.map_or(f64::INFINITY, |errors| errors.total);
         done = paths;
-        paths = (2 * paths).min(most);
+        paths = (2 * paths).min(max_paths);
     }
-    session.finish()
+    passes.finish()
 }
 
-/// What a pass adds to: paths of these numbers.
+/// What the progress of a pass counts: pixels, each with these paths.
 fn steps(first: u32, last: u32) -> String {
     format!("pixels, paths {} to {}", count(u64::from(first)), count(u64::from(last)))
 }
 
-/// What is known after a pass.
+/// The state after a pass.
 struct Round<'a> {
     target: f64,
     input: &'a Input<'a>,
-    /// Of each pixel, with this pass and without.
+    /// Paths of each pixel after this pass, and before it.
     paths: u32,
     done: u32,
-    /// The error without it.
+    /// The error before this pass.
     before: f64,
 }
 
-/// What comes next.
+/// What follows from a pass.
 enum Verdict {
+    /// The target is met.
     Met,
+    /// More paths are needed.
     More,
-    /// More paths do not help, and why.
+    /// More paths would not help, for this reason.
     Never(String),
 }
 
@@ -98,23 +101,23 @@ impl Round<'_> {
         self.judge_cloud(errors, &estimate, settings)
     }
 
-    /// Whether the cloud's error is most of the target.
+    /// Whether the cloud's own error exceeds its share of the target.
     fn judge_cloud(&self, errors: &Errors, estimate: &Estimate, settings: &Settings) -> Verdict {
         let clouds = self.input.clouds.len();
-        // What differs because paths have not had their turns at all clouds does not last.
+        // Until the paths of a pixel have gathered from all shards, part of the difference between its halves is transient.
         if clouds > 1 && (self.done as usize) < 2 * clouds {
             return Verdict::More;
         }
-        // What differs may do so by chance, in an image of few pixels most of all: three standard deviations of it.
+        // In an image of few pixels the two errors may differ by chance; the cloud's must exceed three standard deviations.
         let [paths, total] = [errors.paths, errors.total].map(|error| error * error);
-        let shows = total > exceeded_rarely(errors.paths_freedom) * paths;
-        let lasts = lasting(errors.total, self.before, estimate.freedom, settings.estimator);
-        let error = if shows { errors.cloud.max(lasts) } else { lasts };
+        let significant = total > exceeded_rarely(errors.paths_freedom) * paths;
+        let lasting = lasting(errors.total, self.before, estimate.freedom, settings.estimator);
+        let error = if significant { errors.cloud.max(lasting) } else { lasting };
         if error > CLOUD_LIMITS * self.target {
             let percent = 100.0 * error;
             return Verdict::Never(format!("the cloud alone has an error of {percent:.2} %: {}", self.way_out(error)));
         }
-        // Where paths hardly matter any more, the cloud's two halves are all that tells of its error.
+        // Where the error of the paths is small, the cloud's error is known from its two halves alone.
         let cloud = Estimate { error: errors.cloud, freedom: errors.cloud_freedom };
         if errors.paths < 0.5 * cloud.error && cloud.safe() > self.target {
             let (percent, within) = (100.0 * cloud.error, 100.0 * cloud.within());
@@ -127,15 +130,15 @@ impl Round<'_> {
         Verdict::More
     }
 
-    /// Samples that carry light.
+    /// The number of lit samples.
     fn lit(&self) -> u64 {
         (0..shards::materials(self.input.clouds).len()).map(|slot| shards::count(self.input.clouds, slot)).sum()
     }
 
-    /// The relative error of the light of a cloud in which so few samples are lit: that of their number, if it is, as the
-    /// samples are, well spread or independent. The halves of the cloud may agree by luck. None is expected of a dark cloud.
+    /// The relative error of the light that follows from the number of lit samples alone, which is as well spread as the
+    /// samples. If few are lit, the halves of the cloud may agree by chance. A dark cloud has no error.
     fn error_of_few(&self) -> f64 {
-        let stratified = |cloud: &Cloud| cloud.meta().options.pattern == "stratified";
+        let stratified = |cloud: &Cloud| cloud.meta().options.pattern == Pattern::Stratified;
         let lit = self.lit().max(1) as f64;
         let independent = lit.powf(-0.5);
         match self.lit() {
@@ -145,9 +148,9 @@ impl Round<'_> {
         }
     }
 
-    /// What to do about a cloud of this error.
+    /// Advice on a cloud of this error.
     fn way_out(&self, error: f64) -> String {
-        // The error of well-spread samples falls at least as their number to the power 3/4.
+        // The error of well-spread samples falls at least as fast as their number to the power −3/4.
         let drawn = shards::drawn(self.input.clouds) as f64;
         let needed = drawn * (error / (CLOUD_LIMITS * self.target)).powf(4.0 / 3.0);
         if self.input.clouds.len() == 1 {
@@ -158,28 +161,29 @@ impl Round<'_> {
     }
 }
 
-/// What remains of an error that was `before` with half the paths and is `now`, if the variance of paths falls as their
-/// number: that of well-spread ones falls faster. What the cut may add does not fall, because it is asked of the pixel.
-/// Without anything that remains, `before` is twice `now` in variance, and the difference has a standard deviation of four
-/// times the root of one over the degrees of freedom: three of them are taken for chance.
+/// The part of the error that more paths do not reduce, given that the error was `before` with half the paths and is `now`.
+/// The variance of paths falls as their number (that of well-spread paths falls faster); the error that the cut adds stays,
+/// because its target is that of a pixel. If nothing stays, the variance of `before` is twice that of `now`, and their
+/// difference has a relative standard deviation of four over the root of the degrees of freedom; three of these are taken
+/// for chance.
 fn lasting(now: f64, before: f64, freedom: f64, estimator: Estimator) -> f64 {
-    let added = if let Estimator::Cut { accuracy } = estimator { accuracy } else { 0.0 };
+    let added = estimator.accuracy().unwrap_or(0.0);
     let chance = 3.0 * 4.0 / freedom.sqrt();
     ((2.0 - chance) * now * now - before * before - added * added).max(0.0).sqrt()
 }
 
-/// What a variance of so many degrees of freedom is above as a multiple of the true one in 1 of 1000 cases (Wilson and
-/// Hilferty 1931).
+/// The multiple of the true variance that an estimate with so many degrees of freedom exceeds in 1 of 1000 cases (Wilson
+/// and Hilferty 1931).
 fn exceeded_rarely(freedom: f64) -> f64 {
     let a = 2.0 / (9.0 * freedom);
     (1.0 - a + 3.09 * a.sqrt()).powi(3)
 }
 
-/// Paths of the first pass of `--target-error`: two for each half of the cloud.
+/// Paths of the first pass: two for each half of the cloud.
 const FIRST_PATHS: u32 = 4;
 
-/// The cloud limits if it alone takes this share of the wanted error, half its square.
+/// The largest share of the target that the cloud's own error may take: half of its square.
 const CLOUD_LIMITS: f64 = 0.7;
 
-/// Paths of each pixel after which an image in which no two differ is left as it is.
+/// Paths of each pixel after which rendering ends if no two paths of the image differ.
 const UNKNOWN_PATHS: u32 = 64;

@@ -5,7 +5,6 @@
 
 mod calibration;
 pub mod counts;
-mod crop;
 mod edge;
 pub mod film;
 mod freedom;
@@ -19,16 +18,15 @@ pub mod renderer;
 pub mod shards;
 mod subsurface;
 
-pub use crop::Crop;
-pub use sums::{estimator, samples};
+pub use passes::Passes;
+pub use sums::{Summation, estimator, samples};
 
-use bssrdf::{LaneVisitor, Medium, Model, lanes::LaneModel};
+use bssrdf::{Medium, Model};
 use counts::Counts;
 use estimator::Estimator;
-use film::{Errors, Pixel};
+use film::Pixel;
 use formats::cloud::Cloud;
-use passes::Passes;
-use scene::{Camera, NormalKind, Rays, Scene, light::Environment};
+use scene::{Camera, NormalKind, Rays, Scene};
 
 /// Over what part of a pixel its paths are spread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +35,15 @@ pub enum Filter {
     Box,
     /// Its centre.
     Point,
+}
+
+/// A part of an image, pixels: its left column, its upper row, columns, rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    pub x: usize,
+    pub y: usize,
+    pub width: usize,
+    pub height: usize,
 }
 
 /// How to render.
@@ -52,8 +59,6 @@ pub struct Settings {
     pub estimator: Estimator,
     pub model: Model,
     pub normals: NormalKind,
-    /// What rays that escape see.
-    pub environment: Environment,
     pub max_depth: u32,
     pub seed: u64,
 }
@@ -62,6 +67,17 @@ impl Settings {
     /// What is rendered of the image.
     pub fn part(&self) -> Crop {
         self.crop.unwrap_or(Crop { x: 0, y: 0, width: self.width, height: self.height })
+    }
+}
+
+impl Crop {
+    pub fn pixels(&self) -> usize {
+        self.width * self.height
+    }
+
+    /// Column and row in the whole image of pixel `place` of the part, which are counted row by row.
+    pub fn pixel(&self, place: usize) -> [usize; 2] {
+        [self.x + place % self.width, self.y + place / self.width]
     }
 }
 
@@ -87,34 +103,9 @@ pub struct Rendered {
     pub non_finite_count: u64,
 }
 
-/// An image on its way: paths are added to all pixels in passes.
-pub trait Session {
-    /// Adds so many paths to every pixel; `progress` is told how many pixels were done.
-    fn pass(&mut self, paths: u32, progress: &(dyn Fn(u64) + Sync));
-
-    /// The image's errors so far; none of a black image.
-    fn errors(&self) -> Option<Errors>;
-
-    /// The image.
-    fn finish(self: Box<Self>) -> Rendered;
-}
-
-/// Prepares an image. Its cut is as accurate as `settings.paths_per_pixel` paths need.
-pub fn start<'a>(input: &Input<'a>, settings: &Settings) -> Box<dyn Session + 'a> {
-    struct Start<'a, 'b>(&'b Input<'a>, &'b Settings);
-    impl<'a> LaneVisitor for Start<'a, '_> {
-        type Output = Box<dyn Session + 'a>;
-
-        fn visit<M: LaneModel>(self) -> Self::Output {
-            Box::new(Passes::<M>::new(self.0, self.1))
-        }
-    }
-    settings.model.visit_lanes(Start(input, settings))
-}
-
-/// Renders an image of `settings.paths_per_pixel` paths; `progress` is told how many pixels were done.
+/// Renders an image of `settings.paths_per_pixel` paths; `progress` is called with numbers of pixels that are done.
 pub fn render(input: &Input, settings: &Settings, progress: impl Fn(u64) + Sync) -> Rendered {
-    let mut session = start(input, settings);
-    session.pass(settings.paths_per_pixel, &progress);
-    session.finish()
+    let mut passes = Passes::new(input, settings);
+    passes.pass(settings.paths_per_pixel, progress);
+    passes.finish()
 }

@@ -1,18 +1,15 @@
-//! Pixels in parallel, paths in passes.
+//! Renders pixels in parallel, and adds paths to all of them in passes.
 
 use crate::{
-    Crop, Filter, Input, Rendered, Session, Settings, calibration,
+    Crop, Filter, Input, Rendered, Settings, calibration,
     counts::Counts,
     edge::{self, Edge},
-    estimator::{Calibration, Estimator, FalloffTables},
+    estimator::Scatterer,
     film::{Errors, Pixel, PixelSum},
     path_state::{PathIndex, ThreadContext},
-    renderer::{Method, Renderer, TranslucentObject},
-    samples::LitSamples,
+    renderer::{Renderer, TranslucentObject},
     shards::{self, DrawnCounts},
 };
-use bssrdf::{Medium, lanes::LaneModel};
-use formats::cloud::Cloud;
 use glam::DVec2;
 use rayon::prelude::*;
 use scene::{
@@ -21,42 +18,43 @@ use scene::{
     random::{Purpose, Stream},
     sequence::Sequence,
 };
-use std::ops::Range;
+use std::{ops::Range, sync::Arc};
+use sums::Summation;
 
-/// One task renders a square of so many pixels a side.
+/// Each task renders a square tile of so many pixels on a side.
 const TILE: usize = 8;
 
-/// Share of the scene's diagonal that a ray skips when it passes a surface straight.
+/// A ray that passes a surface undeflected goes on this share of the scene's diagonal beyond it.
 const CLEARANCE: f64 = 1e-9;
 
-/// An image of one model on its way.
-pub struct Passes<'a, M> {
-    renderer: Renderer<'a, M>,
+/// An image to which paths are added in passes.
+pub struct Passes<'a> {
+    renderer: Renderer<'a>,
     settings: Settings,
-    /// What is rendered: sums and edges are those of its pixels, by their places in it.
+    /// The part of the image that is rendered. Its pixels are indexed row by row.
     part: Crop,
     sums: Vec<PixelSum>,
-    /// Of the pixels that are one.
+    /// One entry for each pixel; none unless it is an edge pixel.
     edges: Vec<Option<Box<Edge>>>,
-    /// Paths of each pixel so far.
+    /// Paths that each pixel has so far.
     paths: u32,
     counts: Counts,
     pixel_stream: Stream,
     edge_stream: Stream,
 }
 
-/// Of one pixel, and what it has if it is an edge.
+/// The sums of one pixel, and those of an edge pixel.
 type Sums = (PixelSum, Option<Box<Edge>>);
 
-impl<'a, M: LaneModel> Passes<'a, M> {
+impl<'a> Passes<'a> {
+    /// Prepares an image; the cut is as accurate as `settings.paths_per_pixel` paths need.
     pub fn new(input: &Input<'a>, settings: &Settings) -> Self {
         let mut renderer = Renderer {
             scene: input.scene,
             rays: input.rays,
-            lights: LightTree::new(&input.scene.lights),
+            lights: LightTree::new(input.scene.lights()),
             camera: input.camera,
-            objects: objects::<M>(input, settings),
-            environment: settings.environment.clone(),
+            objects: objects(input, settings),
             normals: settings.normals,
             estimator: settings.estimator,
             drawn: DrawnCounts::of(input.clouds),
@@ -84,8 +82,9 @@ impl<'a, M: LaneModel> Passes<'a, M> {
         passes
     }
 
-    /// Looks at the corners of all pixels for edges. One path a pixel has no second half to take a factor from, and all
-    /// rays through pixel centres are alike.
+    /// Finds edge pixels by the transmittance at the corners of all pixels. There are none with one path per pixel, which
+    /// has no second half to estimate the factor of the control variate from, nor with rays through pixel centres, which
+    /// are all the same.
     fn find_edges(&mut self) {
         if self.settings.paths_per_pixel == 1 || self.settings.filter == Filter::Point {
             return;
@@ -100,18 +99,18 @@ impl<'a, M: LaneModel> Passes<'a, M> {
             ((0..=width).map(|x| corner(x, &mut counts)).collect::<Vec<f64>>(), counts)
         };
         let rows: Vec<(Vec<f64>, Counts)> = (0..=height).into_par_iter().map(row).collect();
-        for place in 0..width * height {
-            let (x, y) = (place % width, place / width);
+        for index in 0..width * height {
+            let (x, y) = (index % width, index / width);
             let corners = [rows[y].0[x], rows[y].0[x + 1], rows[y + 1].0[x], rows[y + 1].0[x + 1]];
             let spread = corners.into_iter().fold(0.0, f64::max) - corners.into_iter().fold(1.0, f64::min);
-            self.edges[place] = (spread > edge::MIN_SPREAD).then(Box::default);
+            self.edges[index] = (spread > edge::MIN_SPREAD).then(Box::default);
         }
         rows.iter().for_each(|(_, counts)| self.counts.add(counts));
         self.counts.edge_pixels = self.edges.iter().flatten().count() as u64;
     }
 
-    /// The pixels of a tile, row by row.
-    fn places(&self, tile: usize) -> impl Iterator<Item = usize> + use<M> {
+    /// The indices of the pixels of a tile, row by row.
+    fn pixels_of(&self, tile: usize) -> impl Iterator<Item = usize> + use<> {
         let Crop { width, height, .. } = self.part;
         let across = width.div_ceil(TILE);
         let (x, y) = (tile % across * TILE, tile / across * TILE);
@@ -124,8 +123,8 @@ impl<'a, M: LaneModel> Passes<'a, M> {
     }
 
     /// The ray through a point of a pixel, `offset` pixels from its corner.
-    fn ray(&self, place: usize, offset: DVec2) -> (DVec3, DVec3) {
-        let [x, y] = self.part.pixel(place);
+    fn ray(&self, index: usize, offset: DVec2) -> (DVec3, DVec3) {
+        let [x, y] = self.part.pixel(index);
         self.ray_at(DVec2::new(x as f64, y as f64) + offset)
     }
 
@@ -135,16 +134,17 @@ impl<'a, M: LaneModel> Passes<'a, M> {
         (origin - self.renderer.scene.origin, direction)
     }
 
-    fn add_paths(&self, place: usize, paths: Range<u32>, context: &mut ThreadContext) -> Sums {
-        // The random numbers are those of the pixel in the whole image.
-        let [x, y] = self.part.pixel(place);
+    /// The sums of a pixel with more paths.
+    fn add_paths(&self, index: usize, paths: Range<u32>, context: &mut ThreadContext) -> Sums {
+        // The random numbers of a pixel do not depend on what part of the image is rendered.
+        let [x, y] = self.part.pixel(index);
         let pixel = (y * self.settings.width + x) as u64;
-        // Even and odd paths are spread by a sequence each, so that they stay independent.
+        // Even and odd paths are independent: each half is spread by a sequence of its own.
         let spread_by = |stream: Stream| [0, 1].map(|half| Sequence::new(stream.item(2 * pixel + half), stream));
         let spread = spread_by(self.pixel_stream);
-        let mut edge = self.edges[place].clone().map(|edge| (edge, spread_by(self.edge_stream)));
+        let mut edge = self.edges[index].clone().map(|edge| (edge, spread_by(self.edge_stream)));
         let alone = self.settings.paths_per_pixel == 1;
-        let mut sum = self.sums[place];
+        let mut sum = self.sums[index];
         for path in paths {
             let offset = match self.settings.filter {
                 Filter::Point => DVec2::splat(0.5),
@@ -153,7 +153,7 @@ impl<'a, M: LaneModel> Passes<'a, M> {
                     DVec2::new(x, y)
                 }
             };
-            let (origin, direction) = self.ray(place, offset);
+            let (origin, direction) = self.ray(index, offset);
             let light = self.renderer.trace(PathIndex { pixel, path }, origin, direction, context);
             sum.add(path, alone, &light);
             if let Some((edge, spread)) = &mut edge {
@@ -161,7 +161,7 @@ impl<'a, M: LaneModel> Passes<'a, M> {
                 edge.add_path(half, &light);
                 for ray in 0..edge::RAYS {
                     let [x, y, ..] = spread[half].point(path / 2 * edge::RAYS + ray);
-                    let (origin, direction) = self.ray(place, DVec2::new(x, y));
+                    let (origin, direction) = self.ray(index, DVec2::new(x, y));
                     edge.add_ray(half, self.renderer.through(origin, direction, &mut context.counts));
                 }
             }
@@ -169,38 +169,38 @@ impl<'a, M: LaneModel> Passes<'a, M> {
         (sum, edge.map(|(edge, _)| edge))
     }
 
-    fn pixel(&self, place: usize) -> Pixel {
-        let (origin, direction) = self.ray(place, DVec2::splat(0.5));
-        self.sums[place].pixel(self.edges[place].as_deref(), self.renderer.guide(origin, direction))
+    fn pixel(&self, index: usize) -> Pixel {
+        let (origin, direction) = self.ray(index, DVec2::splat(0.5));
+        self.sums[index].pixel(self.edges[index].as_deref(), self.renderer.guide(origin, direction))
     }
-}
 
-impl<M: LaneModel> Session for Passes<'_, M> {
-    fn pass(&mut self, paths: u32, progress: &(dyn Fn(u64) + Sync)) {
+    /// Adds so many paths to each pixel; `progress` is called with numbers of pixels that are done.
+    pub fn pass(&mut self, paths: u32, progress: impl Fn(u64) + Sync) {
         let range = self.paths..self.paths.saturating_add(paths);
         self.renderer.paths_per_pixel = self.settings.paths_per_pixel.max(range.end);
         self.renderer.pass = range.clone();
         let tile = |tile: usize| {
             let mut context = ThreadContext::new(self.renderer.objects.len());
-            let add = |place: usize| (place, self.add_paths(place, range.clone(), &mut context));
-            let sums: Vec<(usize, Sums)> = self.places(tile).map(add).collect();
+            let add = |index: usize| (index, self.add_paths(index, range.clone(), &mut context));
+            let sums: Vec<(usize, Sums)> = self.pixels_of(tile).map(add).collect();
             progress(sums.len() as u64);
             (sums, context.counts)
         };
         let tiles: Vec<_> = (0..self.tiles()).into_par_iter().map(tile).collect();
         for (sums, counts) in tiles {
             self.counts.add(&counts);
-            sums.into_iter().for_each(|(place, sum)| (self.sums[place], self.edges[place]) = sum);
+            sums.into_iter().for_each(|(index, sum)| (self.sums[index], self.edges[index]) = sum);
         }
         self.paths = range.end;
     }
 
-    fn errors(&self) -> Option<Errors> {
+    /// The errors of the image so far; none if it is black.
+    pub fn errors(&self) -> Option<Errors> {
         Errors::of([self.part.width, self.part.height], self.sums.iter().zip(self.edges.iter().map(Option::as_deref)))
     }
 
-    fn finish(self: Box<Self>) -> Rendered {
-        let pixels: Vec<Pixel> = (0..self.sums.len()).into_par_iter().map(|place| self.pixel(place)).collect();
+    pub fn finish(self) -> Rendered {
+        let pixels: Vec<Pixel> = (0..self.sums.len()).into_par_iter().map(|index| self.pixel(index)).collect();
         let bad = || pixels.iter().enumerate().filter(|(_, p)| !p.is_finite()).map(|(k, _)| k);
         let (non_finite, non_finite_count) = (bad().take(8).collect(), bad().count() as u64);
         Rendered { pixels, paths_per_pixel: self.paths, counts: self.counts, non_finite, non_finite_count }
@@ -212,26 +212,14 @@ fn size(settings: &Settings) -> DVec2 {
     DVec2::new(settings.width as f64, settings.height as f64)
 }
 
-/// The samples of one sampled material in one cloud: its halves.
-fn part<'a>(cloud: &'a Cloud, slot: usize, medium: &Medium) -> [LitSamples<'a>; 2] {
-    cloud.meta().materials[slot].halves.map(|half| LitSamples::new(cloud, &half, medium.eta))
-}
-
-fn objects<'a, M: LaneModel>(input: &Input<'a>, settings: &Settings) -> Vec<Option<TranslucentObject<'a, M>>> {
-    let mut objects: Vec<Option<TranslucentObject<M>>> = input.scene.materials.iter().map(|_| None).collect();
+/// The translucent objects by the materials of the scene; none for opaque ones.
+fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<TranslucentObject<'a>>> {
+    let mut objects: Vec<Option<TranslucentObject>> = input.scene.materials.iter().map(|_| None).collect();
     for (slot, (sampled, medium)) in shards::materials(input.clouds).iter().zip(input.media).enumerate() {
-        let model = settings.model.of(medium);
-        let method = match settings.estimator {
-            Estimator::Exhaustive => Method::Exhaustive,
-            Estimator::Roulette(rule) => Method::Roulette(rule.rates(model.transport())),
-            Estimator::Cut { .. } => Method::Cut(FalloffTables::new(medium, &*model, sampled.area_m2.sqrt())),
-        };
+        let scatterer = Arc::new(Scatterer::new(settings.model, medium, sampled.area_m2.sqrt()));
         objects[sampled.index as usize] = Some(TranslucentObject {
-            model: M::new(medium),
             unscattered: settings.model.unscattered_extinction(medium),
-            method,
-            calibration: Calibration::default(),
-            parts: input.clouds.iter().map(|cloud| part(cloud, slot, medium)).collect(),
+            summation: Summation::of_clouds(scatterer, input.clouds, slot),
             medium: medium.clone(),
         });
     }

@@ -9,13 +9,12 @@ use crate::{
     shards::ShardPick,
 };
 use bsdf::{Bsdf, Lobe, Side, Surface, View};
-use bssrdf::lanes::LaneModel;
 use scene::{DVec3, Hit, SurfacePoint, light::all_light_at};
 
 /// The second branch of a path uses the random numbers from this dimension on.
 const BRANCH: u64 = 1 << 32;
 
-impl<M: LaneModel> Renderer<'_, M> {
+impl Renderer<'_> {
     /// Light that arrives at the camera along one path. At its first interface the path splits into a refracted and a
     /// reflected branch.
     pub fn trace(&self, index: PathIndex, origin: DVec3, direction: DVec3, context: &mut ThreadContext) -> PathLight {
@@ -52,7 +51,7 @@ impl<M: LaneModel> Renderer<'_, M> {
         let first = |path: u32| (path + 1 - half) / 2;
         let (start, end) = (first(self.pass.start), first(self.pass.end));
         let random = || self.shard_picks.item(index.pixel).uniform(u64::from(2 * start + half));
-        self.drawn.turn(half as usize, index.path / 2 - start, end - start, random)
+        self.drawn.pick_shard(half as usize, index.path / 2 - start, end - start, random)
     }
 
     /// Follows a branch until it ends; `mirrored` becomes the second one if it splits.
@@ -127,7 +126,7 @@ impl<M: LaneModel> Renderer<'_, M> {
 
     /// A ray that meets no further surface sees the environment.
     fn escape(&self, state: &PathState, light: &mut PathLight, counts: &mut Counts) {
-        let mut seen = self.environment.radiance(state.direction);
+        let mut seen = self.lights.distant_radiance(state.origin, state.direction);
         if let Some(object) = state.inside.and_then(|m| self.objects[m as usize].as_ref()) {
             counts.escaped_inside += 1;
             // Only channels without extinction see through an infinite medium. The ray escaped because one of them was
@@ -145,7 +144,7 @@ impl<M: LaneModel> Renderer<'_, M> {
         // drawn for this ray.
         let chosen = state.inside.is_some();
         let medium = state.inside.unwrap_or(material);
-        let within = |_: &&TranslucentObject<M>| chosen || side == Side::Inside;
+        let within = |_: &&TranslucentObject| chosen || side == Side::Inside;
         let Some(object) = self.objects[medium as usize].as_ref().filter(within) else {
             return true;
         };
@@ -190,7 +189,7 @@ impl<M: LaneModel> Renderer<'_, M> {
     fn meet_from_outside(
         &self,
         state: &mut PathState,
-        object: &TranslucentObject<M>,
+        object: &TranslucentObject,
         point: &SurfacePoint,
         mirrored: &mut Option<PathState>,
         light: &mut PathLight,
@@ -227,7 +226,7 @@ impl<M: LaneModel> Renderer<'_, M> {
     fn meet_from_inside(
         &self,
         state: &mut PathState,
-        object: &TranslucentObject<M>,
+        object: &TranslucentObject,
         point: &SurfacePoint,
         counts: &mut Counts,
     ) -> bool {

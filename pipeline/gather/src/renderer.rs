@@ -1,29 +1,20 @@
 //! The data that all camera paths of an image share: the scene, and translucent objects with their media and samples.
 
-use crate::{
-    estimator::{Calibration, Estimator, FalloffTables, Rates},
-    samples::LitSamples,
-    shards::DrawnCounts,
-};
+use crate::{estimator::Estimator, shards::DrawnCounts};
 use bsdf::Surface;
 use bssrdf::Medium;
-use scene::{
-    Camera, NormalKind, Rays, Scene,
-    light::{Environment, LightTree},
-    random::Stream,
-};
+use scene::{Camera, NormalKind, Rays, Scene, light::LightTree, random::Stream};
 use std::ops::Range;
+use sums::Summation;
 
 /// The data of an image, shared by all threads.
-pub struct Renderer<'a, M> {
+pub struct Renderer<'a> {
     pub scene: &'a Scene,
     pub rays: &'a Rays<'a>,
     pub lights: LightTree<'a>,
     pub camera: &'a Camera,
     /// Of each material; none for opaque ones.
-    pub objects: Vec<Option<TranslucentObject<'a, M>>>,
-    /// The light of rays that leave the scene.
-    pub environment: Environment,
+    pub objects: Vec<Option<TranslucentObject<'a>>>,
     pub normals: NormalKind,
     pub estimator: Estimator,
     /// Samples of each cloud, the unlit ones included.
@@ -40,19 +31,14 @@ pub struct Renderer<'a, M> {
 }
 
 /// A translucent material with its medium and its samples.
-pub struct TranslucentObject<'a, M> {
+pub struct TranslucentObject<'a> {
     pub medium: Medium,
-    pub model: M,
     /// Extinction `σ̃_t` of unscattered light, 1/m (docs/method.md 5.11).
     pub unscattered: [f64; 3],
-    pub method: Method,
-    /// Factor of the accuracy that is asked of the cut, see [`crate::calibration`].
-    pub calibration: Calibration,
-    /// The two independent halves of each cloud.
-    pub parts: Vec<[LitSamples<'a>; 2]>,
+    pub summation: Summation<'a>,
 }
 
-impl<M> TranslucentObject<'_, M> {
+impl TranslucentObject<'_> {
     /// What happens to light at its surface.
     pub fn surface(&self) -> Surface {
         Surface::dielectric(self.medium.eta)
@@ -60,13 +46,6 @@ impl<M> TranslucentObject<'_, M> {
 
     /// True if no scattered light leaves it.
     pub fn is_dark(&self) -> bool {
-        self.medium.is_clear() || self.parts.iter().flatten().all(|samples| samples.is_empty())
+        self.medium.is_clear() || self.summation.is_empty()
     }
-}
-
-/// How the samples of an object are summed.
-pub enum Method {
-    Exhaustive,
-    Roulette(Rates),
-    Cut(FalloffTables),
 }

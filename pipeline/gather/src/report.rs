@@ -6,7 +6,7 @@ use formats::{
     Attribute,
     cloud::{Cloud, hex},
 };
-use gather::{Rendered, Settings, estimator::Estimator, film, shards};
+use gather::{Rendered, Settings, film, shards};
 use scene::{Camera, MeshDefects};
 use std::collections::BTreeMap;
 
@@ -23,14 +23,6 @@ pub struct Facts<'a> {
     /// What was left out of the scene or looks wrong.
     pub warnings: &'a [String],
     pub defects: MeshDefects,
-}
-
-fn estimator_name(estimator: Estimator) -> String {
-    match estimator {
-        Estimator::Cut { accuracy } => format!("cut {accuracy}"),
-        Estimator::Exhaustive => "exhaustive".into(),
-        Estimator::Roulette(rule) => format!("roulette {}", rule.name()),
-    }
 }
 
 fn filter_name(settings: &Settings) -> &'static str {
@@ -69,12 +61,12 @@ impl Facts<'_> {
             _ => put("pcsss/clouds", Attribute::Texts(shards::describe(self.clouds))),
         }
         put("pcsss/metresPerUnit", Attribute::Double(first.options.metres_per_unit));
-        put("pcsss/lightUnit", Attribute::Text(first.options.light_unit.clone()));
-        put("pcsss/emissionUnit", Attribute::Text(first.options.emission_unit.clone()));
+        put("pcsss/lightUnit", Attribute::Text(first.options.light_unit.to_string()));
+        put("pcsss/emissionUnit", Attribute::Text(first.options.emission_unit.to_string()));
         put("pcsss/originM", Attribute::Vector(first.exchange_origin_m()));
         put("pcsss/seed", Attribute::Text(self.settings.seed.to_string()));
         put("pcsss/bssrdf", text(self.settings.model.name()));
-        put("pcsss/estimator", Attribute::Text(estimator_name(self.settings.estimator)));
+        put("pcsss/estimator", Attribute::Text(self.settings.estimator.to_string()));
         put("pcsss/version", text(version));
         put("pcsss/arguments", Attribute::Text(self.arguments(arguments)));
         put("pcsss/varianceCovers", text(self.covers()));
@@ -100,12 +92,12 @@ impl Facts<'_> {
             s.width,
             s.height,
             s.model.name(),
-            estimator_name(s.estimator),
+            s.estimator,
             s.paths_per_pixel,
             filter_name(s),
             s.max_depth,
             s.seed,
-            s.environment.identity(),
+            self.clouds[0].meta().options.environment,
             arguments.scene_args.normals.name(),
         )
     }
@@ -140,7 +132,7 @@ impl Facts<'_> {
             "cloud": hex(&shards::identity(self.clouds)),
             "clouds": self.clouds.len(),
             "samples_drawn": shards::drawn(self.clouds),
-            "estimator": estimator_name(self.settings.estimator),
+            "estimator": self.settings.estimator.to_string(),
             "bssrdf": self.settings.model.name(),
         });
         if let Some(seconds) = seconds {

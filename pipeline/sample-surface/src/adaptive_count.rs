@@ -1,11 +1,11 @@
-//! How many samples are enough: as many as bring the error of the light that leaves the surface to a target. The one
-//! place where phase one knows a medium; the samples themselves depend on their number alone.
+//! Finds the number of samples with which the error of the light that leaves the surface meets a target. Nowhere else does
+//! phase one know a medium, and only the number of samples depends on it.
 //!
-//! The error of a cloud is what its two halves differ by. That is one value of a chi-square, and whoever draws until it
-//! is small stops when it is small by luck. So trial clouds tell first how many degrees of freedom it has
-//! ([`crate::trials`]). If it has many, the halves are believed, as far as Student's law does. If it has few, as where
-//! all light comes through one small hole, the trials themselves are drawn larger until the error of their mean is small
-//! enough, which 16 independent halves know well; one cloud of as many samples as all trials has no larger error.
+//! The difference of a cloud's two halves estimates its error. That estimate follows a chi-square distribution, and to
+//! draw samples until it is small would be to stop when it is small by chance. So trial clouds tell first how many degrees
+//! of freedom it has ([`crate::trials`]). With many, the halves are trusted within the bounds of Student's distribution.
+//! With few, as where all light comes through one small hole, larger trials are drawn until the error of their mean, which
+//! 16 independent halves estimate well, meets the target; one cloud of as many samples as all trials has no larger error.
 
 use crate::{
     Plan, SampleError, Sampled, Settings,
@@ -16,55 +16,56 @@ use crate::{
 use scene::{Rays, Scene};
 use sums::confidence::Estimate;
 
-/// What a round of samples has shown.
+/// The result of a round of the search.
 #[derive(Clone, Copy, Debug)]
 pub enum Round {
-    /// Trial clouds.
+    /// Of trial clouds.
     Trials(Trials),
-    /// A cloud of so many samples, by its two halves.
+    /// Of a cloud of so many samples, whose error its halves estimate.
     Cloud(u64, Estimate),
 }
 
-/// A cloud that is good enough.
+/// A cloud that meets the target.
 pub struct Enough {
     pub sampled: Sampled,
-    /// Of its light; none if no sample carries any.
+    /// The error of its light; none if no sample carries light.
     pub estimate: Option<Estimate>,
 }
 
-/// Points that the error is measured at.
+/// Points of the surface at which the error is measured.
 const POINTS: u64 = 1024;
 
-/// Samples of the first trials, all together, and of the first cloud at least.
+/// Samples of the first trials, all together, and the fewest of the first cloud.
 const FIRST: u64 = 1 << 16;
 
-/// The number of samples is raised as if the error of well-spread ones fell as their number to the power 3/4.
+/// The error of well-spread samples is taken to fall as their number to the power 3/4; this is the inverse.
 const POWER: f64 = 4.0 / 3.0;
 
-/// Samples that carry light in all trials, at least: of fewer the scatter of the trials says little.
+/// The fewest lit samples in all trials: the scatter of fewer says little.
 const MIN_LIT: u64 = 32;
 
-/// Samples that are drawn in search of light. A scene in which none of so many carries any is taken for dark.
+/// A scene is taken to be dark if none of so many samples is lit.
 const SEARCH: u64 = 1 << 24;
 
-/// Degrees of freedom that make one difference of two halves an estimate.
+/// The fewest degrees of freedom with which one difference of two halves is trusted.
 const MANY: f64 = 8.0;
 
-/// Trials tell the degrees of freedom of clouds that have at most so many times the samples of all of them together.
+/// The degrees of freedom of a cloud are measured again if it has more than so many times the samples of all trials.
 const STALE: u64 = 8;
 
-/// Clouds grow by this factor at most from one to the next. So do trials of few degrees of freedom, of which larger ones
-/// may have more.
+/// The largest growth from one cloud to the next, and from one round of trials to the next: larger trials may turn out to
+/// have more degrees of freedom.
 const CLOUDS_GROW: f64 = 64.0;
 const TRIALS_GROW: f64 = 8.0;
 
-/// The error of one cloud, two well-spread halves, as a share of that of the mean of trials of as many samples.
+/// The error of one cloud, which is two well-spread halves, relative to that of the mean of trials with as many samples in
+/// all.
 const GAIN: f64 = 0.5;
 
-/// A cloud that has so many times the error that trials foretold shows light that they had not found.
+/// A cloud whose error exceeds the bound from trials by this factor has found light that the trials had not.
 const SURPRISE: f64 = 1.5;
 
-/// Draws clouds of more and more samples until one is good enough.
+/// Draws clouds of more and more samples until one meets the target; `tell` is called with each round.
 pub fn sample_enough(
     scene: &Scene,
     rays: &Rays,
@@ -95,10 +96,10 @@ pub fn sample_enough(
     }
 }
 
-/// What comes of clouds that are judged by their halves.
+/// The outcome of clouds whose error their halves estimate.
 enum Found {
     Enough(Box<Enough>),
-    /// Larger trials have but few degrees of freedom.
+    /// Larger trials turned out to have few degrees of freedom.
     Few(Trials),
 }
 
@@ -117,45 +118,45 @@ impl Search<'_> {
         sample(self.scene, self.rays, &settings, self.plan, |_| ())
     }
 
-    /// How many samples to try next where so many have this error: `max_growth` times as many at most.
+    /// The number of samples to try next, given that `samples` have this error.
     fn more(&self, samples: u64, error: f64, max_growth: f64) -> Result<u64, SampleError> {
         let growth = (error / self.goal.error).powf(POWER).clamp(1.5, max_growth);
         let (next, most) = ((samples as f64 * growth).ceil() as u64, self.goal.most);
         if next > most { Err(SampleError::TooMany { samples, error, next, most }) } else { Ok(next) }
     }
 
-    /// Trials of so many samples in all, or of more, until enough carry light; dark ones if none does.
+    /// Trials of at least so many samples in all, of which enough are lit, or none if the scene is dark.
     fn trials(&self, mut samples: u64) -> Result<Trials, SampleError> {
         let Search { scene, rays, settings, plan, goal, .. } = *self;
         loop {
             let trials = Trials::draw((scene, rays), settings, plan, goal, samples.div_ceil(TRIALS))?;
             (self.tell)(&Round::Trials(trials));
-            let most = if trials.lit == 0 { SEARCH.min(goal.most) } else { goal.most };
-            if trials.lit >= MIN_LIT || samples >= most {
+            let max_samples = if trials.lit == 0 { SEARCH.min(goal.most) } else { goal.most };
+            if trials.lit >= MIN_LIT || samples >= max_samples {
                 return Ok(trials);
             }
-            // Their number varies: somewhat more samples than would do by those that were found.
+            // The number of lit samples varies, so it is aimed above the minimum.
             let growth = 1.5 * MIN_LIT as f64 / trials.lit.max(1) as f64;
-            samples = ((samples as f64 * growth.clamp(2.0, 16.0)) as u64).min(most);
+            samples = ((samples as f64 * growth.clamp(2.0, 16.0)) as u64).min(max_samples);
         }
     }
 
-    /// Clouds, each with the error that its halves differ by.
+    /// Draws clouds whose error their halves estimate, until one meets the target.
     fn by_halves(&self, mut trials: Trials) -> Result<Found, SampleError> {
-        let points = Points::new(self.scene, self.settings, self.plan, POINTS);
+        let points = Points::new(self.scene, self.settings, self.plan, self.goal, POINTS);
         let mut samples = self.first_cloud(&trials)?;
         loop {
             let sampled = self.cloud(samples)?;
-            let error = relative_error(&points, &sampled, self.goal).unwrap_or(f64::INFINITY);
+            let error = relative_error(&points, &sampled).unwrap_or(f64::INFINITY);
             let mut estimate = Estimate { error, freedom: trials.freedom };
             let enough = |estimate: &Estimate| estimate.safe() <= self.goal.error;
-            let checked = if error > SURPRISE * trials.foretell(samples) {
+            let checked = if error > SURPRISE * trials.error_bound(samples) {
                 Some(samples)
             } else {
                 (enough(&estimate) && samples > STALE * trials.all()).then_some(samples / STALE)
             };
             if let Some(checked) = checked {
-                // The cloud is kept meanwhile.
+                // The cloud stays in memory beside the new trials.
                 trials = self.trials(checked.min(self.goal.most - samples).max(TRIALS))?;
                 if trials.freedom < MANY {
                     return Ok(Found::Few(trials));
@@ -170,10 +171,10 @@ impl Search<'_> {
         }
     }
 
-    /// Samples of the first cloud that is judged by its halves: somewhat fewer than trials say.
+    /// Samples of the first cloud whose error its halves estimate: somewhat fewer than the trials suggest.
     fn first_cloud(&self, trials: &Trials) -> Result<u64, SampleError> {
         let all = trials.all();
-        match GAIN * trials.foretell(all) {
+        match GAIN * trials.error_bound(all) {
             error if error > self.goal.error => self.more(all, error, CLOUDS_GROW),
             _ => Ok(FIRST.min(self.goal.most)),
         }

@@ -1,16 +1,16 @@
-//! Spatial order, and the tree that is stored with the samples.
+//! The spatial order of the samples, and the tree that is stored with them.
 //!
-//! The samples of a group are split at a power of two of tiles, across the longest side of their box, down to single
-//! ones. The order, and with it every node, depends on the samples alone, not on threads.
+//! The samples of a group are split recursively across the longest side of their bounding box, at a power of two of tiles,
+//! down to single samples. The order, and with it every node, depends on the samples alone and not on threads.
 
 use formats::cloud::{Node, Record, TILE, Tile, first_leaf, node_count, tile};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-/// Samples below which one task orders them alone.
+/// Up to so many samples are ordered by one task.
 const ALONE: usize = 1 << 13;
 
-/// A sample's position, and its place in the list of records.
+/// A sample's position, and its index in the list of records.
 #[derive(Clone, Copy)]
 struct OrderedSample {
     position: Vec3,
@@ -67,19 +67,21 @@ fn nodes(tiles: &[Tile], samples: usize) -> Vec<Node> {
     nodes
 }
 
-/// Sums over the samples below a node, in float64.
+/// Moments of the samples below a node, in float64.
 #[derive(Clone, Copy)]
 struct Moments {
     count: f64,
     centre: DVec3,
     /// Sum of squared distances from the centre, m².
     scatter: f64,
-    /// Mean of the flux summed over channels, W.
+    /// Mean flux, summed over channels, W.
     flux: f64,
-    /// Sum of squared deviations of it, W².
+    /// Sum of squared deviations of the flux, W².
     flux_scatter: f64,
+    /// Sums of unit vectors.
     direction: DVec3,
     normal: DVec3,
+    /// The bounding box.
     low: Vec3,
     high: Vec3,
 }
@@ -103,7 +105,7 @@ impl Moments {
         (1..filled).fold(one(0), |sum, lane| sum.with(&one(lane)))
     }
 
-    /// The sums over both: means by weight, scatter by the parallel axis theorem.
+    /// The moments of both: weighted means, and scatter by the parallel axis theorem.
     fn with(&self, other: &Moments) -> Moments {
         let count = self.count + other.count;
         let share = other.count / count;
@@ -124,7 +126,7 @@ impl Moments {
     fn node(&self) -> Node {
         let centre = self.centre.as_vec3();
         let reach = (self.high - centre).max(centre - self.low);
-        // Of unit vectors with mean m the mean square deviation is 1 − |m|².
+        // The mean square deviation of unit vectors with mean m is 1 − |m|².
         let turn = |sum: DVec3| (1.0 - (sum / self.count).length_squared()).max(0.0);
         Node {
             centre: centre.to_array(),
@@ -152,7 +154,7 @@ mod tests {
         (0..count).map(point).collect()
     }
 
-    /// Planted: a wrong child, a lost tile, a radius around the box's middle fail.
+    /// Seen to catch: a wrong child, a lost tile, a radius around the centre of the box.
     #[test]
     fn nodes_are_what_their_samples_say() {
         for count in [1, 15, 16, 17, 100, 1000, 4097] {

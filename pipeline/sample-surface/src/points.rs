@@ -1,89 +1,85 @@
 //! The light of a cloud that leaves the surface at points all over it, by the directional dipole.
 
-use crate::{Numbers, Pattern, Place, Plan, Sampled, Settings};
-use bssrdf::{
-    Medium, Model,
-    lanes::{DirectionalLanes, LaneModel},
-    simd,
-};
+use crate::{Numbers, Pattern, Plan, SamplePoint, Sampled, Settings};
+use bssrdf::{Medium, Model};
+use formats::cloud::SampledMaterial;
 use glam::DVec3;
 use rayon::prelude::*;
-use scene::{Scene, SurfacePoint};
+use scene::Scene;
+use std::sync::Arc;
 use sums::{
-    estimator::{Calibration, Cut, FalloffTables, Scratch},
+    Summation,
+    drawn::DrawnCounts,
+    estimator::{Estimator, Scatterer, Scratch},
     samples::{Exit, LitSamples},
 };
 
-/// An error to reach in a medium, by the directional dipole.
+/// A target error in a medium, by the directional dipole.
 pub struct Goal<'a> {
     pub medium: &'a Medium,
-    /// Relative standard error: root mean square error over root mean square, all channels, all of the surface.
+    /// Relative standard error: the root mean square error over the root mean square, of all channels and all of the
+    /// surface.
     pub error: f64,
-    /// Samples that there is memory for.
+    /// The largest number of samples that fits in memory.
     pub most: u64,
 }
 
-/// Points of the surface, as many from each area, that light is compared at.
+/// Points of the surface at which light is compared.
 pub(crate) struct Points<'a> {
     scene: &'a Scene,
     settings: &'a Settings,
-    places: Vec<Place>,
+    points: Vec<SamplePoint>,
+    scatterer: Arc<Scatterer>,
+    estimator: Estimator,
 }
 
 impl<'a> Points<'a> {
-    pub fn new(scene: &'a Scene, settings: &'a Settings, plan: &Plan, count: u64) -> Self {
-        // The points have nothing to do with the samples: another seed.
+    pub fn new(scene: &'a Scene, settings: &'a Settings, plan: &Plan, goal: &Goal, count: u64) -> Self {
+        // Another seed makes the points independent of the samples.
         let numbers = Numbers::new(Pattern::Stratified, !settings.seed(), count);
-        let places = numbers.places(&plan.choice(scene, settings), 0..count).map(|(_, place)| place).collect();
-        Points { scene, settings, places }
+        Points {
+            scene,
+            settings,
+            points: numbers.points(&plan.choice(scene, settings), 0..count).map(|(_, point)| point).collect(),
+            scatterer: Arc::new(Scatterer::new(Model::DirectionalDipole, goal.medium, f64::INFINITY)),
+            // The error of the cut is so far below the target that it does not show in differences between clouds.
+            estimator: Estimator::Cut { accuracy: 0.3 * goal.error },
+        }
     }
 
-    /// `L_r` as one half of a cloud has it, all channels of all points, each times the root of the area that it stands
-    /// for. `stream` tells the random numbers of the sums.
-    pub fn light(&self, sampled: &Sampled, half: usize, stream: u64, goal: &Goal) -> Vec<f64> {
-        let model = DirectionalLanes::new(goal.medium);
-        let tables = FalloffTables::new(goal.medium, &*Model::DirectionalDipole.of(goal.medium), f64::INFINITY);
-        let at = |(index, place): (usize, &Place)| {
-            let point = self.scene.mesh.point(place.triangle, place.weights, self.settings.normals);
-            let key = 2 * (stream * self.places.len() as u64 + index as u64) + half as u64;
-            let light = radiance(sampled, half, &point, key, (&model, &tables, goal));
-            // Points are not spread by area under the note's choice of triangles.
-            (light / place.pdf_area.sqrt()).to_array()
+    /// `L_r` at all points as one half of a cloud estimates it: three channels of each point, times the root of the area
+    /// that the point represents. `stream` selects the random numbers of the sums.
+    pub fn light(&self, sampled: &Sampled, half: usize, stream: u64) -> Vec<f64> {
+        let materials = &sampled.meta.materials;
+        let summations: Vec<Summation> = materials.iter().map(|material| self.summation(sampled, material)).collect();
+        let at = |scratch: &mut Scratch, (index, sample): (usize, &SamplePoint)| {
+            let point = self.scene.mesh.point(sample.triangle, sample.weights, self.settings.normals);
+            let key = 2 * (stream * self.points.len() as u64 + index as u64) + half as u64;
+            let exit = Exit::new(point.position, point.normal, key);
+            let slot = materials.iter().position(|material| material.index == point.material);
+            let light = slot.map_or(DVec3::ZERO, |slot| summations[slot].half(self.estimator, half, &exit, scratch));
+            // With the note's choice of triangles, points do not represent equal areas.
+            (light / sample.pdf_area.sqrt()).to_array()
         };
-        self.places.par_iter().enumerate().flat_map_iter(at).collect()
+        self.points.par_iter().enumerate().map_init(Scratch::default, at).flatten_iter().collect()
+    }
+
+    fn summation<'s>(&self, sampled: &'s Sampled, material: &SampledMaterial) -> Summation<'s> {
+        let halves = material.halves.map(|group| {
+            let (tiles, nodes) = sampled.content.group(&group);
+            LitSamples::of(tiles, nodes, group.samples as usize, self.scatterer.eta())
+        });
+        let drawn = DrawnCounts::new(vec![sampled.meta.drawn_by_half()]);
+        Summation::new(self.scatterer.clone(), vec![halves], drawn)
     }
 }
 
-/// The relative standard error of the light that leaves the sampled surface; none if there is none.
-pub(crate) fn relative_error(points: &Points, sampled: &Sampled, goal: &Goal) -> Option<f64> {
-    let [one, two] = [0, 1].map(|half| points.light(sampled, half, 0, goal));
+/// The relative standard error of the light that leaves the surface, by the difference of the cloud's halves; none if no
+/// light leaves it.
+pub(crate) fn relative_error(points: &Points, sampled: &Sampled) -> Option<f64> {
+    let [one, two] = [0, 1].map(|half| points.light(sampled, half, 0));
     let pairs = || one.iter().zip(&two);
     let variance: f64 = pairs().map(|(a, b)| (a - b) * (a - b) / 4.0).sum();
     let power: f64 = pairs().map(|(a, b)| (a + b) * (a + b) / 4.0).sum();
     (power > 0.0).then(|| (variance / power).sqrt())
-}
-
-/// `L_r` at a point, as one half of the samples has it.
-fn radiance(
-    sampled: &Sampled,
-    half: usize,
-    point: &SurfacePoint,
-    key: u64,
-    (model, tables, goal): (&DirectionalLanes, &FalloffTables, &Goal),
-) -> DVec3 {
-    let Some(material) = sampled.meta.materials.iter().find(|m| m.index == point.material) else {
-        return DVec3::ZERO;
-    };
-    let group = &material.halves[half];
-    if group.samples == 0 {
-        return DVec3::ZERO;
-    }
-    let (tiles, nodes) = sampled.content.group(group);
-    let samples = &LitSamples::of(tiles, nodes, group.samples as usize, goal.medium.eta);
-    let exit = &Exit::new(point.position, point.normal, key);
-    // Less than the goal by so much that it does not show in the difference.
-    let accuracy = (0.3 * goal.error) as f32;
-    let (calibration, scratch) = (&Calibration::default(), &mut Scratch::default());
-    let cut = Cut { model, samples, tables, exit, accuracy, calibration, scratch };
-    simd::dispatch(cut).radiance / sampled.meta.drawn_by_half()[half].max(1) as f64
 }

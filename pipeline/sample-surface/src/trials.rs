@@ -1,10 +1,11 @@
-//! Trial clouds: small independent ones, whose scatter tells what a difference of two halves cannot: how far the error of
-//! a cloud is one value, the same everywhere on the surface, or many.
+//! Trial clouds: small independent clouds, which tell what one difference of two halves cannot: how many independent values
+//! the error of a cloud consists of, from one that is the same everywhere on the surface to many.
 //!
-//! The light that a trial's half brings to the points of the surface is a vector `v`; `d` is the difference of the two
-//! halves of a trial, of covariance `C`. A sum of squares `|d|²` of normal numbers scatters as a chi-square of
-//! `ν = (tr C)²/tr C²` degrees of freedom (Satterthwaite 1946). Here `tr C` is the mean of `|d|²`, and `tr C²` that of
-//! `(d · d')²` over pairs of trials. Light that is rare makes `|d|²` scatter more: the smaller of both counts.
+//! The light that leaves the points of the surface by one half of a trial is a vector; `d` is the difference of the vectors
+//! of both halves, and `C` its covariance. If `d` is normal, `|d|²` scatters as a chi-square distribution with
+//! `ν = (tr C)²/tr C²` degrees of freedom (Satterthwaite 1946). Here `tr C` is the mean of `|d|²`, and `tr C²` the mean of
+//! `(d · d')²` over pairs of trials. Rare light makes `|d|²` scatter more; so the scatter gives a second estimate of `ν`,
+//! and the smaller one counts.
 
 use crate::{
     Plan, SampleError, Settings,
@@ -18,27 +19,28 @@ use sums::confidence::Estimate;
 /// Trial clouds in a round.
 pub const TRIALS: u64 = 8;
 
-/// Their halves.
+/// Halves of all trial clouds.
 const HALVES: f64 = 2.0 * TRIALS as f64;
 
-/// Points of the surface that they are compared at.
+/// Points of the surface at which the trials are compared.
 const POINTS: u64 = 256;
 
-/// What the trial clouds of one size say.
+/// The statistics of one round of trial clouds.
 #[derive(Clone, Copy, Debug)]
 pub struct Trials {
-    /// Samples of each.
+    /// Samples of each trial.
     pub samples: u64,
-    /// Samples of all that carry light.
+    /// Lit samples of all trials.
     pub lit: u64,
-    /// The relative error of the mean of all, with the degrees of freedom of all; none if all is dark.
+    /// The relative error of the mean of all trials, with the degrees of freedom of all; none if no light leaves the
+    /// surface.
     pub mean: Option<Estimate>,
-    /// Degrees of freedom of one difference of two halves.
+    /// Degrees of freedom of the difference of the two halves of one trial.
     pub freedom: f64,
 }
 
 impl Trials {
-    /// Draws them, in so many samples each, all with random numbers of their own.
+    /// Draws trials of so many samples each, all with random numbers of their own.
     pub fn draw(
         (scene, rays): (&Scene, &Rays),
         settings: &Settings,
@@ -46,14 +48,14 @@ impl Trials {
         goal: &Goal,
         samples: u64,
     ) -> Result<Trials, SampleError> {
-        let points = Points::new(scene, settings, plan, POINTS);
+        let points = Points::new(scene, settings, plan, goal, POINTS);
         let trial = |index: u64| {
             let mut own = Settings { samples, ..settings.clone() };
-            // A part of a cloud that is never drawn: its index is beyond that of the last.
+            // No shard that is ever drawn has the same random numbers: none has so large a count.
             own.options.seed = random::shard_seed(settings.seed(), index as u32, u32::MAX);
             own.options.shard = formats::cloud::Shard::ALONE;
             let sampled = sample(scene, rays, &own, plan, |_| ())?;
-            let halves = [0, 1].map(|half| points.light(&sampled, half, index, goal));
+            let halves = [0, 1].map(|half| points.light(&sampled, half, index));
             Ok((sampled.content.samples, halves))
         };
         let drawn: Result<Vec<_>, SampleError> = (0..TRIALS).into_par_iter().map(trial).collect();
@@ -64,14 +66,14 @@ impl Trials {
         Ok(Trials { samples, lit: lit.iter().sum(), mean, freedom })
     }
 
-    /// Samples of all of them together.
+    /// Samples of all trials together.
     pub fn all(&self) -> u64 {
         TRIALS * self.samples
     }
 
-    /// The relative error that a cloud of more samples has at most: that of independent samples falls as the root of
-    /// their number. None is foretold where all is dark.
-    pub fn foretell(&self, samples: u64) -> f64 {
+    /// An upper bound of the relative error of a cloud of more samples: the error of independent samples, which falls as
+    /// the root of their number. It is 0 if no light leaves the surface.
+    pub fn error_bound(&self, samples: u64) -> f64 {
         let root = (self.all() as f64 / samples as f64).sqrt();
         self.mean.map_or(0.0, |mean| mean.error * root)
     }
@@ -81,7 +83,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// The relative standard error of the mean of all halves; none if it is zero.
+/// The relative standard error of the mean of all halves; none if the mean is zero.
 fn error_of_mean(trials: &[[Vec<f64>; 2]]) -> Option<f64> {
     let halves = || trials.iter().flatten();
     let mut mean = vec![0.0; halves().next().map_or(0, Vec::len)];
@@ -91,7 +93,7 @@ fn error_of_mean(trials: &[[Vec<f64>; 2]]) -> Option<f64> {
     (power > 0.0).then(|| (scatter / (HALVES * (HALVES - 1.0)) / power).sqrt())
 }
 
-/// The degrees of freedom of one difference of two halves, at least one.
+/// The degrees of freedom of the difference of the two halves of one trial, at least one.
 fn freedom(trials: &[[Vec<f64>; 2]]) -> f64 {
     let difference = |[one, two]: &[Vec<f64>; 2]| one.iter().zip(two).map(|(a, b)| a - b).collect::<Vec<f64>>();
     let differences: Vec<Vec<f64>> = trials.iter().map(difference).collect();
@@ -104,7 +106,7 @@ fn freedom(trials: &[[Vec<f64>; 2]]) -> f64 {
         products += differences[..k].iter().map(|two| dot(one, two).powi(2)).sum::<f64>();
     }
     let shared = products / (0.5 * count * (count - 1.0));
-    // Nothing differs: nothing is known.
+    // If the halves do not differ, nothing is known, and one degree of freedom is assumed.
     let ratio = |of: f64| if of > 0.0 { mean * mean / of } else { 1.0 };
     ratio(shared).min(2.0 * ratio(scatter)).max(1.0)
 }
@@ -113,7 +115,7 @@ fn freedom(trials: &[[Vec<f64>; 2]]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Trials whose halves differ by normal numbers of the same variance, each shared by `together` of `length` values.
+    /// Trials of `length` values for each half, with normal errors of equal variance, each shared by `together` values.
     fn trials(length: usize, together: usize) -> Vec<[Vec<f64>; 2]> {
         let stream = random::Stream::new(7, random::Purpose::Calibration);
         let half = |half: u64| {
@@ -123,16 +125,17 @@ mod tests {
         (0..TRIALS).map(|k| [half(2 * k), half(2 * k + 1)]).collect()
     }
 
-    /// 256 independent values, four that 64 share each, and one that all share.
+    /// 256 values have independent errors, or four errors that 64 share each, or one error that all share.
     ///
-    /// Seen to catch: differences multiplied by their own; the count of values in place of their correlation.
+    /// Seen to catch: differences multiplied by themselves instead of one another; the number of values in place of their
+    /// correlation.
     #[test]
     fn shared_values_are_one_degree_of_freedom() {
         for (together, low, high) in [(1, 60.0, 600.0), (64, 1.5, 9.0), (256, 1.0, 2.0)] {
             let trials = trials(256, together);
             let found = freedom(&trials);
             assert!((low..high).contains(&found), "{together} together: {found}");
-            // The mean of 16 has a quarter of the error of one, 1 % here.
+            // The mean of 16 halves has a quarter of the error of one half, which is 1 %.
             let error = error_of_mean(&trials).expect("there is light");
             assert!((0.001..0.004).contains(&error), "{error}");
         }

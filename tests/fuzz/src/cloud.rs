@@ -1,14 +1,10 @@
 //! Clouds. Checksums keep random damage out, so that what lies behind them is only reached if they are made right again.
 
 use crate::file::with_file;
-use bssrdf::{
-    Medium, Model, built_in,
-    lanes::{DirectionalLanes, LaneModel},
-    simd,
-};
+use bssrdf::{Model, built_in};
 use formats::cloud::{Cloud, Record, Sample, TILE, version};
 use gather::{
-    estimator::{Calibration, Cut, Exhaustive, FalloffTables, Roulette, Rule, Scratch},
+    estimator::{Calibration, Estimator, Scatterer, Scratch, Sum},
     samples::{Exit, LitSamples},
 };
 use std::{ops::Range, path::Path, sync::LazyLock};
@@ -58,28 +54,24 @@ const FARTHEST: f32 = 1e18;
 
 /// Sums over all groups at a sample, and at a point beside it; of a `good` cloud they are finite.
 fn check_sums(cloud: &Cloud, sample: &Sample, good: bool) {
-    static MARBLE: LazyLock<(Medium, FalloffTables)> = LazyLock::new(|| {
+    static MARBLE: LazyLock<Scatterer> = LazyLock::new(|| {
         let medium = built_in("marble").expect("it is built in");
-        let tables = FalloffTables::new(&medium, &*Model::DirectionalDipole.of(&medium), 0.1);
-        (medium, tables)
+        Scatterer::new(Model::DirectionalDipole, &medium, 0.1)
     });
-    let (medium, tables) = &*MARBLE;
-    let model = &DirectionalLanes::new(medium);
-    let rates = Rule::Mixture.rates(Model::DirectionalDipole.of(medium).transport());
     let (calibration, scratch) = (&Calibration::default(), &mut Scratch::default());
     let small = |s: &Sample| s.position.abs().max(s.flux).max_element() < SANE;
     for group in cloud.meta().materials.iter().flat_map(|m| &m.halves) {
-        let samples = &LitSamples::new(cloud, group, medium.eta);
+        let samples = &LitSamples::new(cloud, group, MARBLE.eta());
         if samples.is_empty() {
             continue;
         }
         for offset in [0.0, 1e-3] {
             let exit = &Exit::new(sample.position.as_dvec3() + offset, sample.normal, 7);
-            let sums = [
-                simd::dispatch(Exhaustive { model, samples, exit }),
-                simd::dispatch(Roulette { model, samples, exit, rates }),
-                simd::dispatch(Cut { model, samples, tables, exit, accuracy: 0.1, calibration, scratch }),
-            ];
+            let mut sum = |estimator: &Estimator| {
+                let estimator = estimator.map_accuracy(|_| 0.1);
+                estimator.sum(&MARBLE, calibration, samples, exit, scratch)
+            };
+            let sums: Vec<Sum> = Estimator::ALL.iter().map(&mut sum).collect();
             if good && cloud.meta().materials.iter().flat_map(|m| cloud.samples(m)).all(|s| small(&s)) {
                 assert!(sums.iter().all(|s| s.radiance.is_finite() && s.radiance.min_element() >= 0.0), "{sums:?}");
             }

@@ -2,7 +2,10 @@
 //!
 //! A .glb is damaged within its chunks as often as from outside: a length that does not fit hides all else.
 
-use scene::random::{Item, Purpose, Stream};
+use test_support::{
+    Random,
+    glb::{chunks, container},
+};
 
 /// Numbers that lengths, counts and offsets are replaced by.
 const LENGTHS: [u64; 14] = [
@@ -55,29 +58,15 @@ const TEXTS: [&str; 26] = [
 /// What stands for a byte.
 const BYTES: [u8; 9] = [0, 1, 0x7f, 0x80, 0xff, b'0', b'9', b'-', b'{'];
 
-struct Random(Item, u64);
-
-impl Random {
-    /// A number below `limit`, or 0.
-    fn below(&mut self, limit: usize) -> usize {
-        self.1 += 1;
-        (self.0.bits(self.1) % limit.max(1) as u64) as usize
-    }
-
-    fn pick<T: Copy>(&mut self, list: &[T]) -> T {
-        list[self.below(list.len())]
-    }
-}
-
 /// Mutation `number` of a file.
 pub fn mutate(file: &[u8], number: u64) -> Vec<u8> {
-    let mut random = Random(Stream::new(11, Purpose::Surface).item(number), 0);
-    match chunks(file) {
-        Some((text, binary)) if random.below(3) > 0 => {
+    let mut random = Random(number << 32);
+    match chunks(file)[..] {
+        [text, binary] if random.below(3) > 0 => {
             let (mut text, mut binary) = (text.to_vec(), binary.to_vec());
             let part = if random.below(4) == 0 { &mut binary } else { &mut text };
             *part = damage(part, number, &mut random);
-            container(&text, &binary)
+            container(&[(b"JSON", &text), (b"BIN\0", &binary)])
         }
         _ => damage(file, number, &mut random),
     }
@@ -137,29 +126,4 @@ fn replace_number(bytes: &mut Vec<u8>, random: &mut Random) {
     };
     let end = bytes[start..].iter().position(|b| !is_part(b)).map_or(bytes.len(), |k| start + k);
     bytes.splice(start..end, random.pick(&TEXTS).bytes());
-}
-
-/// JSON and binary chunk of a .glb.
-fn chunks(file: &[u8]) -> Option<(&[u8], &[u8])> {
-    let chunk = |at: usize| {
-        let length = u32::from_le_bytes(file.get(at..at + 4)?.try_into().ok()?) as usize;
-        file.get(at + 8..)?.get(..length)
-    };
-    file.starts_with(b"glTF").then_some(())?;
-    let text = chunk(12)?;
-    Some((text, chunk(20 + text.len())?))
-}
-
-/// A .glb of these chunks.
-fn container(text: &[u8], binary: &[u8]) -> Vec<u8> {
-    let mut body = Vec::new();
-    for (kind, filler, content) in [(b"JSON", b' ', text), (b"BIN\0", 0, binary)] {
-        let length = content.len().next_multiple_of(4);
-        body.extend((length as u32).to_le_bytes());
-        body.extend(kind);
-        body.extend(content);
-        body.resize(body.len() + length - content.len(), filler);
-    }
-    let length = body.len() as u32 + 12;
-    [b"glTF".as_slice(), &2u32.to_le_bytes(), &length.to_le_bytes(), &body].concat()
 }

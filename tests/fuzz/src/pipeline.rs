@@ -1,16 +1,14 @@
 //! Both phases, on a scene that was accepted.
 
 use bssrdf::{Medium, Model, built_in};
-use formats::{
-    atomic::Output,
-    cloud::{self, Cloud, Options, Shard},
-};
+use formats::cloud::Cloud;
 use gather::{
     Filter, Input,
     estimator::{Estimator, Rule},
 };
-use sample_surface::{Choice, Pattern, Plan, SampleError, Sampled, Settings, sample};
+use sample_surface::{Choice, Pattern, Plan, SampleError, Sampled, sample};
 use scene::{NormalKind, Rays, Scene};
+use test_support::pipeline::{self, Sampling, by_area, sample_settings};
 
 const SAMPLES: u64 = 40;
 
@@ -28,7 +26,8 @@ pub fn check_pipeline(scene: &Scene, rays: &Rays) {
         (Choice::Uniform, Pattern::Independent, NormalKind::Geometric, Estimator::Roulette(Rule::Mixture)),
     ];
     for (choice, pattern, normals, estimator) in ways {
-        let settings = sampling(choice, pattern, normals);
+        let sampling = Sampling { choice, pattern, ..by_area(SAMPLES, 0) };
+        let settings = sample_settings(&sampling, normals, "");
         let Ok(plan) = Plan::new(scene, &settings) else { return };
         match sample(scene, rays, &settings, &plan, |_| ()) {
             Ok(sampled) => render(scene, rays, &filed(&sampled), normals, estimator),
@@ -37,34 +36,9 @@ pub fn check_pipeline(scene: &Scene, rays: &Rays) {
     }
 }
 
-fn sampling(choice: Choice, pattern: Pattern, normals: NormalKind) -> Settings {
-    Settings {
-        samples: SAMPLES,
-        choice,
-        pattern,
-        normals,
-        translucent: Vec::new(),
-        shares: Vec::new(),
-        options: Options {
-            seed: 0,
-            shard: Shard::ALONE,
-            choice: choice.name().into(),
-            pattern: pattern.name().into(),
-            shares: Vec::new(),
-            normals: if normals == NormalKind::Shading { "shading" } else { "geometric" }.into(),
-            metres_per_unit: 1.0,
-            light_unit: "radiometric".into(),
-            emission_unit: "radiometric".into(),
-            environment: "0,0,0".into(),
-        },
-    }
-}
-
 fn filed(sampled: &Sampled) -> Cloud {
     crate::file::with_file("a.cloud", &[], |path| {
-        let mut output = Output::create(path).expect("a temporary file");
-        cloud::write(&mut output, path, &sampled.content, &sampled.meta).expect("room");
-        output.commit().expect("a temporary file");
+        pipeline::write(sampled, path);
         let cloud = Cloud::open(path).expect("its own cloud");
         cloud.verify(path).expect("undamaged");
         cloud
@@ -81,17 +55,12 @@ fn render(scene: &Scene, rays: &Rays, cloud: &Cloud, normals: NormalKind, estima
     let size = scene.mesh.diagonal();
     for camera in &scene.cameras {
         let settings = gather::Settings {
-            width: SIDE,
-            height: SIDE,
-            crop: None,
             paths_per_pixel: 2,
             filter: Filter::Box,
             estimator,
-            model: Model::DirectionalDipole,
             normals,
-            environment: scene::DVec3::ONE.into(),
             max_depth: 8,
-            seed: 0,
+            ..pipeline::settings(Model::DirectionalDipole, SIDE, SIDE)
         };
         let input = Input { scene, rays, clouds: std::slice::from_ref(cloud), media: &media, camera };
         let rendered = gather::render(&input, &settings, |_| ());

@@ -2,12 +2,10 @@
 
 use crate::{file::with_file, medium::check_medium, pipeline::check_pipeline, view::check_camera};
 use scene::{
-    DVec3, ImportOptions, LightUnit, NormalKind, Rays, Scene,
+    DVec3, NormalKind, Rays, Scene,
     light::{LightTree, all_light_at},
 };
-
-const OPTIONS: ImportOptions =
-    ImportOptions { metres_per_unit: 1.0, light_unit: LightUnit::Radiometric, emission_unit: LightUnit::Radiometric };
+use test_support::glb::OPTIONS;
 
 /// Larger scenes are read and no more.
 const MAX_TRIANGLES: usize = 1 << 12;
@@ -36,7 +34,7 @@ fn check_surface(scene: &Scene) {
     let translucent = scene.translucent().map_or(Vec::new(), |(materials, _)| materials);
     scene.defects(|material| translucent.contains(&material));
     let rays = Rays::of_scene(scene, |material| translucent.contains(&material));
-    let lights = LightTree::new(&scene.lights);
+    let lights = LightTree::new(scene.lights());
     let count = scene.mesh.triangles.len();
     for k in (0..count).step_by(count.div_ceil(LIT)) {
         assert!(usize::from(scene.mesh.triangles[k].material) < scene.materials.len());
@@ -44,7 +42,7 @@ fn check_surface(scene: &Scene) {
         assert!(scene.mesh.area(k) > 0.0 && point.position.is_finite());
         // Shading normals are rounded to float32 and interpolated.
         assert!((point.normal.length() - 1.0).abs() < 1e-6 && (point.geometric_normal.length() - 1.0).abs() < 1e-12);
-        for light in &scene.lights {
+        for light in scene.lights() {
             assert!(light.importance(&point) >= 0.0);
             if let Some(arriving) = light.illuminate(&point, [0.3, 0.6]) {
                 assert!(arriving.irradiance.is_finite() && arriving.irradiance.min_element() >= 0.0);

@@ -5,26 +5,14 @@
 //! walk that takes all memory), a field of view, a coefficient and a limit without their range.
 
 use fuzz_targets::TARGETS;
-use std::{
-    path::{Path, PathBuf},
-    process::{Command, Output},
-};
+use std::path::{Path, PathBuf};
+use test_support::{Bench, Limits, Run};
 
 /// Of each file.
 const MUTATIONS: u64 = 400;
 
-/// KiB of address space: pictures of the most texels fit, what a damaged length asks for does not.
-const MEMORY: u64 = 2 << 20;
-/// Seconds of processor time for one target.
-const TIME: u64 = 60;
-
-fn replay(target: &str, mutations: u64, files: &[PathBuf]) -> Output {
-    // A shell sets the limits. Systems without one of them run the test without it.
-    let script = format!("ulimit -v {MEMORY}; ulimit -t {TIME}; exec \"$0\" \"$@\"");
-    let mut command = Command::new("sh");
-    command.args(["-c", &script, env!("CARGO_BIN_EXE_replay"), target, &mutations.to_string()]).args(files);
-    command.output().expect("a shell")
-}
+/// Of one target. Pictures of the most texels fit, what a damaged length asks for does not.
+const LIMITS: Limits = Limits { kibibytes: 2 << 20, seconds: 60 };
 
 fn corpus(target: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus").join(target);
@@ -36,11 +24,13 @@ fn corpus(target: &str) -> Vec<PathBuf> {
 /// Runs the corpus of a target; returns how many cases were accepted, and of how many.
 #[track_caller]
 fn run(target: &str) -> [u64; 2] {
-    let output = replay(target, MUTATIONS, &corpus(target));
-    let said = String::from_utf8_lossy(&output.stdout);
-    let last = said.lines().last().unwrap_or_default();
-    let complaint = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{target}: {last}: {}\n{complaint}", output.status);
+    let files = corpus(target);
+    let files = files.iter().map(|path| path.to_str().expect("a name in UTF-8"));
+    let mutations = MUTATIONS.to_string();
+    let arguments: Vec<&str> = [target, &mutations].into_iter().chain(files).collect();
+    let Run { status, stdout, stderr } = Bench::new().run_within(LIMITS, "replay", &arguments);
+    let last = stdout.lines().last().unwrap_or_default();
+    assert!(status.success(), "{target}: {last}: {status}\n{stderr}");
     let counts = last.strip_prefix("accepted ").and_then(|counts| counts.split_once(" of ")).unwrap();
     [counts.0, counts.1].map(|n| n.parse().unwrap())
 }

@@ -32,12 +32,6 @@ pub enum Model {
     StandardDipole,
 }
 
-/// Work that is compiled for each model's evaluation on blocks, see [`Model::visit_lanes`].
-pub trait LaneVisitor {
-    type Output;
-    fn visit<M: LaneModel>(self) -> Self::Output;
-}
-
 impl Model {
     /// All models, the default first.
     pub const ALL: [Model; 3] = [Model::DirectionalDipole, Model::BetterDipole, Model::StandardDipole];
@@ -60,12 +54,12 @@ impl Model {
         }
     }
 
-    /// Does the work with this model's evaluation on blocks.
-    pub fn visit_lanes<V: LaneVisitor>(self, visitor: V) -> V::Output {
+    /// The model of one medium, as an evaluator of sixteen samples at a time in float32.
+    pub fn lanes(self, medium: &Medium) -> AnyLanes {
         match self {
-            Model::DirectionalDipole => visitor.visit::<DirectionalLanes>(),
-            Model::BetterDipole => visitor.visit::<BetterLanes>(),
-            Model::StandardDipole => visitor.visit::<StandardLanes>(),
+            Model::DirectionalDipole => AnyLanes::Directional(DirectionalLanes::new(medium)),
+            Model::BetterDipole => AnyLanes::Better(BetterLanes::new(medium)),
+            Model::StandardDipole => AnyLanes::Standard(StandardLanes::new(medium)),
         }
     }
 
@@ -96,6 +90,32 @@ impl Model {
         let errors = medium.map(|c| self.reflectance_error(c, medium.eta));
         let poor = |(c, e): (&Coefficients, &f64)| c.scatters() && e.abs() > GOOD;
         medium.channels.iter().zip(&errors).any(poor).then_some(errors)
+    }
+}
+
+/// A model in float32 that is chosen when the program runs.
+#[derive(Clone, Debug)]
+pub enum AnyLanes {
+    Directional(DirectionalLanes),
+    Better(BetterLanes),
+    Standard(StandardLanes),
+}
+
+/// Work that is compiled once for each model, so that the model's evaluation is inlined into its loops.
+pub trait LaneWork {
+    type Output;
+
+    fn run<M: LaneModel>(self, model: &M) -> Self::Output;
+}
+
+impl AnyLanes {
+    /// Does the work with this model.
+    pub fn run<W: LaneWork>(&self, work: W) -> W::Output {
+        match self {
+            AnyLanes::Directional(model) => work.run(model),
+            AnyLanes::Better(model) => work.run(model),
+            AnyLanes::Standard(model) => work.run(model),
+        }
     }
 }
 

@@ -1,8 +1,8 @@
 //! Triangles that are there more than once.
 
-use crate::asset::{Asset, TETRAHEDRON, tetrahedron};
 use scene::Scene;
 use serde_json::{Value, json};
+use test_support::glb::{Asset, TETRAHEDRON, tetrahedron};
 
 /// Appends a primitive whose triangles are those of the tetrahedron by other corners, with normals of their own.
 fn again(asset: &mut Asset, sides: &[u16], material: usize) {

@@ -1,12 +1,10 @@
 //! Holes in opaque surfaces.
 
-use crate::{
-    asset::{Asset, FLOAT},
-    import_textures::{encoded, square, textured, with_picture},
-};
+use crate::import_textures::{encoded, square, textured, with_picture};
 use image::{ImageFormat, Rgba, RgbaImage};
 use scene::{DVec3, Rays, Scene};
 use serde_json::{Value, json};
+use test_support::glb::{Asset, FLOAT};
 
 /// A picture of two texels with these alphas, and this red.
 fn picture(alphas: [u8; 2], red: u8) -> Vec<u8> {

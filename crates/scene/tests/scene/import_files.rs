@@ -1,24 +1,25 @@
-//! The files that a scene is made of: containers, buffers beside them, data URIs, names.
+//! The files of a scene: containers, buffers beside them, data URIs, names.
 
-use crate::{
-    asset::{Folder, OPTIONS, container, import_bytes, tetrahedron},
-    import_textures::{encoded, textured, with_picture},
-};
+use crate::import_textures::{encoded, textured, with_picture};
 use base64::{Engine, engine::general_purpose::STANDARD};
 use scene::Scene;
 use serde_json::{Value, json};
 use std::path::Path;
+use test_support::{
+    Bench,
+    glb::{OPTIONS, container, import_bytes, tetrahedron},
+};
 
-/// The tetrahedron as a .gltf whose buffers are these.
+/// The tetrahedron as a .gltf with these buffers.
 fn gltf(buffers: Value) -> Vec<u8> {
     let mut document = tetrahedron().json;
     document["buffers"] = buffers;
     document.to_string().into_bytes()
 }
 
-/// Imports `scene.gltf` from a folder, with its buffer at `uri`.
-fn import_in(folder: &Folder, uri: &str) -> Result<Scene, String> {
-    let path = folder.write("my scene.gltf", &gltf(json!([{ "uri": uri, "byteLength": tetrahedron().binary.len() }])));
+/// Imports `scene.gltf` from a bench, with its buffer at `uri`.
+fn import_in(bench: &Bench, uri: &str) -> Result<Scene, String> {
+    let path = bench.write("my scene.gltf", &gltf(json!([{ "uri": uri, "byteLength": tetrahedron().binary.len() }])));
     Scene::import(&path, &OPTIONS).map_err(|e| e.to_string())
 }
 
@@ -36,39 +37,39 @@ fn a_buffer_is_beside_the_scene_below_it_or_in_the_uri() {
         ("parts/deep/mesh.bin", "parts/deep/mesh.bin"),
     ];
     for (uri, file) in names {
-        let folder = Folder::new();
-        folder.write(file, &binary);
-        let scene = import_in(&folder, uri).unwrap_or_else(|e| panic!("{uri}: {e}"));
+        let bench = Bench::new();
+        bench.write(file, &binary);
+        let scene = import_in(&bench, uri).unwrap_or_else(|e| panic!("{uri}: {e}"));
         assert_eq!(scene.mesh.triangles.len(), 4, "{uri}");
     }
     let encoded = STANDARD.encode(&binary);
     for data in [&encoded, encoded.trim_end_matches('=')] {
         let uri = format!("data:application/octet-stream;base64,{data}");
-        assert!(import_in(&Folder::new(), &uri).is_ok(), "{uri}");
+        assert!(import_in(&Bench::new(), &uri).is_ok(), "{uri}");
     }
 }
 
 #[test]
 fn a_missing_or_short_buffer_is_named_with_the_scene() {
-    let folder = Folder::new();
-    let message = import_in(&folder, "gone%20away.bin").err().expect("the file is missing");
+    let bench = Bench::new();
+    let message = import_in(&bench, "gone%20away.bin").err().expect("the file is missing");
     for word in ["my scene.gltf", "buffers[0].uri", "gone away.bin", "beside it"] {
         assert!(message.contains(word), "{word}: {message}");
     }
-    folder.write("short.bin", &tetrahedron().binary[1..]);
-    let message = import_in(&folder, "short.bin").err().expect("the file is short");
+    bench.write("short.bin", &tetrahedron().binary[1..]);
+    let message = import_in(&bench, "short.bin").err().expect("the file is short");
     assert!(message.contains("truncated") && message.contains("byteLength"), "{message}");
 }
 
 #[test]
 fn nothing_outside_the_folder_is_read() {
-    let outer = Folder::new();
+    let outer = Bench::new();
     outer.write("secret.bin", &tetrahedron().binary);
-    let uri = outer.path().join("secret.bin").display().to_string();
+    let uri = outer.path("secret.bin").display().to_string();
     let (encoded, url) = (uri.replace('/', "%2F"), format!("file://{uri}"));
     for uri in [&uri, &encoded, &url, "../secret.bin", "a/../../secret.bin", "%2e%2e/secret.bin", "", ".", "x:///y"] {
-        let folder = Folder::new();
-        let message = import_in(&folder, uri).err().unwrap_or_else(|| panic!("`{uri}` was read"));
+        let bench = Bench::new();
+        let message = import_in(&bench, uri).err().unwrap_or_else(|| panic!("`{uri}` was read"));
         assert!(message.contains("not a file in the scene's folder"), "{uri}: {message}");
     }
 }
@@ -84,61 +85,62 @@ fn odd_uris_are_faults() {
         ("folder", "not a regular file"),
     ];
     for (uri, word) in cases {
-        let folder = Folder::new();
-        folder.write("folder/inside", b"");
-        let message = import_in(&folder, uri).err().unwrap_or_else(|| panic!("`{uri}` was read"));
+        let bench = Bench::new();
+        bench.write("folder/inside", b"");
+        let message = import_in(&bench, uri).err().unwrap_or_else(|| panic!("`{uri}` was read"));
         assert!(message.contains(word), "{uri}: {message}");
     }
 }
 
-/// A file that thousands of buffers name is still one file.
+/// A file that thousands of buffers name is read once.
 #[test]
 fn one_file_is_read_once() {
-    let folder = Folder::new();
+    let bench = Bench::new();
     let binary = tetrahedron().binary;
     let mut large = binary.clone();
     large.resize(4 << 20, 0);
-    folder.write("mesh.bin", &large);
+    bench.write("mesh.bin", &large);
     let buffers: Vec<Value> = (0..4000).map(|_| json!({ "uri": "./mesh.bin", "byteLength": 4 << 20 })).collect();
-    let path = folder.write("many.gltf", &gltf(json!(buffers)));
+    let path = bench.write("many.gltf", &gltf(json!(buffers)));
     let start = std::time::Instant::now();
     assert!(Scene::import(&path, &OPTIONS).is_ok());
     assert!(start.elapsed().as_secs() < 5, "16 GiB would take longer");
 }
 
-/// A scene's folder may be made of links. What they lead to is read like a file that lies there, and shows in no message.
-/// Seen to catch: the decoder's words, with bytes of the file; a number out of range, or one beside one that is no number.
+/// The files of a scene's folder may be links. Their targets are read like files, and their content appears in no message.
+///
+/// Seen to catch: the decoder's message, with bytes of the file; the value of an index or number in a message.
 #[cfg(unix)]
 #[test]
 fn links_are_followed_and_messages_do_not_show_what_is_there() {
-    let (outer, folder) = (Folder::new(), Folder::new());
+    let (outer, bench) = (Bench::new(), Bench::new());
     let link = |name: &str, content: &[u8]| {
         let path = outer.write(name, content);
-        std::os::unix::fs::symlink(path, folder.path().join(name)).expect("a link");
+        std::os::unix::fs::symlink(path, bench.path(name)).expect("a link");
     };
     link("mesh.bin", &tetrahedron().binary);
-    let scene = import_in(&folder, "mesh.bin").expect("links are followed");
-    assert_eq!(scene.files[1], folder.path().join("mesh.bin"));
+    let scene = import_in(&bench, "mesh.bin").expect("links are followed");
+    assert_eq!(scene.files[1], bench.path("mesh.bin"));
     let mut asset = with_picture(&[], textured(json!({})), json!({}));
     let starts: [(&str, &[u8]); 3] =
         [("a.png", b"\x89PNG\r\n\x1a\n\0\0\0\x04"), ("b.jpg", b"\xff\xd8\xff"), ("c.txt", b"")];
     for (name, start) in starts {
         link(name, &[start, b"root:x:0:0:root:/root:/bin/bash"].concat());
         asset.set("/images/0", json!({ "uri": name }));
-        let path = folder.write("picture.glb", &asset.glb());
+        let path = bench.write("picture.glb", &asset.glb());
         let message = Scene::import(&path, &OPTIONS).err().expect("no picture").to_string();
         let (_, said) = message.split_once(&format!("`{name}`: ")).expect("the image's name");
         let known = [
-            "a damaged PNG or JPEG picture, or of a kind that is not read; export it as PNG or JPEG again",
+            "the PNG or JPEG picture is damaged or of a kind that is not supported; export it as PNG or JPEG again",
             "neither a PNG nor a JPEG picture; export it as PNG or JPEG",
         ];
         assert!(known.contains(&said), "{said}");
     }
-    // A link to where it lies gives a file any number of paths; it is read once.
-    std::os::unix::fs::symlink(".", folder.path().join("d")).expect("a link");
+    // A link to its own folder gives a file any number of paths; it is read once.
+    std::os::unix::fs::symlink(".", bench.path("d")).expect("a link");
     let uris = ["mesh.bin", "d/mesh.bin", "d/d/mesh.bin"];
     let buffers = uris.map(|uri| json!({ "uri": uri, "byteLength": tetrahedron().binary.len() }));
-    let path = folder.write("round.gltf", &gltf(json!(buffers)));
+    let path = bench.write("round.gltf", &gltf(json!(buffers)));
     assert_eq!(Scene::import(&path, &OPTIONS).expect("a good file").files.len(), 2);
     let good = tetrahedron();
     let secret = 7654321.0f32;
@@ -150,15 +152,15 @@ fn links_are_followed_and_messages_do_not_show_what_is_there() {
         let mut binary = good.binary.clone();
         binary[at..at + bytes.len()].copy_from_slice(&bytes);
         link(&format!("{k}.bin"), &binary);
-        let message = import_in(&folder, &format!("{k}.bin")).err().expect("a bad number");
+        let message = import_in(&bench, &format!("{k}.bin")).err().expect("a bad number");
         assert!(message.contains(words) && !message.contains("54321"), "{message}");
     }
 }
 
-/// Programs refuse to write over what they read: each file is there, once, by the path that it was opened by.
+/// Programs refuse to write over their inputs. The list has each file once, by the path at which it was opened.
 #[test]
 fn every_file_that_was_read_is_told() {
-    let folder = Folder::new();
+    let bench = Bench::new();
     let mut asset = with_picture(&[], textured(json!({})), json!({}));
     asset.set("/images/0", json!({ "uri": "skin%20one.png" }));
     asset.push("images", json!({ "uri": "./skin%20one.png" }));
@@ -167,17 +169,17 @@ fn every_file_that_was_read_is_told() {
     let mut material = textured(json!({}));
     material["pbrMetallicRoughness"]["baseColorTexture"]["index"] = json!(second);
     asset.push("materials", material);
-    folder.write("parts/mesh.bin", &asset.binary);
-    folder.write("more.bin", &asset.binary);
-    folder.write("skin one.png", &encoded(&image::RgbaImage::new(2, 2), image::ImageFormat::Png));
+    bench.write("parts/mesh.bin", &asset.binary);
+    bench.write("more.bin", &asset.binary);
+    bench.write("skin one.png", &encoded(&image::RgbaImage::new(2, 2), image::ImageFormat::Png));
     let buffer = |uri: &str| json!({ "uri": uri, "byteLength": asset.binary.len() });
     let buffers = ["parts/mesh.bin", "parts/./mesh.bin", "more.bin"].map(buffer);
     asset.json["buffers"] = json!(buffers);
-    let path = folder.write("scene.gltf", asset.json.to_string().as_bytes());
+    let path = bench.write("scene.gltf", asset.json.to_string().as_bytes());
     let scene = Scene::import(&path, &OPTIONS).expect("a good file");
-    let expected = ["scene.gltf", "parts/mesh.bin", "more.bin", "skin one.png"].map(|name| folder.path().join(name));
+    let expected = ["scene.gltf", "parts/mesh.bin", "more.bin", "skin one.png"].map(|name| bench.path(name));
     assert_eq!(scene.files, expected);
-    let path = folder.write("alone.glb", &tetrahedron().glb());
+    let path = bench.write("alone.glb", &tetrahedron().glb());
     assert_eq!(Scene::import(&path, &OPTIONS).expect("a good file").files, [path]);
 }
 
@@ -204,7 +206,7 @@ fn chunks_of_other_kinds_are_ignored() {
     assert!(message.contains("no binary chunk"), "{message}");
 }
 
-/// Each of the header's length fields at its extremes.
+/// Each length field of the header at its extremes.
 #[test]
 fn wrong_lengths_in_the_container_are_faults() {
     let good = tetrahedron().glb();
@@ -220,9 +222,9 @@ fn wrong_lengths_in_the_container_are_faults() {
             assert!(message.contains("bad.glb"), "{message}");
         }
     }
-    let folder = Folder::new();
+    let bench = Bench::new();
     for length in 0..good.len() {
-        let cut = Scene::import(&folder.write(&format!("cut-{length}.glb"), &good[..length]), &OPTIONS);
+        let cut = Scene::import(&bench.write(&format!("cut-{length}.glb"), &good[..length]), &OPTIONS);
         assert!(cut.err().is_some_and(|e| e.to_string().contains("cut-")), "{length} bytes were accepted");
     }
 }
@@ -245,12 +247,12 @@ fn what_is_no_gltf_at_all() {
         let message = import_bytes("no.gltf", bytes, &OPTIONS).err().expect("it is none");
         assert!(message.contains("no.gltf") && message.contains(word), "{word}: {message:.200}");
     }
-    let folder = Folder::new();
-    let missing = folder.path().join("missing.glb");
+    let bench = Bench::new();
+    let missing = bench.path("missing.glb");
     let message = Scene::import(&missing, &OPTIONS).err().expect("missing").to_string();
     assert!(message.contains("missing.glb"), "{message}");
-    // A device or a pipe might never end.
-    for path in [folder.path(), Path::new("/dev/zero")] {
+    // A device or a pipe could be endless.
+    for path in [bench.folder(), Path::new("/dev/zero")] {
         let message = Scene::import(path, &OPTIONS).err().expect("no file").to_string();
         assert!(!path.exists() || message.contains("not a regular file"), "{message}");
     }

@@ -1,10 +1,10 @@
 //! Import, rays and lights from outside the crate.
 
-mod asset;
 mod copies;
 mod cutouts;
 mod environment;
 mod exactness;
+mod identity;
 mod import;
 mod import_faults;
 mod import_files;

@@ -1,11 +1,9 @@
 //! Faults of meshes that are planted and counted.
 
-use crate::{
-    asset::tetrahedron,
-    meshes::{bumpy, cube, mesh, sphere},
-};
+use crate::meshes::{bumpy, cube, mesh, sphere};
 use scene::{DVec3, Mesh, MeshDefects, Triangle};
 use serde_json::json;
+use test_support::glb::tetrahedron;
 
 fn defects(mesh: &Mesh) -> MeshDefects {
     mesh.defects(|_| true)

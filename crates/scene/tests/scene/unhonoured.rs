@@ -1,9 +1,9 @@
 //! What a file asks for and the picture does not show is named, once, and in one line.
 
-use crate::asset::{Asset, OPTIONS, TETRAHEDRON, tetrahedron};
 use scene::Scene;
 use serde_json::{Value, json};
 use std::path::Path;
+use test_support::glb::{Asset, OPTIONS, TETRAHEDRON, tetrahedron};
 
 /// The warnings of a file; all materials whose name begins with `wax` are translucent.
 fn warnings(asset: &Asset) -> Vec<String> {
@@ -156,7 +156,7 @@ fn what_is_not_drawn_is_not_named() {
 fn geometry_is_refused_undeclared() {
     let mut asset = asset();
     asset.set("/nodes/0/extensions", json!({ "EXT_mesh_gpu_instancing": { "attributes": {} } }));
-    assert!(crate::asset::fault(&asset).contains("EXT_mesh_gpu_instancing is not supported"));
+    assert!(test_support::glb::fault(&asset).contains("EXT_mesh_gpu_instancing is not supported"));
 }
 
 /// The camera stands at the origin and looks along -Z: the body is behind it until it turns.

@@ -1,19 +1,20 @@
-//! How much better or worse a cut is than it predicts, see [`Calibration`].
+//! The factor between the error that the cut predicts and the error that it has.
 
-/// What the accuracy asked of a cut is multiplied by, so that the error asked for is the error that comes: a function of
-/// the sum that the cut predicts, since in the shadow other nodes count than in the light.
+/// A factor of the target error of a cut that makes its true error meet the target. It is a function of the predicted
+/// sum, since the nodes that matter in shadow are not those that matter in light.
 #[derive(Clone, Debug)]
 pub struct Calibration(Box<[f32; ENTRIES]>);
 
-/// Bits of a float64 that are dropped to index the factors: two steps for each doubling of the sum, from 2⁻²⁵⁶ to 2²⁵⁶.
+/// The factors are indexed by the bits of a float64 above this one: two steps for each doubling of the sum, from 2⁻²⁵⁶ to
+/// 2²⁵⁶.
 const SHIFT: u32 = 51;
 const ENTRIES: usize = 1 << 10;
 /// The index of 2⁻²⁵⁶.
 const FIRST: u64 = (1023 - 256) << 1;
 
 impl Calibration {
-    /// From predicted sums, W/(m² sr), in ascending order, and the factor at each. Between them the factor's logarithm is
-    /// linear in that of the sum; beyond, the factor is the last. It is 1 if nothing is known.
+    /// From pairs of a predicted sum, W/(m² sr), and its factor, by ascending sums. Between them the logarithm of the
+    /// factor is linear in the logarithm of the sum; beyond them the factor is constant. Without any pair it is 1.
     pub fn new(known: &[(f64, f64)]) -> Calibration {
         let middle = |k: usize| f64::from_bits((k as u64 + FIRST) << SHIFT | 1 << (SHIFT - 1));
         Calibration(Box::new(std::array::from_fn(|k| interpolate(known, middle(k)) as f32)))
@@ -46,13 +47,13 @@ fn interpolate(known: &[(f64, f64)], sum: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Seen to catch: linear in the sum instead of its logarithm.
+    /// Seen to catch: factors linear in the sum instead of its logarithm.
     #[test]
-    fn the_factor_goes_from_one_known_one_to_the_next() {
+    fn factors_are_interpolated_between_the_known_ones() {
         let calibration = Calibration::new(&[(1e2, 0.25), (1e6, 4.0)]);
         let sums = [(0.0, 0.25), (1.0, 0.25), (1e4, 1.0), (1e6, 4.0), (1e30, 4.0), (1e60, 4.0), (f64::NAN, 4.0)];
         for (sum, factor) in sums.into_iter().chain([(1e-80, 0.25), (1e80, 4.0), (f64::INFINITY, 4.0)]) {
-            // One step of the table is a tenth of a doubling of the factor.
+            // From one step of the table to the next this factor grows by a tenth.
             let close = (calibration.factor(sum) / factor).ln().abs() < 0.1;
             assert!(close, "{sum}: {}", calibration.factor(sum));
         }

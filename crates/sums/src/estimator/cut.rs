@@ -1,13 +1,18 @@
 //! The hierarchical sum: a cut through the tree over the samples.
 //!
-//! A closed node contributes one of its `n` samples, picked uniformly, `n` times; an open leaf all of its samples. That
-//! is unbiased for every choice of the cut that does not look at what is picked. A node is opened while the standard
-//! deviation that it would add, by the tables of [`FalloffTables`], exceeds a threshold that is the same for all nodes: for a
-//! given sum of variances this takes the fewest nodes. The threshold follows from the wanted error and from an estimate of
-//! the sum itself, what open leaves contribute and what the tables say of closed nodes, and is lowered until the cut is
-//! good enough.
+//! An open leaf contributes all of its samples. A closed node of `n` samples contributes one of them, picked uniformly,
+//! `n` times. The sum is unbiased for every cut that is chosen without regard to the samples that are picked. A node is
+//! opened while the standard deviation that it would add, as [`FalloffTables`] predict it, exceeds a threshold. The
+//! threshold is the same for all nodes, which takes the fewest nodes for a given sum of variances. It follows from the
+//! target error and from an estimate of the sum, which is the contribution of the open leaves and the predicted one of the
+//! closed nodes, and is lowered until the predicted error of the cut is small enough.
 
-use super::{Accumulator, Calibration, FalloffTables, Sum, random_bits};
+use super::{
+    calibration::Calibration,
+    falloff_tables::FalloffTables,
+    random_bits::random_bits,
+    sum::{Accumulator, Sum},
+};
 use crate::samples::{Exit, LitSamples};
 use bssrdf::{
     lanes::{LANES, Lane, LaneModel},
@@ -19,22 +24,23 @@ use formats::cloud::{Node, TILE, first_leaf};
 #[derive(Clone, Copy, Debug)]
 struct Closed {
     id: u32,
-    /// Standard deviation that it adds, and what it contributes: sums over channels, W/(m² sr) times
+    /// The predicted standard deviation of its contribution, summed over channels, in W/(m² sr) times
     /// [`LitSamples::scale`].
     error: f32,
+    /// Its predicted contribution, in the same unit.
     value: f32,
-    /// What it contributes if its near end counts most.
-    most: f32,
+    /// The same where most of it comes from the near end of the node.
+    max_value: f32,
 }
 
-/// Lists that are kept from gather to gather for their memory.
+/// Lists that a thread keeps from one sum to the next, so that no sum allocates memory.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
     frontier: Vec<u32>,
     closed: Vec<Closed>,
-    /// Open leaves: places of their tiles.
+    /// The tiles of the open leaves.
     open: Vec<u32>,
-    /// The samples of the closed nodes, and how many each stands for.
+    /// The picked sample of each closed node, and how many samples it represents.
     picks: Vec<(u32, f32)>,
 }
 
@@ -44,35 +50,35 @@ pub struct Cut<'a, M> {
     pub samples: &'a LitSamples<'a>,
     pub tables: &'a FalloffTables,
     pub exit: &'a Exit,
-    /// Wanted standard error of the sum, relative.
+    /// Target of the relative standard error of the sum.
     pub accuracy: f32,
-    /// What that is multiplied by.
+    /// The factor of that target.
     pub calibration: &'a Calibration,
     pub scratch: &'a mut Scratch,
 }
 
-/// When a node is opened.
+/// Which nodes are opened.
 #[derive(Clone, Copy)]
 enum Criterion {
-    /// It is seen under a wide angle.
+    /// Those that the exitant point sees under a wide angle.
     Wide,
-    /// Its error exceeds this.
+    /// Those whose error exceeds this.
     Above(f32),
 }
 
-/// Root mean square deviation of the directions of diffuse light, for which the tables' scatter was computed: `√(5/9)`.
+/// Root mean square deviation of the directions of diffuse light, `√(5/9)`, for which the tables hold the scatter.
 const DIFFUSE_TURN: f32 = 0.745_356;
 
-/// A node is seen under a wide angle if its squared radius is over this share of the squared distance.
+/// A node is seen under a wide angle if this times its squared radius exceeds the squared distance of its centre.
 const WIDE: f32 = 0.5;
 
-/// The threshold is at first this, times the wanted error to the power 3/2, times a rough estimate of the sum.
+/// The first threshold is this, times the target error to the power 3/2, times a rough estimate of the sum.
 const START: f32 = 0.7;
 
-/// The predicted error may exceed the wanted one by this.
+/// The predicted error may exceed the target by this factor.
 const GOOD_ENOUGH: f32 = 1.2;
 
-/// Rounds of lowering the threshold.
+/// The threshold is lowered at most so many times.
 const ROUNDS: usize = 6;
 
 impl<M: LaneModel> Kernel for Cut<'_, M> {
@@ -90,8 +96,7 @@ impl<M: LaneModel> Kernel for Cut<'_, M> {
 }
 
 impl<M: LaneModel> Cut<'_, M> {
-    /// Finds the cut, and adds the samples of its open leaves; returns how many nodes were looked at, and the sum that it
-    /// predicts.
+    /// Finds the cut and adds the samples of its open leaves; returns the number of visited nodes and the predicted sum.
     #[inline(always)]
     fn choose(&mut self, sum: &mut Accumulator) -> (u64, f64) {
         self.scratch.closed.clear();
@@ -101,11 +106,11 @@ impl<M: LaneModel> Cut<'_, M> {
         let mut added = self.add_open(0, sum);
         let scale = self.samples.scale();
         let unit = 1.0 / f64::from(scale);
-        let rough = self.scratch.closed.iter().fold(of_open(sum, scale), |sum, c| sum + c.most);
-        let guess = self.accuracy * self.calibration.factor(f64::from(rough) * unit);
-        // Below 0 it would open what is empty. It cannot be, unless the samples were changed while they are read.
+        let rough = self.scratch.closed.iter().fold(of_open(sum, scale), |sum, c| sum + c.max_value);
+        let target = self.accuracy * self.calibration.factor(f64::from(rough) * unit);
+        // A threshold below 0 would open empty nodes. The sum is below 0 only if the file is changed while it is read.
         let rough = if rough < 0.0 { 0.0 } else { rough };
-        let mut threshold = START * guess * guess.sqrt() * rough;
+        let mut threshold = START * target * target.sqrt() * rough;
         let mut predicted = 0.0;
         for _ in 0..ROUNDS {
             self.reopen(threshold);
@@ -116,18 +121,18 @@ impl<M: LaneModel> Cut<'_, M> {
                 self.scratch.closed.iter().fold(start, |(t, v), c| (t + c.value, v + c.error * c.error));
             predicted = f64::from(total) * unit;
             let excess = variance.sqrt() / (self.accuracy * self.calibration.factor(predicted) * total);
-            // Not a number if nothing contributes.
+            // The excess is not a number if nothing contributes.
             if excess <= GOOD_ENOUGH || excess.is_nan() {
                 break;
             }
-            // The error falls with the threshold to the power 2/3.
+            // The error falls as the threshold to the power 2/3.
             let bounded = excess.min(10.0);
             threshold /= bounded * bounded.sqrt();
         }
         (visited, predicted)
     }
 
-    /// Moves closed nodes above the threshold back to the frontier, as their children.
+    /// Replaces closed nodes above the threshold by their children, which go to the frontier.
     #[inline(always)]
     fn reopen(&mut self, threshold: f32) {
         let leaves = Leaves::of(self.samples);
@@ -141,7 +146,7 @@ impl<M: LaneModel> Cut<'_, M> {
         });
     }
 
-    /// Takes the frontier down until every node is closed or an open leaf.
+    /// Opens nodes of the frontier until each is closed or is an open leaf; returns the number of visited nodes.
     #[inline(always)]
     fn sweep(&mut self, criterion: Criterion) -> u64 {
         let (leaves, scale) = (Leaves::of(self.samples), self.samples.scale());
@@ -156,8 +161,8 @@ impl<M: LaneModel> Cut<'_, M> {
             visited += count as u64;
             let predicted = predict(self.tables, self.exit, nodes, scale, &ids);
             for i in 0..count {
-                let (error, value, most) = (predicted.error[i], predicted.value[i], predicted.most[i]);
-                let node = Closed { id: ids[i], error, value, most };
+                let (error, value, max_value) = (predicted.error[i], predicted.value[i], predicted.max_value[i]);
+                let node = Closed { id: ids[i], error, value, max_value };
                 let opens = match criterion {
                     Criterion::Wide => predicted.wide[i],
                     Criterion::Above(threshold) => node.error > threshold,
@@ -172,7 +177,7 @@ impl<M: LaneModel> Cut<'_, M> {
         visited
     }
 
-    /// Picks a sample for each closed node.
+    /// Picks one sample of each closed node.
     #[inline(always)]
     fn pick(&mut self) {
         let first_leaf = first_leaf(self.samples.tiles().len() as u64);
@@ -182,7 +187,7 @@ impl<M: LaneModel> Cut<'_, M> {
             let depth = first_leaf.ilog2() - node.id.ilog2();
             let first = ((u64::from(node.id) << depth) - first_leaf) * TILE as u64;
             let end = (((u64::from(node.id) + 1) << depth) - first_leaf) * TILE as u64;
-            // A node beyond the last sample has no flux, unless the file was forged.
+            // Only in a forged file has a node beyond the last sample flux, so that it is closed instead of dropped.
             let Some(count) = end.min(self.samples.len() as u64).checked_sub(first).filter(|count| *count > 0) else {
                 continue;
             };
@@ -193,12 +198,12 @@ impl<M: LaneModel> Cut<'_, M> {
         }
     }
 
-    /// One sample for each closed node.
+    /// Adds the picked samples, each weighted by the number of samples of its node; returns how many there are.
     #[inline(always)]
     fn add_closed(&self, sum: &mut Accumulator) -> u64 {
         let mut indices = [0; LANES];
         for part in self.scratch.picks.chunks(LANES) {
-            // Lanes left free repeat some sample with weight 0.
+            // Unused lanes repeat some sample with weight 0.
             let mut weights = [0.0; LANES];
             for (i, (index, weight)) in part.iter().enumerate() {
                 indices[i] = *index;
@@ -210,7 +215,7 @@ impl<M: LaneModel> Cut<'_, M> {
         self.scratch.picks.len() as u64
     }
 
-    /// All samples of open leaves but the first, that were added before; returns how many there are.
+    /// Adds the samples of all open leaves but the first `added`; returns the number of open leaves.
     #[inline(always)]
     fn add_open(&self, added: usize, sum: &mut Accumulator) -> usize {
         for tile in &self.scratch.open[added..] {
@@ -221,17 +226,18 @@ impl<M: LaneModel> Cut<'_, M> {
     }
 }
 
-/// What open leaves contribute, the sum over channels, times the scale. It depends on nothing that was picked.
+/// The contribution of the open leaves, summed over channels, times the scale. It does not depend on picked samples.
 #[inline(always)]
 fn of_open(sum: &Accumulator, scale: f32) -> f32 {
     (sum.total().element_sum() * f64::from(scale)) as f32
 }
 
-/// Where the leaves are in the tree.
+/// The leaves of the tree.
 #[derive(Clone, Copy)]
 struct Leaves {
+    /// The node that is the first leaf.
     first: u32,
-    /// Those that have a tile.
+    /// The number of leaves that have a tile.
     tiles: u32,
 }
 
@@ -242,7 +248,7 @@ impl Leaves {
         Leaves { first: first_leaf(tiles as u64) as u32, tiles: tiles as u32 }
     }
 
-    /// Replaces a node by its children, or a leaf by its samples.
+    /// Adds the children of a node to the frontier, or a leaf to the open ones.
     #[inline(always)]
     fn expand(self, id: u32, frontier: &mut Vec<u32>, open: &mut Vec<u32>) {
         if id < self.first {
@@ -253,23 +259,23 @@ impl Leaves {
     }
 }
 
-/// What sixteen nodes do if they are closed, see [`Closed`].
+/// What is predicted of sixteen nodes if they are closed; see [`Closed`].
 #[derive(Default)]
 struct Predicted {
     error: Lane,
     value: Lane,
-    most: Lane,
-    /// Whether they are seen under a wide angle.
+    max_value: Lane,
+    /// Whether the exitant point sees them under a wide angle.
     wide: [bool; LANES],
 }
 
-/// Looks at sixteen nodes.
+/// Visits sixteen nodes.
 #[inline(always)]
 fn predict(tables: &FalloffTables, exit: &Exit, nodes: &[Node], scale: f32, ids: &[u32; LANES]) -> Predicted {
     let mut offset = [[0.0; LANES]; 3];
     let mut rest = [[0.0; LANES]; 5];
     for i in 0..LANES {
-        // Beyond the last leaf there is nothing.
+        // Nodes beyond the end of the tree are empty.
         let node = nodes.get(ids[i] as usize).copied().unwrap_or_default();
         let o = exit.offset(node.centre);
         for c in 0..3 {
@@ -287,17 +293,19 @@ fn predict(tables: &FalloffTables, exit: &Exit, nodes: &[Node], scale: f32, ids:
         let far2 = offset[0][i] * offset[0][i] + offset[1][i] * offset[1][i] + offset[2][i] * offset[2][i];
         let near = (far2.sqrt() - radius[i]).max(0.0);
         let near2 = near * near;
-        let by_place = tables.slope(near2) * spread[i];
-        let by_light = tables.scatter(near2) * turn[i] * (1.0 / DIFFUSE_TURN);
-        // Of a disc the squared radius is twice the mean squared distance from its middle.
+        let by_position = tables.slope(near2) * spread[i];
+        let by_direction = tables.scatter(near2) * turn[i] * (1.0 / DIFFUSE_TURN);
+        // The squared radius of a disc is twice the mean squared distance from its centre.
         let disc2 = 2.0 * spread[i] * spread[i];
-        // The mean of a decay over a node lies near the geometric mean of those to its middle and its near end.
-        let here = if far2 > disc2 { tables.value(far2) } else { tables.disc(disc2) };
-        let beside = (here * tables.value(near2)).sqrt();
-        let by_flux = here * deviation[i];
-        predicted.error[i] = flux[i] * (by_place * by_place + by_light * by_light + by_flux * by_flux).sqrt();
-        predicted.value[i] = flux[i] * here;
-        predicted.most[i] = flux[i] * if far2 > disc2 { beside } else { here };
+        let value = if far2 > disc2 { tables.value(far2) } else { tables.disc(disc2) };
+        // The mean of an exponential over a node is close to the geometric mean of its values at the centre and at the
+        // near end.
+        let near_value = (value * tables.value(near2)).sqrt();
+        let by_flux = value * deviation[i];
+        predicted.error[i] =
+            flux[i] * (by_position * by_position + by_direction * by_direction + by_flux * by_flux).sqrt();
+        predicted.value[i] = flux[i] * value;
+        predicted.max_value[i] = flux[i] * if far2 > disc2 { near_value } else { value };
         predicted.wide[i] = WIDE * radius[i] * radius[i] > far2;
     }
     predicted

@@ -1,6 +1,6 @@
-//! The whole sum: what the other estimators are tested against.
+//! The whole sum: the reference of the other estimators.
 
-use super::{Accumulator, Sum};
+use super::sum::{Accumulator, Sum};
 use crate::samples::{Exit, LitSamples};
 use bssrdf::{
     lanes::{LANES, LaneModel},

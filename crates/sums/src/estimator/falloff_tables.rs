@@ -1,29 +1,31 @@
-//! How fast a BSSRDF varies, by distance: what the cut decides by. Only its efficiency depends on these numbers.
+//! How a BSSRDF varies with the distance between the points. The cut opens nodes by these tables; its efficiency depends
+//! on them, its mean does not.
 
 use bssrdf::{Bssrdf, DVec3, Medium, Separation, fresnel};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-/// Bits of a float32 that are dropped to index the tables: sixteen steps for each doubling of the squared distance.
+/// The tables are indexed by the bits of a float32 above this one: sixteen steps for each doubling of the squared
+/// distance.
 const SHIFT: u32 = 19;
 const ENTRIES: usize = 1 << (32 - 1 - SHIFT);
 
-/// Tables over all float32 squared distances, m²; means over the channels, and over how the surface may turn from one point
-/// to the other. That matters in nearly clear media alone: where light passes the other point at a grazing angle, the
-/// directional dipole has a pole.
+/// Tables over the squared distance, m², of all float32 values: means over the channels, and over normals at the exitant
+/// point. The normals matter only in nearly clear media, where the directional dipole has a pole for light that passes the
+/// exitant point at a grazing angle.
 #[derive(Clone, Debug)]
 pub struct FalloffTables {
     /// Mean of `S_bare`, 1/(m² sr).
     value: Box<[f32; ENTRIES]>,
-    /// Mean of `value` over a disc of this squared radius around the point, 1/(m² sr).
+    /// Mean of `value` over a disc of this squared radius around the exitant point, 1/(m² sr).
     disc: Box<[f32; ENTRIES]>,
-    /// Standard deviation over points per root mean square distance from their mean, 1/(m³ sr). Never grows with
-    /// distance.
+    /// Standard deviation over samples, divided by the root mean square of their distances from their mean, 1/(m³ sr). It
+    /// never grows with the distance.
     slope: Box<[f32; ENTRIES]>,
     /// Standard deviation over diffuse directions of light, 1/(m² sr).
     scatter: Box<[f32; ENTRIES]>,
 }
 
-/// What the tables say at one distance.
+/// The entries of the tables at one distance.
 #[derive(Clone, Copy, Debug, Default)]
 struct Variation {
     value: f64,
@@ -32,19 +34,19 @@ struct Variation {
 }
 
 impl FalloffTables {
-    /// For a surface of this size, m: nearer than that it is nearly a plane. An infinite one is a plane.
+    /// `size` is that of the surface, m: over shorter distances it is nearly a plane. A surface of infinite size is one.
     pub fn new(medium: &Medium, model: &dyn Bssrdf, size: f64) -> FalloffTables {
         let table = || -> Box<[f32; ENTRIES]> { Box::new([0.0; ENTRIES]) };
         let mut tables = FalloffTables { value: table(), disc: table(), slope: table(), scatter: table() };
-        let (nearest, farthest) = reach(medium, model);
-        let known = variations(model, &directions(medium.eta), nearest, farthest, size);
+        let (nearest, farthest) = distances(medium, model);
+        let variations = variations(model, &directions(medium.eta), nearest, farthest, size);
         let mut slope = 0.0f64;
         for k in (0..ENTRIES).rev() {
             let distance = f64::from(middle(k)).sqrt();
             if distance > farthest || !distance.is_finite() {
                 continue;
             }
-            let here = interpolate(&known, (distance / nearest).ln() / STEP.ln());
+            let here = interpolate(&variations, (distance / nearest).ln() / STEP.ln());
             slope = slope.max(here.slope);
             (tables.value[k], tables.scatter[k]) = (here.value as f32, here.scatter as f32);
             tables.slope[k] = slope as f32;
@@ -53,7 +55,7 @@ impl FalloffTables {
         tables
     }
 
-    /// `∫ S 2πr dr/(πR²)`: the mean over the squared distance.
+    /// Fills `disc` with `∫ S 2πr dr/(πR²)`, the mean over the squared distance.
     fn average(&mut self) {
         let mut sum = 0.0;
         for k in 0..ENTRIES {
@@ -101,9 +103,9 @@ fn middle(index: usize) -> f32 {
     f32::from_bits((index as u32) << SHIFT | 1 << (SHIFT - 1))
 }
 
-/// The distances, m, that are worth evaluating: from a thousandth of the shortest mean free path to where the channel that
-/// reaches farthest is gone.
-fn reach(medium: &Medium, model: &dyn Bssrdf) -> (f64, f64) {
+/// The range of distances for which the model is evaluated, m: from a thousandth of the shortest transport mean free path
+/// to where the channel of the smallest `σ_tr` has vanished.
+fn distances(medium: &Medium, model: &dyn Bssrdf) -> (f64, f64) {
     let scattering = medium.channels.iter().filter(|c| c.scatters());
     let shortest = scattering.map(|c| 1.0 / c.reduced_extinction()).fold(f64::INFINITY, f64::min);
     let transport = model.transport().into_iter().filter(|t| *t > 0.0).fold(f64::INFINITY, f64::min);
@@ -111,7 +113,7 @@ fn reach(medium: &Medium, model: &dyn Bssrdf) -> (f64, f64) {
     (1e-3 * shortest, farthest.min(1e4 * shortest.max(1.0 / transport)))
 }
 
-/// Refracted directions of diffuse light at four angles and eight azimuths, by azimuth.
+/// Refracted directions of diffuse light from four angles at each of eight azimuths.
 fn directions(eta: f64) -> [Vec<DVec3>; 8] {
     std::array::from_fn(|azimuth| {
         let (sine, cosine) = (PI / 4.0 * azimuth as f64).sin_cos();
@@ -124,19 +126,19 @@ fn directions(eta: f64) -> [Vec<DVec3>; 8] {
     })
 }
 
-/// The normals where light leaves that the tables are a mean over: that of a plane, and four at right angles to
-/// it, each at 45 degrees to the offset.
+/// The normals at the exitant point over which the tables are a mean: that of a plane, and four perpendicular to it, each
+/// at 45 degrees to the offset.
 fn normals() -> [DVec3; 5] {
     let slant = FRAC_1_SQRT_2;
     let across = |x: f64, y: f64| DVec3::new(slant * x, slant * y, 0.0);
     [DVec3::Z, across(1.0, 1.0), across(-1.0, 1.0), across(-1.0, -1.0), across(1.0, -1.0)]
 }
 
-/// How much the normals other than a plane's count together where the surface's size is reached; less before, as a
-/// surface is nearly a plane near any point.
-const BENT: f64 = 0.5;
+/// The share of the normals other than a plane's at a distance of the surface's size. It is proportional to the distance,
+/// since a surface is nearly a plane around any point.
+const CURVED: f64 = 0.5;
 
-/// `S_bare` by channel, for all directions in order, at a distance across the normal where light enters.
+/// `S_bare` of one channel for each direction, where the offset is perpendicular to the normal at the point of entry.
 fn values(
     model: &dyn Bssrdf,
     channel: usize,
@@ -152,10 +154,10 @@ fn values(
     directions.iter().flatten().map(value).collect()
 }
 
-/// Ratio of the distances that the model is evaluated at.
+/// The ratio of successive distances at which the model is evaluated.
 const STEP: f64 = 1.1;
 
-/// The variation at `nearest`, and at every [`STEP`] from there, on a surface of this size, m.
+/// The variation at `nearest` and at each [`STEP`] beyond, on a surface of this size, m.
 fn variations(
     model: &dyn Bssrdf,
     directions: &[Vec<DVec3>; 8],
@@ -165,19 +167,19 @@ fn variations(
 ) -> Vec<Variation> {
     let steps = ((farthest / nearest).ln() / STEP.ln()).ceil().clamp(1.0, 2000.0) as i32;
     let distance = |step: i32| nearest * STEP.powi(step);
-    let toward = |normal: DVec3| {
+    let with_normal = |normal: DVec3| {
         let at = |step| (distance(step), [0, 1, 2].map(|c| values(model, c, distance(step), normal, directions)));
         let rows: Vec<(f64, [Vec<f64>; 3])> = (-1..=steps + 1).map(at).collect();
         rows.windows(3).map(|rows| variation(&rows[0], &rows[1], &rows[2])).collect()
     };
-    let by_normal: [Vec<Variation>; 5] = normals().map(toward);
-    let bent = (by_normal.len() - 1) as f64;
+    let by_normal: [Vec<Variation>; 5] = normals().map(with_normal);
+    let others = (by_normal.len() - 1) as f64;
     let mean = |step: i32| {
-        let share = BENT * (distance(step) / size).min(1.0);
-        let weights = std::iter::once(1.0 - share).chain(std::iter::repeat(share / bent));
+        let share = CURVED * (distance(step) / size).min(1.0);
+        let weights = std::iter::once(1.0 - share).chain(std::iter::repeat(share / others));
         let mut mean = Variation::default();
-        for (weight, known) in weights.zip(&by_normal) {
-            let here = &known[step as usize];
+        for (weight, variations) in weights.zip(&by_normal) {
+            let here = &variations[step as usize];
             mean.value += weight * here.value;
             mean.slope += weight * here.slope * here.slope;
             mean.scatter += weight * here.scatter * here.scatter;
@@ -187,16 +189,16 @@ fn variations(
     (0..=steps).map(mean).collect()
 }
 
-/// Between two known ones by the geometric mean.
-fn interpolate(known: &[Variation], place: f64) -> Variation {
-    let place = place.clamp(0.0, (known.len() - 1) as f64);
-    let (low, share) = (place as usize, place.fract());
-    let (a, b) = (&known[low], &known[(low + 1).min(known.len() - 1)]);
+/// The variation at a step that need not be a whole number: the geometric mean of those at the two nearest.
+fn interpolate(variations: &[Variation], step: f64) -> Variation {
+    let step = step.clamp(0.0, (variations.len() - 1) as f64);
+    let (low, share) = (step as usize, step.fract());
+    let (a, b) = (&variations[low], &variations[(low + 1).min(variations.len() - 1)]);
     let mean = |a: f64, b: f64| if a > 0.0 && b > 0.0 { a * (b / a).powf(share) } else { a };
     Variation { value: mean(a.value, b.value), slope: mean(a.slope, b.slope), scatter: mean(a.scatter, b.scatter) }
 }
 
-/// What three rows of values say of the distance of the middle one: means over the channels.
+/// The variation at the distance of the middle one of three rows of values, as means over the channels.
 fn variation(near: &(f64, [Vec<f64>; 3]), here: &(f64, [Vec<f64>; 3]), far: &(f64, [Vec<f64>; 3])) -> Variation {
     let mut sum = Variation::default();
     let (distance, width) = (here.0, far.0 - near.0);
@@ -204,12 +206,12 @@ fn variation(near: &(f64, [Vec<f64>; 3]), here: &(f64, [Vec<f64>; 3]), far: &(f6
         let (near, here, far) = (&near.1[channel], &here.1[channel], &far.1[channel]);
         let n = here.len().max(1) as f64;
         let mean = here.iter().sum::<f64>() / n;
-        let tables = near.iter().zip(far).map(|(a, b)| ((a - b) / width).powi(2)).sum::<f64>() / n;
-        // The next azimuth lies as many directions further on as an azimuth has.
+        let along = near.iter().zip(far).map(|(a, b)| ((a - b) / width).powi(2)).sum::<f64>() / n;
+        // The same direction at the next azimuth is an eighth of the list further on.
         let turned = here.iter().cycle().skip(here.len() / 8).zip(here);
         let across = turned.take(here.len()).map(|(a, b)| ((a - b) / (PI / 4.0 * distance)).powi(2)).sum::<f64>() / n;
         sum.value += mean / 3.0;
-        sum.slope += (0.5 * (tables + across)).sqrt() / 3.0;
+        sum.slope += (0.5 * (along + across)).sqrt() / 3.0;
         sum.scatter += (here.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt() / 3.0;
     }
     sum

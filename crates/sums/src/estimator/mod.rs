@@ -1,83 +1,132 @@
-//! note: [estimator] The sum over the samples of the cloud, method.md (6.7):
-//! `L_r = (1/K) Σ_k S_gather(x_k, ω_k; x_o, ω_o) Φ_k`, with K the number of samples *drawn*.
-//!
-//! Each estimator returns the sum before the division by K.
+//! The estimators of the sum over the samples of a cloud. Each returns the sum before the division by K, which
+//! [`crate::Summation`] makes.
 
 mod calibration;
 mod cut;
 mod exhaustive;
 mod falloff_tables;
+mod random_bits;
 mod roulette;
+mod scatterer;
+mod sum;
 
 pub use calibration::Calibration;
-pub use cut::{Cut, Scratch};
-pub use exhaustive::Exhaustive;
-pub use falloff_tables::FalloffTables;
-pub use roulette::{Rates, Roulette, Rule, random_bits};
+pub use cut::Scratch;
+pub use random_bits::random_bits;
+pub use roulette::{Rates, Roulette, Rule};
+pub use scatterer::Scatterer;
+pub use sum::Sum;
 
-use bssrdf::lanes::{LANES, Lane};
-use glam::DVec3;
+use crate::samples::{Exit, LitSamples};
+use bssrdf::{LaneWork, lanes::LaneModel, simd};
+use cut::Cut;
+use exhaustive::Exhaustive;
+use std::fmt;
 
 /// How the sum is estimated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Estimator {
-    /// Hierarchical: near samples one by one, far ones by a few that stand for many.
+    /// Hierarchical: near samples are evaluated one by one, far ones by a few that represent many.
     Cut {
         /// Target of the relative standard error of a pixel's sums.
         accuracy: f64,
     },
-    /// Every sample is evaluated.
-    Exhaustive,
     /// The note's: a sample is evaluated with a probability that falls with its distance.
     Roulette(Rule),
+    /// Every sample is evaluated.
+    Exhaustive,
 }
 
-/// A sum over samples.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Sum {
-    /// `Σ_k S_gather Φ_k`, W/(m² sr).
-    pub radiance: DVec3,
-    /// Samples whose BSSRDF was evaluated.
-    pub evaluations: u64,
-    /// Nodes of the tree that were looked at.
-    pub nodes: u64,
-    /// A rough estimate of the radiance, summed over channels, that does not depend on what the cut picks; 0 of others.
-    pub predicted: f64,
+impl Estimator {
+    /// All estimators with their default parameters, the default estimator first.
+    pub const ALL: [Estimator; 3] =
+        [Estimator::Cut { accuracy: 0.01 }, Estimator::Roulette(Rule::Mixture), Estimator::Exhaustive];
+
+    /// The word that users type.
+    pub fn name(self) -> &'static str {
+        match self {
+            Estimator::Cut { .. } => "cut",
+            Estimator::Roulette(_) => "roulette",
+            Estimator::Exhaustive => "exhaustive",
+        }
+    }
+
+    /// The accuracy that was asked for, if the estimator has one.
+    pub fn accuracy(self) -> Option<f64> {
+        match self {
+            Estimator::Cut { accuracy } => Some(accuracy),
+            _ => None,
+        }
+    }
+
+    /// The same estimator with another accuracy, if it has one.
+    pub fn map_accuracy(self, map: impl FnOnce(f64) -> f64) -> Estimator {
+        match self {
+            Estimator::Cut { accuracy } => Estimator::Cut { accuracy: map(accuracy) },
+            other => other,
+        }
+    }
+
+    /// Whether a sum over many samples costs hardly more than one over few. Then it is better to sum a whole shard at
+    /// each point than a share of every shard: to cut through the trees of four shards takes twice the samples of a cut
+    /// through that of one cloud as large.
+    pub fn is_hierarchical(self) -> bool {
+        matches!(self, Estimator::Cut { .. })
+    }
+
+    /// Estimates the sum over `samples` at `exit`.
+    pub fn sum(
+        self,
+        scatterer: &Scatterer,
+        calibration: &Calibration,
+        samples: &LitSamples,
+        exit: &Exit,
+        scratch: &mut Scratch,
+    ) -> Sum {
+        if samples.is_empty() {
+            return Sum::default();
+        }
+        scatterer.lanes.run(Estimation { estimator: self, scatterer, calibration, samples, exit, scratch })
+    }
 }
 
-impl Sum {
-    /// Both sums together.
-    pub fn plus(self, other: Sum) -> Sum {
-        Sum {
-            radiance: self.radiance + other.radiance,
-            evaluations: self.evaluations + other.evaluations,
-            nodes: self.nodes + other.nodes,
-            predicted: self.predicted + other.predicted,
+/// The estimator with the parameter that users chose, as image files state it.
+impl fmt::Display for Estimator {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.name())?;
+        match self {
+            Estimator::Cut { accuracy } => write!(f, " {accuracy}"),
+            Estimator::Roulette(rule) => write!(f, " {}", rule.name()),
+            Estimator::Exhaustive => Ok(()),
         }
     }
 }
 
-/// Running sums of sixteen lanes, in float64 and in a fixed order.
-struct Accumulator([[f64; LANES]; 3]);
+/// One sum, before it is known which model it is for.
+struct Estimation<'a> {
+    estimator: Estimator,
+    scatterer: &'a Scatterer,
+    calibration: &'a Calibration,
+    samples: &'a LitSamples<'a>,
+    exit: &'a Exit,
+    scratch: &'a mut Scratch,
+}
 
-impl Accumulator {
-    #[inline(always)]
-    fn new() -> Self {
-        Accumulator([[0.0; LANES]; 3])
-    }
+impl LaneWork for Estimation<'_> {
+    type Output = Sum;
 
-    /// Adds `values · flux · weight`.
-    #[inline(always)]
-    fn add(&mut self, values: &[Lane; 3], flux: &[Lane; 3], weight: &Lane) {
-        for c in 0..3 {
-            for i in 0..LANES {
-                self.0[c][i] += f64::from(values[c][i]) * f64::from(flux[c][i]) * f64::from(weight[i]);
+    fn run<M: LaneModel>(self, model: &M) -> Sum {
+        let Estimation { estimator, scatterer, calibration, samples, exit, scratch } = self;
+        let level = scatterer.level;
+        match estimator {
+            Estimator::Cut { accuracy } => {
+                let (tables, accuracy) = (scatterer.tables(), accuracy as f32);
+                simd::run_as(level, Cut { model, samples, tables, exit, accuracy, calibration, scratch })
             }
+            Estimator::Roulette(rule) => {
+                simd::run_as(level, Roulette { model, samples, exit, rates: rule.rates(scatterer.transport) })
+            }
+            Estimator::Exhaustive => simd::run_as(level, Exhaustive { model, samples, exit }),
         }
-    }
-
-    #[inline(always)]
-    fn total(&self) -> DVec3 {
-        DVec3::from_array([0, 1, 2].map(|c| self.0[c].iter().sum()))
     }
 }

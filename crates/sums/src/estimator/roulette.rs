@@ -1,27 +1,35 @@
-//! note: [roulette] The note's acceptance by distance: `V(ξ, d) = [ξ < p(d)]`, weight `1/p`; method.md section 7.
+//! note: [roulette] The note's acceptance by distance: `V(ξ, d) = [ξ < p(d)]`, weight `1/p`; docs/method.md section 7.
 //!
-//! The acceptance is decided with 64 random bits where 32 do not settle it, so that its probability is `p` however
-//! small `p` is. The float32 pass over all samples only proposes; what lies within its rounding is decided in float64.
+//! A pass in float32 over all samples proposes those that may be accepted, with 32 random bits each. Where rounding or
+//! the number of bits could decide, the acceptance is decided in float64 and with 64 bits, so that its probability is `p`
+//! however small `p` is.
 
-use super::{Accumulator, Sum};
+use super::{
+    random_bits::random_bits,
+    sum::{Accumulator, Sum},
+};
 use crate::samples::{Exit, LitSamples};
 use bssrdf::{
     lanes::{LANES, Lane, LaneModel, exp_negative},
     simd::Kernel,
 };
 
-/// What `p` is made of.
+/// How the acceptance probability `p` falls with the distance `d`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
-    /// `p = ⅓ Σ_c exp(−σ_tr,c d)`: no weighted channel grows by more than 3 (7.2).
+    /// `p = ⅓ Σ_c exp(−σ_tr,c d)`: the weight grows no channel by more than 3 (docs/method.md 7.2).
     Mixture,
-    /// `p = exp(−σ̄ d)` with the mean of `σ_tr` over the channels: the note's.
+    /// `p = exp(−σ̄ d)`, where `σ̄` is the mean of `σ_tr` over the channels: the note's rule.
     Mean,
     /// `p = exp(−d min_c σ_tr,c)`.
     Min,
 }
 
 impl Rule {
+    /// All rules, the default one first.
+    pub const ALL: [Rule; 3] = [Rule::Mixture, Rule::Mean, Rule::Min];
+
+    /// The word that users type.
     pub fn name(self) -> &'static str {
         match self {
             Rule::Mixture => "mixture",
@@ -30,7 +38,7 @@ impl Rule {
         }
     }
 
-    /// Decay rates of the rule's terms, 1/m: one term, or three of equal weight. `transport` is `σ_tr` per channel.
+    /// The decay rates of `p`; `transport` is `σ_tr` of the three channels, 1/m.
     pub fn rates(self, transport: [f64; 3]) -> Rates {
         let [r, g, b] = transport;
         match self {
@@ -41,14 +49,14 @@ impl Rule {
     }
 }
 
-/// Decay rates of `p(d)`, 1/m.
+/// Decay rates of `p(d)`, 1/m: one exponential, or the mean of three.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rates {
     One(f64),
     Three([f64; 3]),
 }
 
-/// `p(d)` from its decay rates, each of the `N` terms with weight 1/N.
+/// `p(d)`: the mean of `N` exponentials.
 #[derive(Clone, Copy)]
 struct Acceptance<const N: usize> {
     rates: [f64; N],
@@ -60,6 +68,7 @@ impl<const N: usize> Acceptance<N> {
         Acceptance { rates, rates_f32: rates.map(|r| r as f32) }
     }
 
+    /// `p` in float32, with a relative error of 10⁻⁶.
     #[inline(always)]
     fn quick(&self, distance: f32) -> f32 {
         let sum = self.rates_f32.iter().fold(0.0, |sum, rate| sum + exp_negative(-rate * distance));
@@ -71,7 +80,7 @@ impl<const N: usize> Acceptance<N> {
     }
 }
 
-/// Evaluates the samples that the roulette accepts.
+/// Evaluates the accepted samples.
 pub struct Roulette<'a, M> {
     pub model: &'a M,
     pub samples: &'a LitSamples<'a>,
@@ -91,9 +100,9 @@ impl<M: LaneModel> Kernel for Roulette<'_, M> {
     }
 }
 
-/// Relative and absolute room for rounding in the float32 proposal: `p` is good to 10⁻⁶ there, and 32 bits of ξ to
-/// 2⁻³².
+/// Proposals differ from acceptances by at most this share of `p`, ten times the error of float32.
 const MARGIN: f32 = 1e-5;
+/// The resolution of the first 32 bits of ξ, 2⁻³².
 const STEP: f64 = 1.0 / 4_294_967_296.0;
 
 impl<M: LaneModel> Roulette<'_, M> {
@@ -123,7 +132,7 @@ impl<M: LaneModel> Roulette<'_, M> {
         Sum { radiance: sum.total(), evaluations: accepted.evaluations, nodes: 0, predicted: 0.0 }
     }
 
-    /// `p` and 32 bits of ξ for a block, and a bit for each lane that may be accepted.
+    /// Returns `p` and 32 bits of ξ for a block, and a mask of the lanes that may be accepted.
     #[inline(always)]
     fn propose<const N: usize>(
         &self,
@@ -136,13 +145,13 @@ impl<M: LaneModel> Roulette<'_, M> {
             let [x, y, z] = self.exit.offset([positions[0][i], positions[1][i], positions[2][i]]);
             p[i] = acceptance.quick((x * x + y * y + z * z).sqrt());
             bits[i] = random_bits((block * LANES + i) as u32, self.exit.key);
-            let least = bits[i] as f32 * STEP as f32;
-            hits[i] = u32::from(least <= p[i] * (1.0 + MARGIN) + STEP as f32) << i;
+            let min_xi = bits[i] as f32 * STEP as f32;
+            hits[i] = u32::from(min_xi <= p[i] * (1.0 + MARGIN) + STEP as f32) << i;
         }
         (p, bits, hits.iter().fold(0, |mask, hit| mask | hit))
     }
 
-    /// The weight 1/p of a proposed sample, if it is accepted.
+    /// The weight `1/p` of a proposed sample if it is accepted.
     #[inline(always)]
     fn decide<const N: usize>(
         &self,
@@ -162,13 +171,13 @@ impl<M: LaneModel> Roulette<'_, M> {
         (xi < exact).then(|| (1.0 / exact) as f32)
     }
 
-    /// Evaluates and forgets the accepted samples.
+    /// Evaluates the accepted samples and clears their list.
     #[inline(always)]
     fn evaluate(&self, accepted: &mut Accepted, sum: &mut Accumulator) {
         if accepted.count == 0 {
             return;
         }
-        // Lanes left free repeat a sample with weight 0.
+        // Unused lanes repeat a sample with weight 0.
         for i in accepted.count..LANES {
             accepted.indices[i] = accepted.indices[0];
             accepted.weights[i] = 0.0;
@@ -180,7 +189,7 @@ impl<M: LaneModel> Roulette<'_, M> {
     }
 }
 
-/// Accepted samples that wait until there are enough for a block.
+/// Accepted samples, collected until they fill a block.
 #[derive(Default)]
 struct Accepted {
     indices: [u32; LANES],
@@ -190,7 +199,7 @@ struct Accepted {
 }
 
 impl Accepted {
-    /// True if the block is full.
+    /// Adds a sample; true if the block is full then.
     #[inline(always)]
     fn push(&mut self, index: u32, weight: f32) -> bool {
         self.indices[self.count] = index;
@@ -198,17 +207,4 @@ impl Accepted {
         self.count += 1;
         self.count == LANES
     }
-}
-
-/// 32 random bits for one sample in one gather: multiply and xor-shift rounds (constants of Wellons' search for
-/// low-bias 32-bit mixers), keyed before each.
-#[inline(always)]
-pub fn random_bits(index: u32, key: u64) -> u32 {
-    let mut x = index ^ key as u32;
-    x = (x ^ (x >> 16)).wrapping_mul(0x7feb_352d);
-    x = (x ^ (x >> 15)).wrapping_mul(0x846c_a68b);
-    x = (x ^ (x >> 16)).wrapping_add((key >> 32) as u32);
-    x = (x ^ (x >> 16)).wrapping_mul(0x7feb_352d);
-    x = (x ^ (x >> 15)).wrapping_mul(0x846c_a68b);
-    x ^ (x >> 16)
 }

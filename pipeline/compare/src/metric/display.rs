@@ -1,12 +1,15 @@
-//! What a screen shows of a linear value: exposure 0, clamped to 0..1, the curve of sRGB (IEC 61966-2-1).
+//! Display values: linear values at exposure 0, clamped to 0..1, encoded by the curve of sRGB (IEC 61966-2-1).
 
 use super::elementary::power;
+use color::srgb::{GAMMA, LINE_END, LINE_SLOPE, OFFSET, SCALE};
 
 /// The display value of a finite linear value.
 #[inline(always)]
 pub(super) fn display(linear: f32) -> f32 {
     let x = linear.clamp(0.0, 1.0);
-    if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * power(x, 1.0 / 2.4) - 0.055 }
+    let line = LINE_SLOPE as f32 * x;
+    let curve = SCALE as f32 * power(x, 1.0 / GAMMA as f32) - OFFSET as f32;
+    if x <= LINE_END as f32 { line } else { curve }
 }
 
 #[cfg(test)]

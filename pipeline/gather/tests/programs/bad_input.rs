@@ -1,7 +1,7 @@
 //! Bad input of every kind: one message that names file, field and way out, exit 2, nothing written.
 
-use crate::support::{Bench, data};
-use std::{fs, path::Path};
+use std::path::Path;
+use test_support::{Bench, data};
 
 /// A folder with a small cloud of the slab in it.
 fn bench() -> (Bench, String) {
@@ -20,7 +20,7 @@ fn media_and_cameras() {
     let (bench, slab) = bench();
     let refuses = |more: &[&str], words: &[&str]| {
         let arguments = [&["slab.cloud", &slab, "-o", "out.exr", "--quiet"], more].concat();
-        bench.refuses(&arguments, words);
+        bench.refuses("gather", &arguments, words);
     };
     refuses(&[], &["--medium", "--list-media"]);
     refuses(&["--medium", "marbel"], &["--medium", "`marbel`", "--list-media"]);
@@ -58,13 +58,13 @@ fn fields_of_a_medium_file() {
     for (text, word) in cases {
         bench.write("bad.json", &text);
         let arguments = ["slab.cloud", &slab, "--medium", "bad.json", "-o", "out.exr", "--quiet"];
-        bench.refuses(&arguments, &["bad.json", word]);
+        bench.refuses("gather", &arguments, &["bad.json", word]);
     }
     let view = r#"{"eye":[0,1,0],"target":[0,0,0],"up":[0,1,0],"yfov":20}"#;
     for (text, word) in [(view.to_owned(), "up"), (view.replace("20", "200"), "yfov"), ("[]".into(), "not a view")] {
         bench.write("view.json", &text);
         let arguments = ["slab.cloud", &slab, "--medium", "marble", "--view", "view.json", "-o", "out.exr"];
-        bench.refuses(&arguments, &["view.json", word]);
+        bench.refuses("gather", &arguments, &["view.json", word]);
     }
 }
 
@@ -73,14 +73,14 @@ fn clouds_that_do_not_fit() {
     let (bench, slab) = bench();
     let render = |cloud: &str, scene: &str, more: &[&str], words: &[&str]| {
         let arguments = [&[cloud, scene, "--medium", "marble", "-o", "out.exr", "--quiet"], more].concat();
-        bench.refuses(&arguments, words);
+        bench.refuses("gather", &arguments, words);
     };
     render("slab.cloud", &data("scenes/sphere.glb"), &[], &["slab.cloud", "sphere.glb", "mesh", "sample"]);
     render("slab.cloud", &slab, &["--metres-per-unit", "2"], &["--metres-per-unit is 2", "1"]);
     render("slab.cloud", &slab, &["--light-unit", "photometric"], &["--light-unit"]);
     render("none.cloud", &slab, &[], &["none.cloud", "No such file"]);
     render(&slab, &slab, &[], &["not a cloud"]);
-    let good = fs::read(bench.path("slab.cloud")).expect("reads");
+    let good = bench.read("slab.cloud");
     bench.write("cut.cloud", &good[..good.len() / 2]);
     render("cut.cloud", &slab, &[], &["cut.cloud", "truncated"]);
     bench.write("empty.cloud", "");
@@ -97,13 +97,13 @@ fn clouds_that_do_not_fit() {
 fn outputs_that_cannot_be_written() {
     let (bench, slab) = bench();
     let arguments = |output| ["slab.cloud", &slab, "--medium", "marble", "--width", "4", "--quiet", "-o", output];
-    bench.refuses(&arguments("no/folder/out.exr"), &["no/folder/out.exr"]);
-    bench.refuses(&arguments("."), &["folder"]);
+    bench.refuses("gather", &arguments("no/folder/out.exr"), &["no/folder/out.exr"]);
+    bench.refuses("gather", &arguments("."), &["folder"]);
     if Path::new("/dev/full").exists() {
-        bench.refuses(&arguments("/dev/full"), &["/dev/full", "No space left"]);
+        bench.refuses("gather", &arguments("/dev/full"), &["/dev/full", "No space left"]);
     }
-    bench.refuses(&["slab.cloud", &slab, "--medium", "marble"], &["--output"]);
-    bench.refuses(&["-o", "out.exr"], &["CLOUD"]);
+    bench.refuses("gather", &["slab.cloud", &slab, "--medium", "marble"], &["--output"]);
+    bench.refuses("gather", &["-o", "out.exr"], &["CLOUD"]);
 }
 
 #[test]

@@ -3,9 +3,9 @@
 //! Planted errors seen: random numbers by the place in the crop; corners of edge pixels counted from the crop's own corner;
 //! points of calibration from a picture of the crop's size; display window that of the data; row and column exchanged.
 
-use crate::support::{Bench, data};
 use formats::{Image, Window};
 use std::process::Command;
+use test_support::{Bench, Run, data};
 
 const SIZE: [usize; 2] = [40, 30];
 
@@ -66,7 +66,7 @@ fn a_crop_is_that_part_of_the_whole_bit_for_bit() {
             let shown = Window { position: [0, 0], size: SIZE };
             assert_eq!(part.display, ([width, height] != SIZE).then_some(shown), "{crop:?}");
             assert_eq!(part.attributes, whole.attributes);
-            let png = std::fs::read(bench.path("crop.png")).expect("reads");
+            let png = bench.read("crop.png");
             let side = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().expect("four bytes")) as usize;
             assert_eq!([side(16), side(20)], [width, height]);
         }
@@ -81,12 +81,12 @@ fn a_crop_outside_the_image_is_refused() {
     let own = ["figure.cloud", &scene, "--view", &view, "--medium", "skin1", "-o", "x.exr", "--width", "40"];
     for crop in ["33,0,8,1", "0,0,1,31", "40,0,1,1", "4294967295,0,4294967295,1", "0,0,0,1", "1,2,3", "-1,0,1,1", "a"] {
         let argument = format!("--crop={crop}");
-        bench.refuses(&[&own[..], &["--height", "30", &argument]].concat(), &["--crop"]);
+        bench.refuses("gather", &[&own[..], &["--height", "30", &argument]].concat(), &["--crop"]);
     }
-    bench.refuses(&[&own[..], &["--crop", "0,0,1,1", "--target-error", "0.1"]].concat(), &["--target-error"]);
+    bench.refuses("gather", &[&own[..], &["--crop", "0,0,1,1", "--target-error", "0.1"]].concat(), &["--target-error"]);
 }
 
-/// The command of docs/large.md, on parts in any order.
+/// The command of docs/guide.md, on parts in any order.
 #[test]
 fn oiiotool_joins_crops_to_the_whole() {
     if Command::new("oiiotool").arg("--version").output().is_err() {
@@ -103,8 +103,8 @@ fn oiiotool_joins_crops_to_the_whole() {
     }
     let mut oiiotool = Command::new("oiiotool");
     oiiotool.current_dir(bench.path("")).args(files).args(["--paste:all=1:mergeroi=1", "+0+0", "-o", "joined.exr"]);
-    let output = oiiotool.output().expect("it runs");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let output = Run::of(&mut oiiotool);
+    assert!(output.status.success(), "{}", output.stderr);
     let (whole, joined) = (bench.image("whole.exr"), bench.image("joined.exr"));
     assert_eq!((joined.width, joined.height, joined.window, joined.display), (40, 30, [0, 0], None));
     let all = [0, 0, SIZE[0], SIZE[1]];

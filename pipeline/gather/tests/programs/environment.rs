@@ -1,8 +1,7 @@
 //! Pictures as light from all around, through both programs.
 
-use crate::support::{Bench, Limits, data};
 use formats::{Attribute, Channel, Image, Window};
-use std::fs;
+use test_support::{Bench, Limits, data};
 
 /// Twelve by six pixels that both formats hold exactly: a bright one on a sky over dark ground.
 fn sky() -> Vec<[f32; 3]> {
@@ -38,7 +37,7 @@ fn hdr(pixels: &[[f32; 3]]) -> Vec<u8> {
 fn sample(bench: &Bench, output: &str, environment: &[&str]) -> Vec<u8> {
     let slab = data("scenes/slab.glb");
     bench.succeed("sample-surface", &[&[&slab, "-n", "40k", "-o", output, "--quiet"], environment].concat());
-    fs::read(bench.path(output)).expect("reads")
+    bench.read(output)
 }
 
 /// The same bytes for the same picture in either format, and for any number of threads; other bytes for another scale,
@@ -76,7 +75,11 @@ fn an_image_wants_the_environment_of_its_cloud() {
     let arguments = ["slab.cloud", &slab, "--medium", "marble", "-o", "out.exr", "--quiet"];
     let small = ["--view", &view, "--width", "4", "--height", "4", "--spp", "1"];
     for wrong in [&[][..], &lit[..2], &lit[..4], &["--environment", "1,1,1"]] {
-        bench.refuses(&[&arguments, &small[..], wrong].concat(), &["slab.cloud", "--environment", "turned by 90"]);
+        bench.refuses(
+            "gather",
+            &[&arguments, &small[..], wrong].concat(),
+            &["slab.cloud", "--environment", "turned by 90"],
+        );
     }
     bench.succeed("gather", &[&arguments, &small[..], &lit].concat());
     // What escaping rays see: the bright pixel, an eighth of a turn left of the middle and 15 degrees up, turned by a
@@ -94,7 +97,7 @@ fn bad_pictures_are_refused_by_name_and_pixel() {
         bench.write(name, &content);
         let arguments = [&slab, "-n", "10", "-o", "out.cloud", "--environment", name];
         let output = bench.run("sample-surface", &arguments);
-        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        let message = output.stderr;
         assert_eq!(output.status.code(), Some(2), "{name}: {message}");
         for word in ["--environment", name].iter().chain(words) {
             assert!(message.contains(word), "{name}: `{word}` is not in: {message}");
@@ -179,7 +182,7 @@ fn pictures_that_do_not_fit_are_refused_before_they_are_read() {
         bench.write("big.exr", file);
         let arguments = [&data("scenes/slab.glb"), "-n", "10", "-o", "out.cloud", "--environment", "big.exr"];
         let output = bench.run_within(limits, "sample-surface", &arguments);
-        let message = String::from_utf8_lossy(&output.stderr);
+        let message = output.stderr;
         assert_eq!(output.status.code(), Some(2), "{message}");
         for words in ["--environment: ", "big.exr", &format!("{width} x {rows}"), words] {
             assert!(message.contains(words), "`{words}` is not in: {message}");

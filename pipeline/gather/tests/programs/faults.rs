@@ -4,15 +4,15 @@
 //! Planted errors that these tests caught: the target written in place; temporary files of a killed process left; the
 //! handlers of signals left out, one for an ignored signal; the need of memory taken a hundred times too small; a cloud that is written to not looked at.
 
-use crate::support::{Bench, Limits, data, program};
 use std::{
     collections::BTreeSet,
     fs,
     path::Path,
-    process::{Child, Command, ExitStatus, Output, Stdio},
+    process::{Child, Command, ExitStatus, Stdio},
     thread::sleep,
     time::{Duration, Instant},
 };
+use test_support::{Bench, Limits, Run, data, program};
 
 /// Kills of each program.
 const KILLS: u32 = if cfg!(feature = "slow") { 100 } else { 6 };
@@ -56,7 +56,7 @@ impl<'a> Victim<'a> {
         let content = |arguments: &[String]| {
             let start = Instant::now();
             bench.succeed(name, &arguments.iter().map(String::as_str).collect::<Vec<_>>());
-            (fs::read(bench.path(target)).expect("reads"), start.elapsed())
+            (bench.read(target), start.elapsed())
         };
         let ((new_bytes, duration), (old_bytes, _)) = (content(&new), content(&old));
         assert_ne!(old_bytes, new_bytes, "nothing would be seen");
@@ -219,7 +219,7 @@ fn a_target_that_may_not_be_written_stays() {
         permissions.set_readonly(true);
         fs::set_permissions(&path, permissions).expect("sets");
         let arguments: Vec<&str> = victim.arguments.iter().map(String::as_str).collect();
-        bench.program_refuses(victim.name, &arguments, &[victim.target, "read-only"]);
+        bench.refuses(victim.name, &arguments, &[victim.target, "read-only"]);
         assert!(!victim.is_new());
     }
 }
@@ -246,10 +246,10 @@ fn a_target_on_another_file_system() {
 }
 
 /// Runs `script` in a name space of its own, in which it may mount; none where the system does not allow that.
-fn in_own_mounts(bench: &Bench, script: &str) -> Option<Output> {
+fn in_own_mounts(bench: &Bench, script: &str) -> Option<Run> {
     let unshare = |flags: &[&str], script: &str| {
         let mut command = Command::new("unshare");
-        command.args(flags).args(["sh", "-ec", script]).current_dir(bench.folder()).output().ok()
+        command.args(flags).args(["sh", "-ec", script]).current_dir(bench.folder()).output().ok().map(Run::from)
     };
     let flags = [&["--mount"][..], &["--mount", "--map-root-user"]];
     let allowed = |flags: &&&[&str]| {
@@ -277,7 +277,7 @@ fn a_full_disk_leaves_the_old_file() {
             eprintln!("not run: this system lets no test mount a file system");
             return;
         };
-        let [said, message] = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+        let Run { stdout: said, stderr: message, .. } = output;
         assert!(said.ends_with("exit 2: target: old\n"), "{said}{message}");
         let last = message.lines().last().unwrap_or_default();
         assert!(last.contains("small/target") && last.contains("No space left"), "{message}");
@@ -290,7 +290,7 @@ fn maps(child: &Child, file: &str) -> bool {
 }
 
 /// A gather that takes a while, with something done to its cloud in the middle of that.
-fn gather_disturbed(bench: &Bench, disturb: impl FnOnce(&Path)) -> (Output, Vec<u8>) {
+fn gather_disturbed(bench: &Bench, disturb: impl FnOnce(&Path)) -> (Run, Vec<u8>) {
     let (scene, view) = (data("scenes/sphere.glb"), data("views/sphere/front.json"));
     bench.succeed("sample-surface", &["-n", "200k", "-o", "mine.cloud", &scene]);
     let arguments = ["mine.cloud", &scene, "--view", &view, "--medium", "marble", "--spp", "8", "--quiet", "-o"];
@@ -304,7 +304,7 @@ fn gather_disturbed(bench: &Bench, disturb: impl FnOnce(&Path)) -> (Output, Vec<
     // The cloud is checked in milliseconds; then the picture is made of it.
     sleep(whole.mul_f64(0.2));
     disturb(&bench.path("mine.cloud"));
-    (child.wait_with_output().expect("ends"), fs::read(bench.path("alone.exr")).expect("reads"))
+    (child.wait_with_output().expect("ends").into(), bench.read("alone.exr"))
 }
 
 #[test]
@@ -314,8 +314,8 @@ fn a_cloud_replaced_while_it_is_read_is_read_to_the_end() {
     let (output, alone) = gather_disturbed(&bench, |_| {
         bench.succeed("sample-surface", &["-n", "200k", "--seed", "9", "-o", "mine.cloud", &scene]);
     });
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    assert!(fs::read(bench.path("mine.exr")).expect("reads") == alone, "not the image of the old cloud");
+    assert_eq!(output.status.code(), Some(0), "{}", output.stderr);
+    assert!(bench.read("mine.exr") == alone, "not the image of the old cloud");
 }
 
 /// What these programs never do, `cp` does.
@@ -334,7 +334,7 @@ fn a_cloud_written_to_while_it_is_read_is_no_image() {
     for (words, disturb) in disturbances {
         let bench = Bench::new();
         let (output, _) = gather_disturbed(&bench, disturb);
-        let message = String::from_utf8_lossy(&output.stderr);
+        let message = output.stderr;
         assert_eq!(output.status.code(), Some(2), "{words}: {message}");
         assert!(message.contains(words) && message.lines().count() == 1, "{message}");
         assert!(!bench.path("mine.exr").exists());
@@ -355,7 +355,7 @@ fn too_little_memory_is_said_before_the_work() {
         for mebibytes in [96, 160, 224, 288, 352, 416, 480, 640, 1024] {
             fs::remove_file(bench.path(target)).ok();
             let output = bench.run_within(Limits { kibibytes: mebibytes << 10, seconds: 60 }, program, arguments);
-            let message = String::from_utf8_lossy(&output.stderr);
+            let message = output.stderr;
             match output.status.code() {
                 Some(0) => done += 1,
                 Some(2) if message.contains(" GiB of memory, ") => refused += 1,

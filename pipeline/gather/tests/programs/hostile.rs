@@ -1,6 +1,5 @@
 //! Forged clouds, checksums right: refused with one message, or rendered, in seconds and in little memory.
 
-use crate::support::{Bench, Limits, data};
 use formats::{
     atomic::Output,
     cloud::{self, Cloud, Content, Group, Meta, Node, TILE},
@@ -10,6 +9,7 @@ use std::{
     io::{Seek, SeekFrom, Write},
     time::{Duration, Instant},
 };
+use test_support::{Bench, Limits, data};
 
 /// A cloud that can be changed.
 #[derive(Clone)]
@@ -85,7 +85,7 @@ fn forged_clouds_do_no_harm() {
         let start = Instant::now();
         let arguments = ["bad.cloud", &slab, "--medium", "marble", "--width", "4", "-o", "out.exr", "--quiet"];
         let output = bench.run_within(Limits { kibibytes: 1 << 22, seconds: 60 }, "gather", &arguments);
-        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        let message = output.stderr;
         let code = output.status.code();
         assert!(!message.contains("panicked"), "{what}: {message}");
         if refused {
@@ -134,7 +134,7 @@ fn damage_in_a_large_cloud_is_said_before_the_picture_is_made() {
         let size = ["--width", "1024", "--spp", "1024", "-o", "out.exr"];
         let arguments = [&["bad.cloud", slab.as_str(), "--medium", "marble", "--quiet"][..], &size].concat();
         let output = bench.run_within(Limits { kibibytes: 1 << 22, seconds: 5 }, "gather", &arguments);
-        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        let message = output.stderr;
         assert_eq!(output.status.code(), Some(2), "{section}: {:?} {message}", output.status);
         assert!(
             message.contains("bad.cloud") && message.contains(&format!("section `{section}` is damaged")),

@@ -4,6 +4,7 @@ mod bad_input;
 mod crops;
 mod environment;
 mod faults;
+mod guide;
 mod hostile;
 #[cfg(unix)]
 mod make;
@@ -16,7 +17,6 @@ mod outlook;
 mod outputs;
 mod pipeline;
 mod shards;
-mod support;
 mod targets;
 mod user_files;
 mod views;

@@ -2,48 +2,28 @@
 //!
 //! The same in every run; `make slow` goes through a thousand.
 
-use crate::{
-    support::{Bench, Limits, data, split_glb},
-    user_files::with_medium,
-};
-use scene::random::{Item, Purpose, Stream};
+use crate::user_files::with_medium;
 use serde_json::{Value, json};
 use std::fs;
+use test_support::{
+    Bench, Limits, Random, data,
+    glb::{Asset, container},
+};
 
 const RUNS: u64 = if cfg!(feature = "slow") { 1000 } else { 32 };
 
 const LIMITS: Limits = Limits { kibibytes: 1 << 20, seconds: 10 };
 
-struct Random(Item, u64);
-
-impl Random {
-    fn below(&mut self, limit: usize) -> usize {
-        self.1 += 1;
-        (self.0.bits(self.1) % limit.max(1) as u64) as usize
-    }
+/// A scene of `data/` with a medium of its own.
+fn scene(name: &str) -> Asset {
+    let mut scene = Asset::read(&fs::read(data(&format!("scenes/{name}.glb"))).expect("reads"));
+    with_medium(&mut scene.json);
+    scene
 }
 
-/// A scene as JSON and buffer.
-struct Parts {
-    root: Value,
-    binary: Vec<u8>,
-}
-
-impl Parts {
-    fn read(name: &str) -> Parts {
-        let bytes = fs::read(data(&format!("scenes/{name}.glb"))).expect("reads");
-        let (mut root, binary) = split_glb(&bytes);
-        with_medium(&mut root);
-        Parts { root, binary: binary.to_vec() }
-    }
-
-    fn glb(&self) -> Vec<u8> {
-        let mut text = self.root.to_string().into_bytes();
-        text.resize(text.len().next_multiple_of(4), b' ');
-        let chunk = |kind: &[u8], content: &[u8]| [&(content.len() as u32).to_le_bytes(), kind, content].concat();
-        let body = [chunk(b"JSON", &text), chunk(b"BIN\0", &self.binary)].concat();
-        [b"glTF\x02\0\0\0".as_slice(), &(body.len() as u32 + 12).to_le_bytes(), &body].concat()
-    }
+/// The file with its buffers as the document says them, right or wrong.
+fn glb(scene: &Asset) -> Vec<u8> {
+    container(&[(b"JSON", scene.json.to_string().as_bytes()), (b"BIN\0", &scene.binary)])
 }
 
 /// Pointers to all values below the root.
@@ -100,41 +80,41 @@ fn shift(bytes: &mut Vec<u8>, random: &mut Random) {
     }
 }
 
-fn mutated(scene: &Parts, kind: u64, random: &mut Random) -> Vec<u8> {
-    let mut copy = Parts { root: scene.root.clone(), binary: scene.binary.clone() };
+fn mutated(scene: &Asset, kind: u64, random: &mut Random) -> Vec<u8> {
+    let mut copy = scene.clone();
     match kind {
         // The container's own lengths and the JSON.
         0 => {
-            let mut bytes = copy.glb();
+            let mut bytes = glb(&copy);
             let start = bytes.len() - copy.binary.len();
             flip(&mut bytes[..start], random);
             bytes
         }
         1 => {
-            let mut bytes = copy.glb();
+            let mut bytes = glb(&copy);
             shift(&mut bytes, random);
             bytes.truncate(bytes.len() - random.below(2) * random.below(bytes.len()));
             bytes
         }
         2 => {
             flip(&mut copy.binary, random);
-            copy.glb()
+            glb(&copy)
         }
         3 => {
             shift(&mut copy.binary, random);
-            copy.root["buffers"][0]["byteLength"] = json!(copy.binary.len());
-            copy.glb()
+            copy.json["buffers"][0]["byteLength"] = json!(copy.binary.len());
+            glb(&copy)
         }
         _ => {
             let mut all = Vec::new();
-            pointers(&copy.root, "", &mut all);
+            pointers(&copy.json, "", &mut all);
             for _ in 0..1 + random.below(2) {
                 let pointer = &all[random.below(all.len())];
-                if let Some(value) = copy.root.pointer_mut(pointer) {
+                if let Some(value) = copy.json.pointer_mut(pointer) {
                     *value = bent(value, random);
                 }
             }
-            copy.glb()
+            glb(&copy)
         }
     }
 }
@@ -142,7 +122,7 @@ fn mutated(scene: &Parts, kind: u64, random: &mut Random) -> Vec<u8> {
 /// Runs a program that must end well or with one message; true if it ended well.
 fn behaves(bench: &Bench, what: &str, name: &str, arguments: &[&str]) -> bool {
     let output = bench.run_within(LIMITS, name, arguments);
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    let message = output.stderr;
     let code = output.status.code();
     assert!([Some(0), Some(2), Some(3)].contains(&code), "{what}: {name}: {:?} {message}", output.status);
     assert!(!message.contains("panicked"), "{what}: {name}: {message}");
@@ -169,11 +149,10 @@ fn a_scene_larger_than_memory_is_refused() {
 #[test]
 fn a_damaged_scene_gives_an_image_or_one_clear_message() {
     let bench = Bench::new();
-    let scenes = ["slab", "sphere", "slivers", "figure"].map(Parts::read);
-    let stream = Stream::new(23, Purpose::Surface);
+    let scenes = ["slab", "sphere", "slivers", "figure"].map(scene);
     let (mut images, mut refusals) = (0, 0);
     for k in 0..RUNS {
-        let mut random = Random(stream.item(k), 0);
+        let mut random = Random(k << 32);
         let bytes = mutated(&scenes[random.below(scenes.len())], k % 8, &mut random);
         let (what, scene, cloud) = (format!("mutation {k}"), format!("bad-{k}.glb"), format!("bad-{k}.cloud"));
         bench.write(&scene, bytes);

@@ -1,9 +1,9 @@
 //! Words that may mean more than one camera or material of a scene: refused, with the indices to choose from.
 
-use crate::support::{Bench, program};
 use formats::{Attribute, cloud::Cloud};
 use serde_json::{Value, json};
 use std::{fs, path::Path, process::Command};
+use test_support::{Bench, Run, program};
 
 /// The slab under cameras of these names and nodes, which look down from 0.3 m, 0.5 m and so on.
 fn under_cameras(bench: &Bench, cameras: &[[&str; 2]]) -> String {
@@ -57,7 +57,7 @@ fn a_word_for_more_than_one_camera_is_refused() {
     sample(&bench, &scene);
     let refuses = |word: &str, words: &[&str]| {
         let own = ["slab.cloud", &scene, "--medium", "marble", "-o", "no.exr", "--camera", word];
-        bench.refuses(&own, &[&["--camera", word, "cameras.gltf"], words].concat());
+        bench.refuses("gather", &own, &[&["--camera", word, "cameras.gltf"], words].concat());
     };
     refuses("1", &["index:0 (`1` of node `A` at 0.0000 0.3000 0.0000 m)", "index:1 (`2` of node `Both`"]);
     refuses("2", &["index:1 (`2`", "index:2 (`3`"]);
@@ -89,7 +89,7 @@ fn a_camera_on_two_nodes_is_two_cameras() {
     let scene = under_cameras(&bench, &[["Camera", "Left"], ["Camera", "Right"]]);
     sample(&bench, &scene);
     let own = ["slab.cloud", &scene, "--medium", "marble", "-o", "no.exr", "--camera", "Camera"];
-    bench.refuses(&own, &["`Camera`", "index:0", "`Left`", "index:1", "`Right`"]);
+    bench.refuses("gather", &own, &["`Camera`", "index:0", "`Left`", "index:1", "`Right`"]);
     assert_eq!(seen(&bench, &scene, &["--camera", "Right"]), ("--camera index:1".into(), Some(1)));
 }
 
@@ -109,9 +109,8 @@ fn make_renders_each_camera_by_its_index() {
     let mut make = Command::new("make");
     make.current_dir(bench.folder()).arg("-f").arg(makefile).arg(bin).arg(format!("SCENE={scene}"));
     make.env_remove("MAKEFLAGS").env_remove("MAKELEVEL");
-    let output =
-        make.args(["CARGO=true", "THREADS=1", "SAMPLES=500", "SPP=1", "MEDIUM=marble"]).output().expect("runs");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let output = Run::of(make.args(["CARGO=true", "THREADS=1", "SAMPLES=500", "SPP=1", "MEDIUM=marble"]));
+    assert!(output.status.success(), "{}", output.stderr);
     for camera in 0..3 {
         let image = bench.image(&format!("out/cameras/k500-s0/marble-directional-dipole/camera{camera}.exr"));
         let middle = image.width * image.height / 2 + image.width / 2;
@@ -143,8 +142,7 @@ fn a_word_for_more_than_one_material_is_refused() {
     let scene = bench.slab("two.gltf", two_of_one_name);
     let cloud = [scene.as_str(), "-n", "2k", "-o", "two.cloud", "--quiet"];
     let words = ["`Slab`", "index:0 (`Slab`, 1.2000e-1 m2)", "index:1 (`Slab`, 4.8000e-1 m2)"];
-    let refuses =
-        |more: &[&str]| bench.program_refuses("sample-surface", &with(&cloud, more), &[&more[..1], &words].concat());
+    let refuses = |more: &[&str]| bench.refuses("sample-surface", &with(&cloud, more), &[&more[..1], &words].concat());
     refuses(&["--translucent", "Slab"]);
     refuses(&["--share", "Slab=0.5"]);
     let sampled = |more: &[&str]| {
@@ -161,10 +159,10 @@ fn a_word_for_more_than_one_material_is_refused() {
     assert!(even.len() == 2 && (0.8..1.25).contains(&ratio), "{even:?}");
 
     let image = ["two.cloud", &scene, "-o", "two.exr", "--width", "4", "--height", "4", "--spp", "1"];
-    bench.refuses(&with(&image, &["--medium", "Slab=marble"]), &[&["--medium"], &words[..]].concat());
-    bench.refuses(&with(&image, &["--medium", "index:0=marble"]), &["--medium index:1=NAME"]);
-    bench.refuses(&with(&image, &["--medium", "index:0=marble", "--medium", "index:0=skin1"]), &["twice"]);
-    bench.refuses(&with(&image, &["--medium", "index:2=marble"]), &["`index:2`", "`Slab`"]);
+    bench.refuses("gather", &with(&image, &["--medium", "Slab=marble"]), &[&["--medium"], &words[..]].concat());
+    bench.refuses("gather", &with(&image, &["--medium", "index:0=marble"]), &["--medium index:1=NAME"]);
+    bench.refuses("gather", &with(&image, &["--medium", "index:0=marble", "--medium", "index:0=skin1"]), &["twice"]);
+    bench.refuses("gather", &with(&image, &["--medium", "index:2=marble"]), &["`index:2`", "`Slab`"]);
     bench.succeed("gather", &with(&image, &["--medium", "index:1=skin1", "--medium", "index:0=marble"]));
     let Some(Attribute::Texts(media)) = bench.image("two.exr").attributes.get("pcsss/media").cloned() else {
         panic!("no media in the header")

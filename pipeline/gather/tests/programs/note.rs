@@ -1,7 +1,6 @@
 //! `--note` stands for the settings of the note (Frisvad and Dal Corso 2018).
 
-use crate::support::{Bench, data};
-use std::fs;
+use test_support::{Bench, data};
 
 /// `--note` gives byte for byte what the options give that it stands for, and an option beside it wins.
 ///
@@ -12,7 +11,7 @@ fn the_note_in_one_word() {
     let (scene, view) = (data("scenes/sphere.glb"), data("views/sphere/front.json"));
     let cloud = |name: &str, how: &[&str]| {
         bench.succeed("sample-surface", &[&[&scene, "-n", "3k", "--quiet", "-o", name], how].concat());
-        fs::read(bench.path(name)).expect("reads")
+        bench.read(name)
     };
     let spelled = ["--choice", "uniform", "--pattern", "independent", "--normals", "geometric"];
     let note = cloud("note.cloud", &["--note"]);
@@ -23,7 +22,7 @@ fn the_note_in_one_word() {
     let image = |name: &str, how: &[&str]| {
         let own = ["note.cloud", &scene, "--view", &view, "--medium", "skin1", "--spp", "2", "--no-timings", "--quiet"];
         bench.succeed("gather", &[&own[..], &["--width", "16", "--height", "16", "-o", name], how].concat());
-        fs::read(bench.path(name)).expect("reads")
+        bench.read(name)
     };
     let spelled = ["--estimator", "roulette", "--roulette", "mean", "--normals", "geometric"];
     let note = image("note.exr", &["--note"]);

@@ -1,8 +1,8 @@
 //! Opaque surfaces through the programs: color, texture and holes of a card above the slab.
 
-use crate::support::Bench;
 use base64::{Engine, engine::general_purpose::STANDARD};
 use serde_json::{Value, json};
+use test_support::Bench;
 
 /// Two texels: light red with alpha 0, and the codes 188, 64, 0 with alpha 255.
 const TEXELS: [[u8; 4]; 2] = [[255, 200, 200, 0], [188, 64, 0, 255]];
@@ -89,7 +89,11 @@ fn a_hole_shows_what_is_behind_and_lets_light_through() {
 
     // Without the mask the card hides all of the light; the cloud with it is not taken for this scene.
     let whole = bench.slab("whole.gltf", |root| with_card(root, "OPAQUE"));
-    bench.refuses(&["card.cloud", &whole, "--medium", "marble", "-o", "no.exr"], &["its mesh or materials differ"]);
+    bench.refuses(
+        "gather",
+        &["card.cloud", &whole, "--medium", "marble", "-o", "no.exr"],
+        &["its mesh or materials differ"],
+    );
     assert_eq!(sample(&bench, &whole), 0.0);
 }
 
@@ -98,9 +102,9 @@ fn a_picture_that_cannot_be_read() {
     let bench = Bench::new();
     let scene = bench.slab("card.gltf", |root| with_card(root, "MASK"));
     let arguments = [scene.as_str(), "-o", "no.cloud"];
-    bench.program_refuses("sample-surface", &arguments, &["card.gltf", "`Card`", "images[0] `card.png`", "beside it"]);
+    bench.refuses("sample-surface", &arguments, &["card.gltf", "`Card`", "images[0] `card.png`", "beside it"]);
     bench.write("card.png", &picture()[..50]);
-    bench.program_refuses("sample-surface", &arguments, &["card.gltf", "`Card`", "images[0] `card.png`", "again"]);
+    bench.refuses("sample-surface", &arguments, &["card.gltf", "`Card`", "images[0] `card.png`", "again"]);
 }
 
 /// The card as a translucent surface: said, once.

@@ -1,7 +1,6 @@
 //! `--orbit`: a turntable as files.
 
-use crate::support::{Bench, data};
-use std::fs;
+use test_support::{Bench, data};
 
 const SIZE: [&str; 6] = ["--width", "24", "--height", "24", "--spp", "2"];
 
@@ -23,7 +22,7 @@ fn each_step_is_the_image_of_a_camera_that_stands_there() {
     gather("front.json", &["-o", "front.exr", "--stats", "front-stats.json", "--preview", "front.png"]);
     gather("right.json", &["-o", "right.exr"]);
     gather("front.json", &["-o", "turn.exr", "--stats", "turn.json", "--preview", "turn.png", "--orbit", "4"]);
-    let bytes = |name: &str| fs::read(bench.path(name)).expect("reads");
+    let bytes = |name: &str| bench.read(name);
     assert_eq!(bytes("turn.0000.exr"), bytes("front.exr"));
     assert_eq!(bytes("turn.0000.png"), bytes("front.png"));
     assert_eq!(bytes("turn.0000.json"), bytes("front-stats.json"));
@@ -68,6 +67,6 @@ fn a_camera_of_the_scene_turns_about_what_is_translucent() {
 fn an_orbit_without_steps_is_refused() {
     let bench = Bench::new();
     for count in ["0", "10001", "x"] {
-        bench.refuses(&["a.cloud", "a.glb", "-o", "a.exr", "--orbit", count], &["--orbit"]);
+        bench.refuses("gather", &["a.cloud", "a.glb", "-o", "a.exr", "--orbit", count], &["--orbit"]);
     }
 }

@@ -1,8 +1,8 @@
 //! Cameras that see nothing translucent, or stand in it; pixels below zero; numbers of samples that are recommended.
 
-use crate::support::{Bench, data};
 use cli::parse_count;
 use serde_json::json;
+use test_support::{Bench, data};
 
 const NOTHING: &str = "sees no translucent surface";
 const WITHIN: &str = "sees translucent surfaces from within";

@@ -1,13 +1,13 @@
 //! What a run writes never replaces what it reads, and is refused before the work if it cannot be written.
 
-use crate::support::{Bench, data, program};
 use std::{
     fs,
     os::unix::fs::{MetadataExt, PermissionsExt, symlink},
     path::Path,
-    process::{Command, Output},
+    process::Command,
     time::{Duration, Instant},
 };
+use test_support::{Bench, Run, data, program};
 
 /// A folder with one file of each kind that the programs read: a scene with its buffer, a cloud of it under an
 /// environment, the environment, a medium and a view.
@@ -42,20 +42,20 @@ fn no_output_replaces_an_input() {
         for input in read_by_both.iter().chain(others) {
             fs::hard_link(bench.path(input), bench.path("hard")).expect("links");
             symlink(input, bench.path("link")).expect("links");
-            let before = fs::read(bench.path(input)).expect("reads");
+            let before = bench.read(input);
             for (option, spelled) in options.iter().flat_map(|option| [*input, "hard", "link"].map(|s| (*option, s))) {
                 let mut arguments = words(line);
                 arguments.extend([option, spelled]);
                 if option != "--output" {
                     arguments.extend(["--output", "new"]);
                 }
-                bench.program_refuses(name, &arguments, &[spelled, option, "would replace", "give another name"]);
+                bench.refuses(name, &arguments, &[spelled, option, "would replace", "give another name"]);
             }
-            assert_eq!(fs::read(bench.path(input)).expect("reads"), before, "{name}: {input}");
+            assert_eq!(bench.read(input), before, "{name}: {input}");
             ["hard", "link"].iter().for_each(|link| fs::remove_file(bench.path(link)).expect("removes"));
         }
         let twice = [&words(line)[..], &["--output", "new", "--stats", "./new"]].concat();
-        bench.program_refuses(name, &twice, &["--stats would replace --output"]);
+        bench.refuses(name, &twice, &["--stats would replace --output"]);
     }
 }
 
@@ -71,19 +71,19 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
             4
         }));
         let start = Instant::now();
-        bench.program_refuses("sample-surface", &arguments, &["nowhere/file", option, "No such file"]);
+        bench.refuses("sample-surface", &arguments, &["nowhere/file", option, "No such file"]);
         assert!(start.elapsed() < Duration::from_secs(10), "{option}");
     }
     for program in ["sample-surface", "gather"] {
         let line = if program == "gather" { GATHER } else { SAMPLE };
         for option in ["--output", "--stats"] {
-            bench.program_refuses(program, &[&words(line)[..], &[option, "-"]].concat(), &["streams are not accepted"]);
+            bench.refuses(program, &[&words(line)[..], &[option, "-"]].concat(), &["streams are not accepted"]);
         }
     }
 }
 
 /// Runs a program that must end by itself within seconds.
-fn ends(bench: &Bench, name: &str, arguments: &[&str]) -> Output {
+fn ends(bench: &Bench, name: &str, arguments: &[&str]) -> Run {
     let mut child = bench.start(name, arguments);
     let start = Instant::now();
     while child.try_wait().expect("can be waited for").is_none() {
@@ -93,7 +93,7 @@ fn ends(bench: &Bench, name: &str, arguments: &[&str]) -> Output {
         }
         std::thread::sleep(Duration::from_millis(5));
     }
-    child.wait_with_output().expect("has ended")
+    child.wait_with_output().expect("has ended").into()
 }
 
 /// Planted errors that this caught: the look at the kind of file left out of each of the declarations.
@@ -116,7 +116,7 @@ fn a_pipe_in_place_of_a_file_is_refused_at_once() {
     ];
     for (name, line) in lines {
         let output = ends(&bench, name, &words(&line));
-        let message = String::from_utf8_lossy(&output.stderr);
+        let message = output.stderr;
         assert_eq!(output.status.code(), Some(2), "{name} {line}: {message}");
         assert!(message.contains("pipe") && message.lines().count() == 1, "{name} {line}: {message}");
     }
@@ -130,8 +130,8 @@ fn a_file_that_may_not_grow_leaves_no_half_behind() {
     let mut command = Command::new("/bin/sh");
     command.args(["-c", "ulimit -f 64 && exec \"$@\"", "sh"]).arg(program("sample-surface"));
     command.args(["scene.gltf", "-n", "100k", "-o", "big.cloud", "--quiet"]);
-    let output = command.current_dir(bench.folder()).output().expect("starts");
-    let message = String::from_utf8_lossy(&output.stderr);
+    let output = Run::of(command.current_dir(bench.folder()));
+    let message = output.stderr;
     assert_eq!(output.status.code(), Some(2), "{message}");
     assert!(message.contains("big.cloud: cannot write: File too large"), "{message}");
     assert_eq!(bench.files(), before);
@@ -139,7 +139,7 @@ fn a_file_that_may_not_grow_leaves_no_half_behind() {
 
 /// Runs a program as a user who may have `processes` processes, which threads count as. Root is bound by no such limit,
 /// so it becomes another user first.
-fn with_few_threads(bench: &Bench, processes: u32, name: &str, arguments: &[&str]) -> Output {
+fn with_few_threads(bench: &Bench, processes: u32, name: &str, arguments: &[&str]) -> Run {
     // The other user must be able to read the program. This process must not have it open for writing, even for a moment:
     // what another test starts just then would have it too, and it could not be run.
     let copy = bench.path(name);
@@ -151,7 +151,7 @@ fn with_few_threads(bench: &Bench, processes: u32, name: &str, arguments: &[&str
     command.arg(format!("--nproc={processes}"));
     let is_root = fs::metadata("/proc/self").is_ok_and(|meta| meta.uid() == 0);
     command.args(if is_root { &["setpriv", "--reuid", "64321", "--clear-groups"][..] } else { &[] }).arg(copy);
-    command.current_dir(bench.folder()).args(arguments).output().expect("starts")
+    Run::of(command.current_dir(bench.folder()).args(arguments))
 }
 
 /// Both panicked or took the machine: no thread to be had, and an environment variable that asks for very many.
@@ -160,20 +160,20 @@ fn with_few_threads(bench: &Bench, processes: u32, name: &str, arguments: &[&str
 #[test]
 fn few_threads_or_none_give_the_same_bytes() {
     let bench = bench();
-    let expected = fs::read(bench.path("slab.cloud")).expect("reads");
+    let expected = bench.read("slab.cloud");
     let line = words("scene.gltf -n 1000 --environment sky.hdr -o few.cloud -j 8");
     for (processes, said) in [(1, "none of 8 threads"), (4, "of 8 threads"), (1000, "sampling")] {
         let output = with_few_threads(&bench, processes, "sample-surface", &line);
-        let message = String::from_utf8_lossy(&output.stderr);
+        let message = output.stderr;
         assert_eq!(output.status.code(), Some(0), "{processes} processes: {message}");
         assert!(message.contains(said), "{processes} processes: {message}");
-        assert_eq!(fs::read(bench.path("few.cloud")).expect("reads"), expected);
+        assert_eq!(bench.read("few.cloud"), expected);
         fs::remove_file(bench.path("few.cloud")).expect("removes");
     }
     let output = with_few_threads(&bench, 1, "gather", &words(&format!("{GATHER} -o few.exr")));
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(output.status.code(), Some(0), "{}", output.stderr);
     let output = with_few_threads(&bench, 1, "compare", &words("few.exr few.exr --exact -j 4"));
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(output.status.code(), Some(0), "{}", output.stderr);
 
     let mut command = Command::new(program("sample-surface"));
     command.env("RAYON_NUM_THREADS", "100000").current_dir(bench.folder());
@@ -181,7 +181,7 @@ fn few_threads_or_none_give_the_same_bytes() {
     assert!(command.status().expect("starts").success());
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     assert_eq!(bench.json("many.json")["threads"], cores);
-    assert_eq!(fs::read(bench.path("many.cloud")).expect("reads"), expected);
+    assert_eq!(bench.read("many.cloud"), expected);
 }
 
 /// A name may hold what a terminal obeys. Planted error that this caught: messages written as they are.
@@ -193,8 +193,7 @@ fn names_from_files_cannot_command_a_terminal() {
         root["materials"][0]["name"] = evil.into();
         root["cameras"][0]["name"] = evil.into();
     });
-    let is_safe = |bytes: &[u8]| {
-        let text = String::from_utf8_lossy(bytes).into_owned();
+    let is_safe = |text: &str| {
         let bad = text.chars().find(|c| (c.is_control() && *c != '\n') || *c == '\u{202e}');
         assert!(bad.is_none() && !text.contains("\nPASS"), "{text:?}");
     };

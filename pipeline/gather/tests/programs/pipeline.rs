@@ -1,9 +1,9 @@
 //! The three programs joined by their files.
 
-use crate::support::{Bench, data};
 use bssrdf::{Model, built_in, fresnel};
 use formats::Attribute;
 use std::{f64::consts::PI, fs};
+use test_support::{Bench, data};
 
 /// Jensen's closed form, method.md (3.5), from the published formulas alone.
 fn reflectance(sigma_a: f64, sigma_s: f64, eta: f64) -> f64 {
@@ -56,7 +56,7 @@ fn render(bench: &Bench, threads: &str, output: &str) -> Vec<u8> {
     let arguments = ["figure.cloud", &scene, "--medium", "skin1", "--view", &view, "-o", output, "-j", threads];
     let size = ["--width", "48", "--height", "48", "--spp", "2", "--stats", "stats.json", "--preview", "picture.png"];
     bench.succeed("gather", &[&arguments[..], &size].concat());
-    fs::read(bench.path(output)).expect("reads")
+    bench.read(output)
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn the_image_is_the_same_for_any_number_of_threads_and_for_two_runs() {
     assert_eq!(first, render(&bench, "1", "again.exr"));
     let verdict = bench.succeed("compare", &["one.exr", "two.exr", "--exact"]);
     assert!(verdict.lines().last().is_some_and(|l| l.starts_with("PASS")), "{verdict}");
-    assert_eq!(&fs::read(bench.path("picture.png")).expect("reads")[1..4], b"PNG");
+    assert_eq!(&bench.read("picture.png")[1..4], b"PNG");
 }
 
 /// The layers of the contract, their sum, the attributes, and the keys of the statistics.
@@ -122,7 +122,7 @@ fn one_cloud_serves_every_camera_and_medium() {
         let size = ["--width", "24", "--height", "24", "--spp", "1", "-o", "image.exr", "--quiet"];
         let arguments = ["figure.cloud", &scene, "--camera", camera, "--medium", medium];
         bench.succeed("gather", &[&arguments[..], &size].concat());
-        images.push(fs::read(bench.path("image.exr")).expect("reads"));
+        images.push(bench.read("image.exr"));
     }
     assert_eq!(images[1], images[3], "index 1 is ThreeQuarter");
     assert!(images[0] != images[1] && images[1] != images[2]);

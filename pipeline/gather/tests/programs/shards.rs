@@ -1,9 +1,8 @@
 //! Clouds of several files. Planted errors seen: clouds in the order of the command line; a shard that does not change the
 //! random numbers; no check of seed and shard; turns without weights.
 
-use crate::support::{Bench, data};
 use formats::Attribute;
-use std::fs;
+use test_support::{Bench, data};
 
 const SIZE: [&str; 7] = ["--width", "32", "--height", "32", "--no-timings", "--quiet", "--seed"];
 
@@ -27,7 +26,7 @@ fn the_order_of_files_does_not_matter() {
             let output = format!("{first}.exr");
             let how = [&scene, "--view", &view, "--medium", "skin1", "--estimator", estimator, "--stats", "s.json"];
             bench.succeed("gather", &[&[first], others, &how, &["-o", &output], &SIZE, &["3"]].concat());
-            (fs::read(bench.path(&output)).expect("reads"), bench.json("s.json"))
+            (bench.read(&output), bench.json("s.json"))
         };
         let one = image("a.cloud", &["b.cloud", "c.cloud", "d.cloud"]);
         assert!(one == image("c.cloud", &["d.cloud", "a.cloud", "b.cloud"]), "{estimator}");
@@ -101,7 +100,7 @@ fn clouds_that_do_not_belong_together_are_refused() {
     sample(&bench, &data("scenes/slab.glb"), "slab.cloud", &[&few[..], &["1/2"]].concat());
     let refused = |other: &str, words: &[&str]| {
         let arguments = ["a.cloud", other, &sphere, "--medium", "skin1", "--view", &view, "-o", "x.exr"];
-        bench.refuses(&arguments, &[&["a.cloud", other], words].concat());
+        bench.refuses("gather", &arguments, &[&["a.cloud", other], words].concat());
     };
     refused("a.cloud", &["shard 0/2 of seed 0", "leave one out"]);
     refused("same.cloud", &["shard 0/2 of seed 0"]);
@@ -114,12 +113,12 @@ fn clouds_that_do_not_belong_together_are_refused() {
         (&["a.cloud", "slab.cloud"], "slab.cloud: this is a cloud; give SCENE after all clouds"),
         (&["a.cloud", &sphere, "slab.cloud"], "sphere.glb: not a cloud"),
     ] {
-        bench.refuses(&[files, &["--medium", "skin1", "--view", &view, "-o", "x.exr"]].concat(), &[word]);
+        bench.refuses("gather", &[files, &["--medium", "skin1", "--view", &view, "-o", "x.exr"]].concat(), &[word]);
     }
     for shard in ["2/2", "0/0", "1", "a/b", "-1/2", "0/65537"] {
         let shard = format!("--shard={shard}");
         let arguments = [sphere.as_str(), "-n", "1k", "-o", "x.cloud", &shard];
-        bench.program_refuses("sample-surface", &arguments, &["--shard"]);
+        bench.refuses("sample-surface", &arguments, &["--shard"]);
     }
 }
 

@@ -1,6 +1,6 @@
 //! `--target-error` of both programs: what is asked for is met, or it is said why not.
 
-use crate::support::{Bench, data};
+use test_support::{Bench, data};
 
 /// Mean square of the difference of two images over the mean square of the first.
 fn relative_error(bench: &Bench, reference: &str, test: &str) -> f64 {
@@ -21,7 +21,7 @@ fn gather(bench: &Bench, cloud: &str, output: &str, more: &[&str]) -> String {
     let arguments = [cloud, &scene, "--view", &view, "--medium", "skimmilk", "-o", output, "--stats", "stats.json"];
     let size: &[&str] = if more.contains(&"--width") { &[] } else { &["--width", "32", "--height", "32"] };
     let run = bench.run("gather", &[&arguments[..], size, more].concat());
-    let message = String::from_utf8_lossy(&run.stderr).into_owned();
+    let message = run.stderr;
     assert_eq!(run.status.code(), Some(0), "{message}");
     message
 }

@@ -1,9 +1,9 @@
 //! What users bring, a test for each kind of input. Where the library's own tests go through the details, the comment
 //! names them: they are `crates/scene/tests/scene/*` and the others of this folder.
 
-use crate::support::{Bench, data};
 use formats::Attribute;
 use serde_json::{Value, json};
+use test_support::{Bench, data};
 
 /// A small cloud of `scene` as `user.cloud`; returns what was said.
 fn sample(bench: &Bench, scene: &str, more: &[&str]) -> String {
@@ -38,7 +38,7 @@ fn light_units() {
     gather(&bench, &slab, &["--medium", "marble", "--light-unit", "photometric"]);
     assert_eq!(text_attribute(&bench, "pcsss/lightUnit"), "photometric");
     let wrong = ["user.cloud", &slab, "--medium", "marble", "-o", "wrong.exr"];
-    bench.refuses(&wrong, &["--light-unit is radiometric"]);
+    bench.refuses("gather", &wrong, &["--light-unit is radiometric"]);
 }
 
 /// Emission has a unit of its own, by default that of the lights; clouds of other units are refused.
@@ -63,7 +63,7 @@ fn emission_units() {
     near(most(&["--light-unit", "photometric", "--emission-unit", "radiometric"]), 683.0 * lumens);
     assert_eq!(text_attribute(&bench, "pcsss/emissionUnit"), "radiometric");
     let wrong = ["user.cloud", &slab, "--medium", "marble", "--light-unit", "photometric", "-o", "wrong.exr"];
-    bench.refuses(&wrong, &["--emission-unit is photometric, the cloud's radiometric"]);
+    bench.refuses("gather", &wrong, &["--emission-unit is photometric, the cloud's radiometric"]);
 }
 
 /// Positions in float32 have 3 values where an object of 0.2 m is 1000 km away, and so many as there are elsewhere if
@@ -87,7 +87,7 @@ fn positions_far_from_the_origin() {
         let Some(Attribute::Vector(origin)) = image.attributes.get("pcsss/originM") else { panic!("no origin") };
         let plane = |name: &str| image.channels.iter().find(|c| c.name == name).expect("a channel").samples.clone();
         let hit = plane("Z").into_iter().zip(plane("P.X")).filter(|(z, _)| *z > 0.0).map(|(_, x)| x).collect();
-        (*origin, hit, std::fs::read(bench.path("far.ply")).expect("reads"))
+        (*origin, hit, bench.read("far.ply"))
     };
     let x_of_ply = |bytes: &[u8]| -> (String, Vec<f32>) {
         let end = bytes.windows(11).position(|w| w == b"end_header\n").expect("a header") + 11;
@@ -148,7 +148,7 @@ fn area_lights_and_scenes_without_light() {
     let dark = |root: &mut Value| root["nodes"][1]["extensions"] = json!({});
     let scene = bench.slab("dark.gltf", dark);
     let arguments = [&scene, "-n", "500", "-o", "user.cloud"];
-    bench.program_refuses("sample-surface", &arguments, &["dark.gltf", "no light", "--environment"]);
+    bench.refuses("sample-surface", &arguments, &["dark.gltf", "no light", "--environment"]);
     let scene = bench.slab("lit.gltf", |root| {
         dark(root);
         let strength = json!({ "KHR_materials_emissive_strength": { "emissiveStrength": 5 } });
@@ -266,13 +266,21 @@ fn subsurface_parameters() {
     assert!(text_attribute(&bench, "pcsss/media").starts_with("Slab=marble"));
     // Neither file nor command line; and an index that no model knows, unless it is not asked for.
     sample(&bench, &data("scenes/slab.glb"), &[]);
-    bench.refuses(&["user.cloud", &data("scenes/slab.glb"), "-o", "no.exr"], &["--medium", "SCENE gives none"]);
+    bench.refuses(
+        "gather",
+        &["user.cloud", &data("scenes/slab.glb"), "-o", "no.exr"],
+        &["--medium", "SCENE gives none"],
+    );
     let legacy = bench.slab("legacy.gltf", |root| {
         with_medium(root);
         root["materials"][0]["extensions"]["KHR_materials_ior"]["ior"] = json!(0);
     });
     sample(&bench, &legacy, &[]);
-    bench.refuses(&["user.cloud", &legacy, "-o", "no.exr"], &["`Slab`", "KHR_materials_ior", "eta", "--medium Slab="]);
+    bench.refuses(
+        "gather",
+        &["user.cloud", &legacy, "-o", "no.exr"],
+        &["`Slab`", "KHR_materials_ior", "eta", "--medium Slab="],
+    );
     gather(&bench, &legacy, &["--medium", "marble"]);
 }
 
@@ -291,7 +299,7 @@ fn media_of_file_and_command_line_together() {
         root["scenes"][0]["nodes"].as_array_mut().expect("a list").push(json!(3));
     });
     sample(&bench, &scene, &[]);
-    bench.refuses(&["user.cloud", &scene, "-o", "no.exr"], &["`Plain`", "--medium Plain=NAME"]);
+    bench.refuses("gather", &["user.cloud", &scene, "-o", "no.exr"], &["`Plain`", "--medium Plain=NAME"]);
     let said = gather(&bench, &scene, &["--medium", "Plain=marble"]);
     assert!(said.contains("`Slab`: KHR_materials_volume_scatter") && said.contains("`Plain`: marble"), "{said}");
 }
@@ -308,8 +316,8 @@ fn an_open_mesh_with_a_volume() {
     assert!(said.contains("3 open edges"), "{said}");
     assert_eq!(bench.json("stats.json")["mesh"]["open_edges"], 3);
     let words = ["open.gltf", "3 open edges", "--strict"];
-    bench.program_refuses("sample-surface", &[&scene, "-o", "no.cloud", "--strict"], &words);
-    bench.refuses(&["user.cloud", &scene, "--medium", "marble", "-o", "no.exr", "--strict"], &words);
+    bench.refuses("sample-surface", &[&scene, "-o", "no.cloud", "--strict"], &words);
+    bench.refuses("gather", &["user.cloud", &scene, "--medium", "marble", "-o", "no.exr", "--strict"], &words);
     let twice = bench.slab("twice.gltf", |root| {
         let again = root["meshes"][0]["primitives"][0].clone();
         root["meshes"][0]["primitives"].as_array_mut().expect("a list").push(again);
@@ -357,7 +365,7 @@ fn skins_morphs_and_animations() {
             *root.pointer_mut(pointer).expect("it is there") = value;
         });
         let words = ["posed.gltf", word, "apply the pose"];
-        bench.program_refuses("sample-surface", &[&scene, "-o", "no.cloud"], &words);
+        bench.refuses("sample-surface", &[&scene, "-o", "no.cloud"], &words);
     }
     let scene = bench.slab("seen.gltf", |root| root["animations"] = moved(2));
     assert!(sample(&bench, &scene, &[]).contains("cameras and lights stay at rest"));
@@ -371,7 +379,7 @@ fn compressed_and_quantised_meshes() {
         for name in ["KHR_draco_mesh_compression", "EXT_meshopt_compression"] {
             let scene = bench.slab("small.gltf", |root| root[list] = json!([name]));
             let words = ["small.gltf", name, "not supported", "export again without compression"];
-            bench.program_refuses("sample-surface", &[&scene, "-o", "no.cloud"], &words);
+            bench.refuses("sample-surface", &[&scene, "-o", "no.cloud"], &words);
         }
     }
     let scene = bench.slab("small.gltf", |root| root["extensionsRequired"] = json!(["KHR_mesh_quantization"]));
@@ -394,5 +402,5 @@ fn names_and_uris() {
     assert!(text_attribute(&bench, "pcsss/media").starts_with("blue = \u{9752}=marble"));
     std::fs::remove_file(bench.path("the slab \u{91d1}.bin")).expect("gone");
     let words = ["my \u{91d1} slab.gltf", "the slab \u{91d1}.bin", "buffers[0].uri", "beside it"];
-    bench.program_refuses("sample-surface", &[&scene, "-o", "no.cloud"], &words);
+    bench.refuses("sample-surface", &[&scene, "-o", "no.cloud"], &words);
 }

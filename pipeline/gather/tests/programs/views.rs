@@ -1,8 +1,8 @@
 //! A list of views: one call, an image for each, the same bytes as one by one. Planted errors seen: the first view's size for
 //! all; files numbered from one; outputs looked at one by one.
 
-use crate::support::{Bench, data};
 use std::fs;
+use test_support::{Bench, data};
 
 const VIEWS: [&str; 3] = [
     r#"{"eye":[0.002,0.08,0.178],"target":[0.002,0.028,0.002],"yfov":25,"width":24,"height":16}"#,
@@ -27,7 +27,7 @@ fn a_list_of_views_makes_the_images_of_its_views() {
     let named = VIEWS[1].replace("{\"eye\"", "{\"name\":\"side\",\"eye\"");
     bench.write("list.json", format!("[{},{named},{}]", VIEWS[0], VIEWS[2]));
     gather("list.json", "all.exr", "all.json", "all.png");
-    let bytes = |name: String| fs::read(bench.path(&name)).expect("reads");
+    let bytes = |name: String| bench.read(&name);
     for (k, tag) in ["0000", "side", "0002"].into_iter().enumerate() {
         for ending in ["exr", "json", "png"] {
             assert!(bytes(format!("all.{tag}.{ending}")) == bytes(format!("{k}.{ending}")), "{tag}.{ending}");
@@ -48,10 +48,10 @@ fn lists_that_say_too_much_are_refused() {
     bench.succeed("sample-surface", &[&scene, "-n", "1k", "-o", "figure.cloud", "--quiet"]);
     let own = ["figure.cloud", &scene, "--medium", "skin1", "-o", "x.exr", "--view", "list.json"];
     bench.write("list.json", format!("[{},{}]", VIEWS[0], VIEWS[1]));
-    bench.refuses(&[&own[..], &["--orbit", "3"]].concat(), &["list.json", "--orbit"]);
-    bench.refuses(&[&own[..], &["--crop", "16,0,8,1"]].concat(), &["--crop"]);
+    bench.refuses("gather", &[&own[..], &["--orbit", "3"]].concat(), &["list.json", "--orbit"]);
+    bench.refuses("gather", &[&own[..], &["--crop", "16,0,8,1"]].concat(), &["--crop"]);
     bench.write("list.json", format!("[{},{{}}]", VIEWS[0]));
-    bench.refuses(&own, &["list.json", "view 1", "eye"]);
+    bench.refuses("gather", &own, &["list.json", "view 1", "eye"]);
 }
 
 /// What may be wrong with all of a list is said once.
@@ -77,15 +77,15 @@ fn faults_of_one_view_name_it_and_come_first() {
     let own = ["figure.cloud", &scene, "--medium", "skin1", "--spp", "1", "--view", "list.json", "-o", "x.exr"];
     let wide = VIEWS[0].replace("24", "70000").replace("{\"eye\"", "{\"name\":\"wide\",\"eye\"");
     bench.write("list.json", format!("[{},{wide}]", VIEWS[0]));
-    bench.refuses(&own, &["view wide", "70000"]);
+    bench.refuses("gather", &own, &["view wide", "70000"]);
     let large = wide.replace("70000", "16000").replace("16,", "16000,").replace(":16}", ":16000}");
     bench.write("list.json", format!("[{},{large}]", VIEWS[0]));
-    bench.refuses(&own, &["view wide", "GiB"]);
+    bench.refuses("gather", &own, &["view wide", "GiB"]);
     bench.write("list.json", format!("[{},{}]", VIEWS[0], VIEWS[1]));
     fs::create_dir(bench.path("x.0001.exr")).expect("makes");
-    bench.refuses(&own, &["x.0001.exr", "folder"]);
+    bench.refuses("gather", &own, &["x.0001.exr", "folder"]);
     for missing in ["--preview", "--stats"] {
-        bench.refuses(&[&own[..8], &["-o", "y.exr", missing, "none/y"]].concat(), &["none/y.0000"]);
+        bench.refuses("gather", &[&own[..8], &["-o", "y.exr", missing, "none/y"]].concat(), &["none/y.0000"]);
     }
 }
 
@@ -95,19 +95,21 @@ fn outputs_are_files_of_their_own() {
     let bench = Bench::new();
     let scene = data("scenes/figure.glb");
     bench.succeed("sample-surface", &[&scene, "-n", "1k", "-o", "a.cloud", "--quiet"]);
-    let cloud = fs::read(bench.path("a.cloud")).expect("reads");
+    let cloud = bench.read("a.cloud");
     bench.write("view.json", VIEWS[0]);
     let own = ["a.cloud", &scene, "--medium", "skin1", "--spp", "1", "--view", "view.json", "-o"];
-    bench.refuses(&[&own[..], &["./a.cloud"]].concat(), &["a.cloud", "--output would replace CLOUD"]);
+    bench.refuses("gather", &[&own[..], &["./a.cloud"]].concat(), &["a.cloud", "--output would replace CLOUD"]);
     bench.refuses(
+        "gather",
         &[&own[..], &["x.exr", "--stats", "view.json"]].concat(),
         &["view.json", "--stats would replace --view"],
     );
     bench.refuses(
+        "gather",
         &[&own[..], &["x.exr", "--preview", "x.exr"]].concat(),
         &["x.exr", "--preview would replace --output"],
     );
-    assert!(fs::read(bench.path("a.cloud")).expect("reads") == cloud);
+    assert!(bench.read("a.cloud") == cloud);
     bench.succeed(
         "gather",
         &[&own[..], &["x.exr", "--preview", "/dev/null", "--stats", "/dev/null", "--quiet"]].concat(),

@@ -1,9 +1,9 @@
 //! Pictures are of the files that were named, as these are now.
 
 use super::{IMAGES, Tree, medium, sky, view};
-use crate::support::data;
 use serde_json::json;
 use std::{fs, os::unix::fs::PermissionsExt};
+use test_support::data;
 
 /// Of two files of one name the last must count, also if it is the older one. Seen to fail where targets depended on
 /// files by their times: each of these left the picture of the other file.

@@ -1,0 +1,169 @@
+//! A sphere under parallel light, seen from afar: brute-force scattering beside the models.
+
+use bssrdf::{DVec3, Medium, fresnel};
+use gather::estimator::{Estimator, Rule};
+use glam::DVec2;
+use rayon::prelude::*;
+use scene::Camera;
+use std::f64::consts::{PI, TAU};
+use test_support::walk::{free_path, scatter};
+use test_support::{
+    pipeline::{Lit, Point},
+    random::Random,
+};
+
+/// Pixels of a side; the sphere fills all of them.
+pub const SIDE: usize = 48;
+
+/// Exit directions count that lie this close to the cone about the light through the viewer, rad. Turned about the
+/// light, all of the cone looks like the viewer: sphere and light have that symmetry.
+const BAND: f64 = 0.03;
+
+/// The scene: radius in m, unit direction towards the light, irradiance across it in W/m², orthographic camera.
+#[derive(Clone, Debug)]
+pub struct Setting {
+    pub radius: f64,
+    pub to_light: DVec3,
+    pub irradiance: f64,
+    pub camera: Camera,
+}
+
+/// Scattered radiance of each pixel, one channel, W/(m² sr).
+pub type Plane = Vec<f64>;
+
+impl Setting {
+    fn to_viewer(&self) -> DVec3 {
+        -self.camera.forward
+    }
+
+    /// Image coordinates in [−1, 1] of a point of the unit sphere, y downwards.
+    fn project(&self, p: DVec3) -> DVec2 {
+        DVec2::new(p.dot(self.camera.right), -p.dot(self.camera.up))
+    }
+
+    /// The unit normal seen at image coordinates in [−1, 1]; none beside the sphere.
+    fn normal(&self, q: DVec2) -> Option<DVec3> {
+        let depth = 1.0 - q.length_squared();
+        (depth > 0.0).then(|| q.x * self.camera.right - q.y * self.camera.up + depth.sqrt() * self.to_viewer())
+    }
+
+    /// The unit normal at the centre of a pixel.
+    pub fn pixel_normal(&self, index: usize) -> Option<DVec3> {
+        let centre = DVec2::new((index % SIDE) as f64 + 0.5, (index / SIDE) as f64 + 0.5);
+        self.normal(centre * (2.0 / SIDE as f64) - DVec2::ONE)
+    }
+
+    /// The two azimuths about the light (by the mirror symmetry) at which an exit looks as the viewer sees it.
+    fn turned(&self, point: DVec3, direction: DVec3) -> [DVec3; 2] {
+        let z = self.to_light;
+        let flat = |v: DVec3| (v - v.dot(z) * z).normalize_or_zero();
+        let x = flat(self.to_viewer());
+        let y = z.cross(x);
+        let along = flat(direction);
+        let (cos, sin) = (along.dot(x), along.dot(y));
+        let (px, py) = (point.dot(x), point.dot(y));
+        let (qx, qy) = (cos * px + sin * py, cos * py - sin * px);
+        [qy, -qy].map(|qy| x * qx + y * qy + z * point.dot(z))
+    }
+}
+
+/// Follows `photons` of light through the sphere, one channel; light that was never scattered does not count.
+pub fn brute_force(setting: &Setting, medium: &Medium, channel: usize, photons: u64, seed: u64) -> Plane {
+    const PORTION: u64 = 20_000;
+    let portion = |index: u64| {
+        let mut random = Random(seed.wrapping_mul(0x9E37_79B9).wrapping_add(index << 40));
+        let mut counts = vec![0u32; SIDE * SIDE];
+        for _ in 0..PORTION {
+            if let Some((point, direction)) = exit(setting, medium, channel, &mut random) {
+                record(setting, point, direction, &mut counts);
+            }
+        }
+        counts
+    };
+    let portions: Vec<Vec<u32>> = (0..photons.div_ceil(PORTION)).into_par_iter().map(portion).collect();
+    let mut plane = vec![0.0; SIDE * SIDE];
+    for counts in portions {
+        plane.iter_mut().zip(counts).for_each(|(sum, n)| *sum += f64::from(n));
+    }
+    let angle = setting.to_light.angle_between(setting.to_viewer());
+    let solid_angle = TAU * ((angle - BAND).cos() - (angle + BAND).cos());
+    let pixel_area = (2.0 * setting.radius / SIDE as f64).powi(2);
+    let sent = (photons.div_ceil(PORTION) * PORTION) as f64;
+    let power = setting.irradiance * PI * setting.radius * setting.radius / sent;
+    // Each exit was recorded twice, mirrored.
+    let scale = 0.5 * power / (pixel_area * solid_angle);
+    plane.iter_mut().for_each(|x| *x *= scale);
+    plane
+}
+
+fn record(setting: &Setting, point: DVec3, direction: DVec3, counts: &mut [u32]) {
+    let angle = setting.to_light.angle_between(setting.to_viewer());
+    if (setting.to_light.angle_between(direction) - angle).abs() > BAND {
+        return;
+    }
+    for p in setting.turned(point, direction) {
+        let q = (setting.project(p) + DVec2::ONE) * (0.5 * SIDE as f64);
+        let (x, y) = (q.x.floor(), q.y.floor());
+        if x >= 0.0 && y >= 0.0 && x < SIDE as f64 && y < SIDE as f64 {
+            counts[y as usize * SIDE + x as usize] += 1;
+        }
+    }
+}
+
+/// Where (on the unit sphere) and into which direction a photon leaves after scattering; lengths in radii.
+fn exit(setting: &Setting, medium: &Medium, channel: usize, random: &mut Random) -> Option<(DVec3, DVec3)> {
+    let c = &medium.channels[channel];
+    let albedo = c.sigma_s / c.extinction();
+    let path = 1.0 / (c.extinction() * setting.radius);
+    let (x, y) = setting.to_light.any_orthonormal_pair();
+    let (b, a) = (TAU * random.uniform()).sin_cos();
+    let r = random.uniform().sqrt();
+    let mut point = x * (r * a) + y * (r * b) + setting.to_light * (1.0 - r * r).sqrt();
+    let entry = fresnel::enter(point.normalize(), setting.to_light, medium.eta)?;
+    if random.uniform() >= entry.transmittance {
+        return None;
+    }
+    let (mut direction, mut scattered) = (entry.direction, false);
+    loop {
+        let step = path * free_path(random);
+        let next = point + direction * step;
+        if next.length_squared() <= 1.0 {
+            if random.uniform() >= albedo {
+                return None;
+            }
+            point = next;
+            direction = scatter(direction, c.asymmetry, random);
+            scattered = true;
+            continue;
+        }
+        let half = point.dot(direction);
+        let way = -half + (half * half - point.length_squared() + 1.0).max(0.0).sqrt();
+        point = (point + direction * way).normalize();
+        let cosine = point.dot(direction);
+        if random.uniform() < fresnel::transmittance(cosine, 1.0 / medium.eta) {
+            let out = fresnel::enter(-point, -direction, 1.0 / medium.eta)?;
+            return scattered.then_some((point, out.direction));
+        }
+        direction = (direction - 2.0 * cosine * point).normalize();
+    }
+}
+
+/// `T21 L_r` of a cloud of the same sphere in each pixel, three channels; the mean over a few points a pixel.
+pub fn model(setting: &Setting, lit: &Lit, eta: f64) -> [Plane; 3] {
+    const POINTS: usize = 3;
+    let at = |k: usize| (k as f64 + 0.5) / POINTS as f64;
+    let pixel = |index: usize| {
+        let corner = DVec2::new((index % SIDE) as f64, (index / SIDE) as f64);
+        let mut sum = DVec3::ZERO;
+        for point in 0..POINTS * POINTS {
+            let offset = DVec2::new(at(point % POINTS), at(point / POINTS));
+            let Some(normal) = setting.normal((corner + offset) * (2.0 / SIDE as f64) - DVec2::ONE) else { continue };
+            let exit = fresnel::transmittance(normal.dot(setting.to_viewer()), eta);
+            let point = Point { position: normal * setting.radius, normal };
+            sum += exit * lit.radiance(Estimator::Roulette(Rule::Mixture), point, index as u64);
+        }
+        sum / (POINTS * POINTS) as f64
+    };
+    let pixels: Vec<DVec3> = (0..SIDE * SIDE).into_par_iter().map(pixel).collect();
+    [0, 1, 2].map(|c| pixels.iter().map(|p| p[c]).collect())
+}

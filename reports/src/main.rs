@@ -1,0 +1,97 @@
+//! Measures what the models and the programs are worth, and writes it to `docs/reports`. `make accuracy`, `make curve`,
+//! `make curve-full` and `make scale` are its users.
+
+mod accuracy;
+mod error;
+mod markdown;
+mod program;
+mod scale;
+mod speed;
+
+use clap::{Parser, Subcommand};
+use speed::Effort;
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
+
+/// Measures what the models and the programs are worth
+#[derive(Parser)]
+struct Arguments {
+    /// Folder that the report is written to
+    #[arg(long)]
+    output: PathBuf,
+    #[command(subcommand)]
+    report: Report,
+}
+
+#[derive(Subcommand)]
+enum Report {
+    /// The models against random walks: accuracy.md and its pictures
+    Accuracy,
+    /// Time against error: speed.md, its plots and speed.csv
+    Speed {
+        /// Folder of bunny.glb and dragon.glb
+        #[arg(long)]
+        meshes: PathBuf,
+        /// Folder of sample-surface and gather
+        #[arg(long)]
+        programs: PathBuf,
+        /// Larger clouds and more runs: an hour instead of minutes
+        #[arg(long)]
+        full: bool,
+        /// Half a minute, to try the program itself: the figures mean nothing
+        #[arg(long, conflicts_with = "full")]
+        tiny: bool,
+    },
+    /// What sizes cost, and what that says of farms: scale.md
+    Scale {
+        /// Folder of sample-surface and gather
+        #[arg(long)]
+        programs: PathBuf,
+    },
+}
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("reports: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(Arguments { output, report }: &Arguments) -> Result<(), Box<dyn std::error::Error>> {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data");
+    match report {
+        Report::Accuracy => accuracy::write(output)?,
+        Report::Speed { meshes, programs, full, tiny } => {
+            let effort = match (full, tiny) {
+                (true, _) => Effort::Full,
+                (_, true) => Effort::Tiny,
+                _ => Effort::Quick,
+            };
+            speed::write(meshes, programs, &data, effort, output)?;
+        }
+        Report::Scale { programs } => fs::write(output.join("scale.md"), scale::document(programs, &data)?)?,
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn accepts(line: &str) -> bool {
+        Arguments::try_parse_from(line.split_whitespace()).is_ok()
+    }
+
+    #[test]
+    fn the_command_line_is_checked() {
+        assert!(accepts("reports --output c speed --meshes a --programs b --full"));
+        assert!(!accepts("reports speed --meshes a --programs b"));
+        assert!(!accepts("reports --output c speed --meshes a --programs b --fast"));
+    }
+}

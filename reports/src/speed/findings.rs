@@ -1,0 +1,72 @@
+//! What the measurements say: targets, plots and tables, before they are put into a document.
+
+use crate::{markdown::three, speed::plot::Plot};
+
+/// One target, and what came of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Target {
+    pub what: String,
+    pub wanted: String,
+    pub found: String,
+    /// None if it could not be measured.
+    pub met: Option<bool>,
+    /// Measured, or how the figure was extrapolated.
+    pub basis: String,
+}
+
+impl Target {
+    /// A figure that should be this large or larger.
+    pub fn at_least(what: impl Into<String>, wanted: f64, found: Option<f64>, basis: impl Into<String>) -> Target {
+        Target::new(what.into(), format!("≥ {wanted}"), found, found.map(|x| x >= wanted), basis.into())
+    }
+
+    /// A figure that should be this small or smaller.
+    pub fn at_most(what: impl Into<String>, wanted: f64, found: Option<f64>, basis: impl Into<String>) -> Target {
+        Target::new(what.into(), format!("≤ {wanted}"), found, found.map(|x| x <= wanted), basis.into())
+    }
+
+    fn new(what: String, wanted: String, found: Option<f64>, met: Option<bool>, basis: String) -> Target {
+        Target { what, wanted, found: found.map_or("–".into(), three), met, basis }
+    }
+}
+
+/// A heading with text or tables.
+#[derive(Clone, Debug, Default)]
+pub struct Section {
+    pub title: String,
+    pub text: String,
+}
+
+/// All that one part or all of them found.
+#[derive(Clone, Debug, Default)]
+pub struct Findings {
+    pub targets: Vec<Target>,
+    /// Name of the file without `speed-` and `.svg`, and the plot.
+    pub plots: Vec<(String, Plot)>,
+    pub sections: Vec<Section>,
+}
+
+impl Findings {
+    pub fn add(&mut self, other: Findings) {
+        self.targets.extend(other.targets);
+        self.plots.extend(other.plots);
+        self.sections.extend(other.sections);
+    }
+
+    pub fn section(&mut self, title: impl Into<String>, text: String) {
+        self.sections.push(Section { title: title.into(), text });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn targets_are_judged_by_their_direction() {
+        assert_eq!(Target::at_least("a", 300.0, Some(310.0), "").met, Some(true));
+        assert_eq!(Target::at_most("a", 1.05, Some(1.06), "").met, Some(false));
+        assert_eq!(Target::at_most("a", 1.05, None, "").met, None);
+        assert_eq!(Target::at_most("a", 1.05, Some(f64::NAN), "").met, Some(false));
+    }
+}

@@ -1,0 +1,94 @@
+//! What more samples cost: both programs from 10^4 samples up.
+
+use crate::{
+    error::Error,
+    markdown::{count, table, three},
+    speed::{
+        configuration::{MARBLE, Subject},
+        findings::{Findings, Target},
+        harness::{Harness, Taken},
+        plot::{Curve, Plot},
+        shot::Shot,
+    },
+};
+
+/// Seconds and gigabytes against samples.
+pub fn growth(harness: &mut Harness, subject: &Subject) -> Result<Findings, Error> {
+    let effort = harness.effort;
+    let counts = effort.of(
+        vec![1_000, 10_000, 100_000],
+        vec![10_000, 100_000, 1_000_000, 10_000_000],
+        vec![10_000, 100_000, 1_000_000, 10_000_000, 100_000_000],
+    );
+    let side = effort.of(32, 256, 256);
+    let shot = Shot { spp: 4, size: [side; 2], ..harness.shot(subject, MARBLE, harness.all()) };
+    let (mut rows, mut ours) = (Vec::new(), Vec::new());
+    for samples in counts {
+        harness.say(&format!("growth: K {}", count(samples)));
+        match harness.take(&Shot { samples, ..shot.clone() }) {
+            Ok(taken) => {
+                rows.push(row(samples, &taken));
+                ours.push((samples as f64, taken.sampling.wall, taken.gathering.wall));
+            }
+            Err(e) => match e.refusal() {
+                Some(why) => harness.remarks.push(format!("K = {} was left out: {why}", count(samples))),
+                None => return Err(e),
+            },
+        }
+        harness.forget_clouds();
+    }
+    let note = note(harness, &shot)?;
+    let pair = |(k, _, low): &(f64, f64, f64)| Some(ours.iter().find(|o| o.0 == 100.0 * k)?.2 / low);
+    let worst = ours.iter().filter_map(pair).reduce(f64::max);
+    let mut findings = Findings::default();
+    let what = format!("{}, marble: time of the gather when K grows 100 times", subject.name);
+    findings.targets.push(Target::at_most(what, 2.5, worst, "measured"));
+    findings.plots.push(("growth".into(), plot(&ours, note)));
+    let header = ["K", "sampling, s", "gather, s", "evaluations a gather", "nodes a gather", "memory of both, MB"];
+    let text = format!("{}, marble, {side} x {side}, 4 paths a pixel.\n\n{}", subject.name, table(&header, &rows));
+    findings.section("What samples cost", text);
+    Ok(findings)
+}
+
+/// The note's seconds, for clouds that it gathers in reasonable time.
+fn note(harness: &mut Harness, shot: &Shot) -> Result<Vec<(f64, f64)>, Error> {
+    let Some(note) = harness.configuration("note") else { return Ok(Vec::new()) };
+    let mut points = Vec::new();
+    for samples in harness.effort.of(vec![1_000, 10_000], vec![10_000, 100_000], vec![10_000, 100_000]) {
+        let taken = harness.take(&Shot { samples, configuration: note, ..shot.clone() })?;
+        points.push((samples as f64, taken.gathering.wall));
+    }
+    harness.forget_clouds();
+    Ok(points)
+}
+
+fn row(samples: u64, taken: &Taken) -> Vec<String> {
+    let a_gather = |name: &str| {
+        let pair = taken.gathering.number(name).zip(taken.gathering.number("gathers"));
+        pair.map_or("–".into(), |(n, gathers)| three(n / gathers.max(1.0)))
+    };
+    let memory = [&taken.sampling, &taken.gathering].map(|s| s.number("peak_memory_bytes").map_or(0.0, |b| b / 1e6));
+    vec![
+        count(samples),
+        three(taken.sampling.wall),
+        three(taken.gathering.wall),
+        a_gather("bssrdf_evaluations"),
+        a_gather("nodes_visited"),
+        memory.map(three).join(", "),
+    ]
+}
+
+fn plot(ours: &[(f64, f64, f64)], note: Vec<(f64, f64)>) -> Plot {
+    let curve =
+        |label: &str, points: Vec<(f64, f64)>| Curve { label: label.into(), line: points.clone(), dots: points };
+    Plot {
+        title: "Seconds of each program".into(),
+        x: "samples K".into(),
+        y: "seconds".into(),
+        curves: vec![
+            curve("gather, note", note),
+            curve("gather, ours", ours.iter().map(|o| (o.0, o.2)).collect()),
+            curve("sample-surface, ours", ours.iter().map(|o| (o.0, o.1)).collect()),
+        ],
+    }
+}

@@ -1,0 +1,245 @@
+//! Runs the programs in a temporary folder and keeps a record of every run.
+
+use crate::{
+    error::Error,
+    program::{Program, Spent},
+    speed::{
+        configuration::{CONFIGURATIONS, CloudKind, Configuration, FINE, MARBLE, Medium, Subject, Summing},
+        effort::Effort,
+        picture::Picture,
+        record::Record,
+        shot::Shot,
+    },
+};
+use std::{
+    collections::HashMap,
+    path::{Path, PathBuf},
+    time::Instant,
+};
+use tempfile::TempDir;
+
+/// A finished image and its cost.
+pub struct Taken {
+    pub picture: Picture,
+    /// Of `sample-surface`, however often its cloud was used since.
+    pub sampling: Spent,
+    pub gathering: Spent,
+    record: usize,
+}
+
+impl Taken {
+    /// Seconds of both programs.
+    pub fn seconds(&self) -> f64 {
+        self.sampling.wall + self.gathering.wall
+    }
+
+    /// User and system seconds of both programs.
+    pub fn cpu(&self) -> f64 {
+        self.sampling.cpu + self.gathering.cpu
+    }
+}
+
+#[derive(Clone, PartialEq, Eq, Hash)]
+struct CloudKey {
+    scene: PathBuf,
+    kind: CloudKind,
+    samples: u64,
+    seed: u64,
+    threads: usize,
+}
+
+/// The programs, a place to work, and what was done there.
+pub struct Harness {
+    pub effort: Effort,
+    /// Threads unless a shot asks for others.
+    pub threads: usize,
+    /// The rows that these programs can do.
+    pub configurations: Vec<Configuration>,
+    pub records: Vec<Record>,
+    /// What could not be measured, in words.
+    pub remarks: Vec<String>,
+    sample_surface: Program,
+    gather: Program,
+    folder: TempDir,
+    clouds: HashMap<CloudKey, (PathBuf, Spent)>,
+    made: usize,
+    start: Instant,
+}
+
+impl Harness {
+    /// Finds the programs and tries every configuration once, on a handful of samples of `subject`.
+    pub fn new(programs: &Path, effort: Effort, subject: &Subject) -> Result<Harness, Error> {
+        let folder = tempfile::tempdir().map_err(Error::file(&std::env::temp_dir()))?;
+        let mut harness = Harness {
+            effort,
+            threads: std::thread::available_parallelism().map_or(1, usize::from),
+            configurations: Vec::new(),
+            records: Vec::new(),
+            remarks: Vec::new(),
+            sample_surface: Program::of(programs, "sample-surface")?,
+            gather: Program::of(programs, "gather")?,
+            folder,
+            clouds: HashMap::new(),
+            made: 0,
+            start: Instant::now(),
+        };
+        harness.say("trying every configuration");
+        for row in CONFIGURATIONS {
+            let shot = harness.shot(subject, MARBLE, row);
+            match harness.take(&Shot { samples: 1000, spp: 1, size: [8, 8], ..shot }) {
+                Ok(_) => harness.configurations.push(row),
+                Err(e) => match e.refusal() {
+                    Some(why) => harness.remarks.push(format!("Configuration `{}` was left out: {why}", row.name)),
+                    None => return Err(e),
+                },
+            }
+        }
+        harness.records.clear();
+        harness.stand_in()?;
+        Ok(harness)
+    }
+
+    /// Says so if it is not the complete configuration that is tried as ours; in earnest it has to be.
+    fn stand_in(&mut self) -> Result<(), Error> {
+        let ours = self.ours().ok_or_else(|| Error::Usage(format!("no configuration runs: {:?}", self.remarks)))?;
+        if ours.name != "all" && self.effort != Effort::Tiny {
+            let why = self.remarks.join(" ");
+            return Err(Error::Usage(format!("the programs refuse `all`, and without it this takes days. {why}")));
+        }
+        if ours.name != "all" {
+            self.remarks.push(format!("`{}` stands in for `all` everywhere below.", ours.name));
+        }
+        Ok(())
+    }
+
+    /// A row by name, if the programs can do it.
+    pub fn configuration(&self, name: &str) -> Option<Configuration> {
+        self.configurations.iter().copied().find(|c| c.name == name)
+    }
+
+    /// All ingredients together, or as many as there are.
+    fn ours(&self) -> Option<Configuration> {
+        self.configuration("all").or_else(|| self.configurations.last().copied())
+    }
+
+    /// All ingredients together with the default accuracy, or what stands in for it.
+    pub fn all(&self) -> Configuration {
+        self.ours().expect("a harness without any configuration is not made")
+    }
+
+    /// The best way to sum this kind of cloud.
+    pub fn best_on(&self, cloud: CloudKind) -> Configuration {
+        Configuration { name: "best", cloud, summing: self.all().summing }
+    }
+
+    /// A way to sum this kind of cloud that is as good as exact beside the cloud's error.
+    pub fn fine_on(&self, cloud: CloudKind) -> Configuration {
+        let summing = match self.all().summing {
+            Summing::Cut(_) => FINE,
+            _ => Summing::Exhaustive,
+        };
+        Configuration { name: "fine", cloud, summing }
+    }
+
+    /// The kinds of clouds that the programs can make.
+    pub fn kinds(&self) -> Vec<CloudKind> {
+        let mut kinds = Vec::new();
+        for row in &self.configurations {
+            if !kinds.contains(&row.cloud) {
+                kinds.push(row.cloud);
+            }
+        }
+        kinds
+    }
+
+    /// A shot with seeds 1 and 1, to be changed where it should differ.
+    pub fn shot<'a>(&self, subject: &'a Subject, medium: Medium, configuration: Configuration) -> Shot<'a> {
+        Shot {
+            subject,
+            medium,
+            configuration,
+            samples: 100_000,
+            spp: 1,
+            cloud_seed: 1,
+            gather_seed: 1,
+            size: [64, 64],
+            threads: self.threads,
+            more: Vec::new(),
+        }
+    }
+
+    /// A line on stderr with the time since the start.
+    pub fn say(&self, line: &str) {
+        let seconds = self.start.elapsed().as_secs();
+        eprintln!("{:3}:{:02} {line}", seconds / 60, seconds % 60);
+    }
+
+    /// Seconds since the start.
+    pub fn elapsed(&self) -> f64 {
+        self.start.elapsed().as_secs_f64()
+    }
+
+    /// The cloud of a shot, sampled unless it is there.
+    pub fn cloud(&mut self, shot: &Shot) -> Result<(PathBuf, Spent), Error> {
+        let key = CloudKey {
+            scene: shot.subject.path.clone(),
+            kind: shot.configuration.cloud,
+            samples: shot.samples,
+            seed: shot.cloud_seed,
+            threads: shot.threads,
+        };
+        if let Some(known) = self.clouds.get(&key) {
+            return Ok(known.clone());
+        }
+        self.made += 1;
+        let path = self.folder.path().join(format!("{}.cloud", self.made));
+        let mut arguments = vec![text(&shot.subject.path), "-o".into(), text(&path)];
+        arguments.extend(["--samples".into(), shot.samples.to_string(), "--seed".into(), shot.cloud_seed.to_string()]);
+        arguments.extend(["--threads".into(), shot.threads.to_string()]);
+        arguments.extend(shot.configuration.sample_flags());
+        arguments.extend(shot.subject.flags.iter().map(|f| (*f).to_owned()));
+        let spent = self.sample_surface.run(&arguments, &self.folder.path().join("sample.json"))?;
+        self.clouds.insert(key, (path.clone(), spent.clone()));
+        Ok((path, spent))
+    }
+
+    /// Renders a shot.
+    pub fn take(&mut self, shot: &Shot) -> Result<Taken, Error> {
+        let (cloud, sampling) = self.cloud(shot)?;
+        let image = self.folder.path().join("image.exr");
+        let mut arguments = vec![text(&cloud), text(&shot.subject.path), "-o".into(), text(&image)];
+        let numbers = [
+            ("--width", shot.size[0]),
+            ("--height", shot.size[1]),
+            ("--spp", shot.spp),
+            ("--seed", shot.gather_seed),
+            ("--threads", shot.threads as u64),
+        ];
+        arguments.extend(numbers.iter().flat_map(|(flag, n)| [(*flag).to_owned(), n.to_string()]));
+        arguments.extend(["--medium".into(), shot.medium.name.into()]);
+        arguments.extend(shot.configuration.gather_flags(&shot.medium));
+        arguments.extend(shot.subject.flags.iter().map(|f| (*f).to_owned()));
+        arguments.extend(shot.subject.view.iter().chain(&shot.more).cloned());
+        let gathering = self.gather.run(&arguments, &self.folder.path().join("gather.json"))?;
+        let picture = Picture::read(&image)?;
+        self.records.push(Record::of(shot, &sampling, &gathering));
+        Ok(Taken { picture, sampling, gathering, record: self.records.len() - 1 })
+    }
+
+    /// Adds to a run's record what became of it.
+    pub fn judge(&mut self, taken: &Taken, relative_rmse: f64, bias: Option<f64>) {
+        let record = &mut self.records[taken.record];
+        (record.relative_rmse, record.bias) = (Some(relative_rmse), bias);
+    }
+
+    /// Removes all clouds: the large ones would fill the disk.
+    pub fn forget_clouds(&mut self) {
+        for (_, (path, _)) in self.clouds.drain() {
+            std::fs::remove_file(path).ok();
+        }
+    }
+}
+
+fn text(path: &Path) -> String {
+    path.display().to_string()
+}

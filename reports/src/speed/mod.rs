@@ -1,0 +1,75 @@
+//! Time against error of the two programs: `speed.md`, its plots and `speed.csv`.
+
+mod accuracy;
+mod behaviour;
+mod clouds;
+mod configuration;
+mod document;
+mod effort;
+mod estimate;
+mod everywhere;
+mod findings;
+mod frame;
+mod growth;
+mod harness;
+mod measure;
+mod model;
+mod peers;
+mod picture;
+mod plot;
+mod race;
+mod record;
+mod reference;
+mod scaling;
+mod shot;
+
+pub use effort::Effort;
+
+use crate::error::Error;
+use configuration::{MARBLE, MEDIA, SKIM_MILK, Subjects};
+use findings::Findings;
+use harness::Harness;
+use std::{fs, path::Path};
+
+/// Measures, and writes the report into the folder `output`. The folder `meshes` should hold `bunny.glb` and
+/// `dragon.glb`, and `../peers` beside it the scenes that other renderers were measured on; `data` is the repository's.
+pub fn write(meshes: &Path, programs: &Path, data: &Path, effort: Effort, output: &Path) -> Result<(), Error> {
+    let subjects = Subjects::find(meshes, data);
+    let mut harness = Harness::new(programs, effort, &subjects.main[0])?;
+    let findings = measure_all(&mut harness, &subjects)?;
+    let write = |name: &str, text: String| {
+        let path = output.join(name);
+        fs::write(&path, text).map_err(Error::file(&path))
+    };
+    for (name, plot) in &findings.plots {
+        write(&format!("speed-{name}.svg"), plot.to_svg())?;
+    }
+    write("speed.csv", record::table(&harness.records))?;
+    write("speed.md", document::document(&harness, &findings, &subjects.remarks))?;
+    harness.say("written");
+    Ok(())
+}
+
+/// All parts, in the order of the document.
+fn measure_all(harness: &mut Harness, subjects: &Subjects) -> Result<Findings, Error> {
+    let main = &subjects.main;
+    let mut findings = Findings::default();
+    let (raced, media) = match harness.effort {
+        Effort::Full => (&main[..], &MEDIA[..]),
+        _ => (&main[..1], &[MARBLE, SKIM_MILK][..]),
+    };
+    for subject in raced {
+        for medium in media {
+            findings.add(race::race(harness, subject, *medium)?);
+        }
+    }
+    findings.add(peers::peers(harness, subjects)?);
+    findings.add(everywhere::everywhere(harness, main)?);
+    findings.add(frame::frame(harness, &main[main.len() - 1])?);
+    findings.add(clouds::clouds(harness, subjects.bunny_of_peers.as_ref().unwrap_or(&main[0]))?);
+    findings.add(growth::growth(harness, &main[0])?);
+    findings.add(accuracy::accuracy(harness, main)?);
+    findings.add(estimate::estimate(harness, main)?);
+    findings.add(scaling::scaling(harness, &main[0])?);
+    Ok(findings)
+}

@@ -1,0 +1,108 @@
+//! Against the renderers that one would take instead: relMSE over the object times CPU seconds, as they were measured.
+
+use crate::{
+    error::Error,
+    markdown::{count, table, three},
+    speed::{
+        configuration::{Configuration, FINE_NAME, MARBLE, Medium, SKIM_MILK, Subject, Subjects},
+        findings::{Findings, Target},
+        harness::Harness,
+        measure::Reference,
+        reference::{Quality, reference},
+        shot::Shot,
+    },
+};
+
+/// The best of the others on this scene, relMSE times CPU seconds, each against its own converged image: POV-Ray 3.7
+/// (dipole, 200 samples; biased) on the sphere, Cycles 4.5 (Burley) on the bunny; 128 x 128, on a like machine.
+const BEST_ON_SPHERE: (&str, f64) = ("POV-Ray 3.7, dipole", 0.0003);
+const BEST_ON_BUNNY: (&str, f64) = ("Cycles 4.5, Burley", 0.0085);
+
+/// Pixels of a side.
+const SIDE: u64 = 128;
+
+/// Means over the seeds of one choice of samples and paths.
+struct Point {
+    configuration: &'static str,
+    samples: u64,
+    spp: u64,
+    relative_mse: f64,
+    cpu: f64,
+}
+
+impl Point {
+    fn product(&self) -> f64 {
+        self.relative_mse * self.cpu
+    }
+}
+
+/// Both scenes, if they are there.
+pub fn peers(harness: &mut Harness, subjects: &Subjects) -> Result<Findings, Error> {
+    let mut findings = Findings::default();
+    let pairs =
+        [(&subjects.sphere_of_peers, SKIM_MILK, BEST_ON_SPHERE), (&subjects.bunny_of_peers, MARBLE, BEST_ON_BUNNY)];
+    let mut rows = Vec::new();
+    for (subject, medium, (peer, best)) in pairs {
+        let Some(subject) = subject else { continue };
+        let points = scene(harness, subject, medium)?;
+        let Some(ours) = points.iter().min_by(|a, b| a.product().total_cmp(&b.product())) else { continue };
+        let what = format!("{}, {}: {peer} over ours, relMSE x CPU s", subject.name, medium.name);
+        let basis = format!("theirs {} (measured before), ours {} (measured)", three(best), three(ours.product()));
+        findings.targets.push(Target::at_least(what, 10.0, Some(best / ours.product()), basis));
+        rows.extend(points.iter().map(|p| row(subject, medium, p)));
+    }
+    let header = ["scene", "medium", "configuration", "K", "paths a pixel", "relMSE", "CPU s", "product"];
+    let text = "Whole processes on one thread, sampling included; relMSE is the mean of (t - r)² / (r² + 0.01) over \
+                the object, 128 x 128, means over seeds of cloud and paths.\n\n";
+    findings.section("Beside other renderers", format!("{text}{}", table(&header, &rows)));
+    Ok(findings)
+}
+
+fn row(subject: &Subject, medium: Medium, p: &Point) -> Vec<String> {
+    let numbers = [p.relative_mse, p.cpu, p.product()].map(three);
+    let names = [subject.name.clone(), medium.name.into(), p.configuration.into(), count(p.samples), p.spp.to_string()];
+    names.into_iter().chain(numbers).collect()
+}
+
+/// Every choice of samples and paths on one scene.
+fn scene(harness: &mut Harness, subject: &Subject, medium: Medium) -> Result<Vec<Point>, Error> {
+    let effort = harness.effort;
+    let side = effort.of(32, SIDE, SIDE);
+    let configuration = harness.configuration(FINE_NAME).unwrap_or_else(|| harness.all());
+    let shot = Shot { size: [side; 2], threads: 1, ..harness.shot(subject, medium, configuration) };
+    let quality = Quality { clouds: 4, samples: effort.of(20_000, 4_000_000, 8_000_000), spp: effort.of(4, 64, 128) };
+    let converged = reference(harness, &shot, quality)?;
+    let rows = effort.of(vec![configuration], vec![configuration], vec![harness.all(), configuration]);
+    let mut points = Vec::new();
+    for samples in effort.of(vec![1_000], vec![1_000_000, 3_000_000], vec![100_000, 1_000_000]) {
+        for spp in effort.of(vec![1], vec![8, 32], vec![8, 32]) {
+            for configuration in &rows {
+                let shot = Shot { samples, spp, ..shot.clone() };
+                points.push(point(harness, &shot, *configuration, &converged)?);
+            }
+        }
+    }
+    harness.forget_clouds();
+    Ok(points)
+}
+
+fn point(
+    harness: &mut Harness,
+    shot: &Shot,
+    configuration: Configuration,
+    reference: &Reference,
+) -> Result<Point, Error> {
+    let seeds = harness.effort.of(2, 3, 3);
+    harness.say(&format!("{} {}: K {}, {} paths", shot.subject.name, shot.medium.name, count(shot.samples), shot.spp));
+    let (mut error, mut cpu) = (0.0, 0.0);
+    for seed in 1..=seeds {
+        let one = Shot { configuration, cloud_seed: seed, gather_seed: seed, ..shot.clone() };
+        let taken = harness.take(&one)?;
+        error += reference.relative_mse(&taken.picture) / seeds as f64;
+        cpu += taken.cpu() / seeds as f64;
+    }
+    let (samples, spp) = (shot.samples, shot.spp);
+    // A mean below the reference's own noise is zero as far as can be told, which is no measurement.
+    let relative_mse = if error > 0.0 { error } else { f64::INFINITY };
+    Ok(Point { configuration: configuration.name, samples, spp, relative_mse, cpu })
+}

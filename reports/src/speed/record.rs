@@ -1,0 +1,78 @@
+//! `speed.csv`: one line for each run.
+
+use crate::{program::Spent, speed::shot::Shot};
+
+/// One run of `gather`, with the `sample-surface` that it drew on.
+#[derive(Clone, Debug)]
+pub struct Record {
+    scene: String,
+    medium: &'static str,
+    configuration: &'static str,
+    samples: u64,
+    spp: u64,
+    accuracy: String,
+    cloud_seed: u64,
+    gather_seed: u64,
+    threads: usize,
+    size: [u64; 2],
+    seconds_sample: f64,
+    seconds_gather: f64,
+    cpu_seconds: f64,
+    /// Of the whole image, where there was something to compare it with.
+    pub relative_rmse: Option<f64>,
+    /// Relative, of the whole image.
+    pub bias: Option<f64>,
+}
+
+const HEADER: &str = "scene,medium,configuration,K,spp,accuracy,cloud seed,gather seed,threads,width,height,\
+                      seconds sample,seconds gather,CPU seconds,relative RMSE,bias\n";
+
+impl Record {
+    pub fn of(shot: &Shot, sampling: &Spent, gathering: &Spent) -> Record {
+        Record {
+            scene: shot.subject.name.clone(),
+            medium: shot.medium.name,
+            configuration: shot.configuration.name,
+            samples: shot.samples,
+            spp: shot.spp,
+            accuracy: shot.configuration.accuracy(),
+            cloud_seed: shot.cloud_seed,
+            gather_seed: shot.gather_seed,
+            threads: shot.threads,
+            size: shot.size,
+            seconds_sample: sampling.wall,
+            seconds_gather: gathering.wall,
+            cpu_seconds: sampling.cpu + gathering.cpu,
+            relative_rmse: None,
+            bias: None,
+        }
+    }
+
+    fn line(&self) -> String {
+        let optional = |x: Option<f64>| x.map_or(String::new(), |x| format!("{x:.5}"));
+        let [width, height] = self.size;
+        // Names may hold a comma, never a quotation mark.
+        format!(
+            "{},{},\"{}\",{},{},{},{},{},{},{width},{height},{:.4},{:.4},{:.2},{},{}\n",
+            self.scene,
+            self.medium,
+            self.configuration,
+            self.samples,
+            self.spp,
+            self.accuracy,
+            self.cloud_seed,
+            self.gather_seed,
+            self.threads,
+            self.seconds_sample,
+            self.seconds_gather,
+            self.cpu_seconds,
+            optional(self.relative_rmse),
+            optional(self.bias),
+        )
+    }
+}
+
+/// The whole table.
+pub fn table(records: &[Record]) -> String {
+    records.iter().fold(HEADER.to_owned(), |text, record| text + &record.line())
+}

@@ -1,0 +1,42 @@
+//! What the tests share: the programs in a temporary folder, glTF files and meshes, random numbers; with the feature
+//! `transport` also statistics with stated false-alarm rates, quadrature, and the two phases as functions from a scene to a
+//! number.
+
+pub mod bench;
+#[cfg(feature = "transport")]
+pub mod chi_square;
+pub mod glb;
+#[cfg(feature = "transport")]
+pub mod half_space;
+#[cfg(feature = "transport")]
+pub mod lit;
+pub mod meshes;
+#[cfg(feature = "transport")]
+pub mod pipeline;
+#[cfg(feature = "transport")]
+pub mod planted;
+#[cfg(feature = "transport")]
+pub mod quadrature;
+pub mod random;
+#[cfg(feature = "transport")]
+pub mod walk;
+#[cfg(feature = "transport")]
+pub mod z_test;
+
+pub use bench::{Bench, Limits, Run, data, program};
+pub use random::Random;
+
+/// How many times more samples and seeds the statistics use than in the fast run.
+pub const EFFORT: u64 = if cfg!(feature = "slow") { 16 } else { 1 };
+
+/// Chance that a correct program fails any of the statistical decisions, were its seeds drawn anew; they are fixed, so
+/// that a test that passed once passes always.
+pub const FALSE_ALARM_RATE: f64 = 1e-3;
+
+/// Statistical decisions in all tests together, at most.
+pub const DECISIONS: f64 = 400.0;
+
+/// The p-value below which one decision fails (Šidák's correction of [`FALSE_ALARM_RATE`] for [`DECISIONS`]).
+pub fn significance() -> f64 {
+    -((-FALSE_ALARM_RATE).ln_1p() / DECISIONS).exp_m1()
+}
