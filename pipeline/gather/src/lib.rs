@@ -5,7 +5,6 @@
 
 mod calibration;
 pub mod counts;
-mod crop;
 mod edge;
 pub mod film;
 mod freedom;
@@ -19,7 +18,6 @@ pub mod renderer;
 pub mod shards;
 mod subsurface;
 
-pub use crop::Crop;
 pub use passes::Passes;
 pub use sums::{Summation, estimator, samples};
 
@@ -37,6 +35,15 @@ pub enum Filter {
     Box,
     /// Its centre.
     Point,
+}
+
+/// A part of an image, pixels: its left column, its upper row, columns, rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    pub x: usize,
+    pub y: usize,
+    pub width: usize,
+    pub height: usize,
 }
 
 /// How to render.
@@ -60,6 +67,17 @@ impl Settings {
     /// What is rendered of the image.
     pub fn part(&self) -> Crop {
         self.crop.unwrap_or(Crop { x: 0, y: 0, width: self.width, height: self.height })
+    }
+}
+
+impl Crop {
+    pub fn pixels(&self) -> usize {
+        self.width * self.height
+    }
+
+    /// Column and row in the whole image of pixel `place` of the part, which are counted row by row.
+    pub fn pixel(&self, place: usize) -> [usize; 2] {
+        [self.x + place % self.width, self.y + place / self.width]
     }
 }
 

@@ -21,7 +21,7 @@ pub struct Block {
 }
 
 /// A BSSRDF of one medium, evaluated on blocks.
-pub trait LaneModel: Send + Sync + 'static {
+pub trait LaneModel: Send + Sync {
     /// The model of `medium`.
     fn new(medium: &Medium) -> Self;
 

@@ -54,7 +54,7 @@ impl Model {
         }
     }
 
-    /// The model of one medium, as an evaluator of blocks of samples in float32.
+    /// The model of one medium, as an evaluator of sixteen samples at a time in float32.
     pub fn lanes(self, medium: &Medium) -> AnyLanes {
         match self {
             Model::DirectionalDipole => AnyLanes::Directional(DirectionalLanes::new(medium)),
