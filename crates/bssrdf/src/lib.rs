@@ -88,6 +88,8 @@ pub enum Model {
 }
 
 impl Model {
+    pub const ALL: [Model; 3] = [Model::DirectionalDipole, Model::BetterDipole, Model::StandardDipole];
+
     /// The name users type.
     pub fn name(self) -> &'static str {
         match self {

@@ -8,13 +8,17 @@ mod files;
 mod medium;
 mod memory;
 mod named;
+mod numbers;
 mod printable;
 mod progress;
 mod rgb;
 mod scene_args;
+mod scene_settings;
+mod seconds;
 mod tables;
 mod threads;
 mod truncated;
+mod words;
 
 pub use count::{count, count_up, parse_count};
 pub use environment::EnvironmentSource;
@@ -22,15 +26,22 @@ pub use failure::{Failure, run};
 pub use files::{Files, file_name, is_same_file};
 pub use medium::{ReadMediumError, is_file, read_medium, scene_medium};
 pub use memory::{Need, available_memory_bytes, peak_memory_bytes, require_memory};
-pub use named::{Thing, Unclear, the_one, word_for};
+pub use named::{Candidate, Unclear, the_one, word_for};
+pub use numbers::parse_relative_error;
 pub use printable::printable;
 pub use progress::Progress;
 pub use rgb::parse_rgb;
 pub use scene_args::SceneArgs;
-pub use tables::{camera_names, camera_table, material_table};
+pub use scene_settings::{SceneSettings, normal_kind};
+pub use seconds::Seconds;
+pub use tables::{camera_names, camera_table, material_names, material_table};
+pub use words::one_of;
 
 use clap::{Args, ValueEnum};
-use std::io::{self, ErrorKind, Write};
+use std::{
+    io::{self, ErrorKind, Write},
+    num::NonZeroUsize,
+};
 
 /// Arguments that every program has.
 #[derive(Args, Clone, Debug)]
@@ -61,12 +72,12 @@ impl Common {
     /// Runs `work` on as many threads as asked for, or as can be started. All parallel work is done inside, so that no
     /// library starts threads of its own.
     pub fn in_pool<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
-        threads::in_pool(self.thread_count(), |line| self.warn(line), work)
+        threads::in_pool(self.thread_count().get(), |line| self.warn(line), work)
     }
 
-    /// Threads that were asked for.
-    pub fn thread_count(&self) -> usize {
-        self.threads.map_or_else(threads::cores, usize::from)
+    /// The number of threads that was asked for.
+    pub fn thread_count(&self) -> NonZeroUsize {
+        self.threads.and_then(|count| NonZeroUsize::new(count.into())).unwrap_or_else(threads::cores)
     }
 
     /// A line for people, on stderr.

@@ -1,6 +1,6 @@
 //! Lists that the programs print.
 
-use crate::{Failure, Thing, printable, scene_medium};
+use crate::{Candidate, Failure, printable, scene_medium};
 use bssrdf::Medium;
 use scene::{Camera, Projection, Scene};
 
@@ -51,10 +51,23 @@ fn position(camera: &Camera) -> String {
 }
 
 /// The cameras of a scene as a word may mean them: by their own name or their node's.
-pub fn camera_names(scene: &Scene) -> Vec<Thing<'_>> {
-    let place = |camera: &Camera| format!(" of node `{}` at {} m", camera.node, position(camera));
-    let cameras = scene.cameras.iter().enumerate();
-    cameras.map(|(index, c)| Thing { index, names: vec![&c.name, &c.node], place: place(c) }).collect()
+pub fn camera_names(scene: &Scene) -> Vec<Candidate<'_>> {
+    scene.cameras.iter().enumerate().map(|(index, camera)| named_camera(index, camera)).collect()
+}
+
+fn named_camera(index: usize, camera: &Camera) -> Candidate<'_> {
+    let detail = format!(" of node `{}` at {} m", camera.node, position(camera));
+    Candidate { index, names: vec![&camera.name, &camera.node], detail }
+}
+
+/// These materials of a scene as a word may mean them: by name, told apart by area.
+pub fn material_names<'a>(scene: &'a Scene, materials: &[u16]) -> Vec<Candidate<'a>> {
+    let areas = scene.area_of_materials();
+    let candidate = |index: usize| {
+        let detail = format!(", {:.4e} m2", areas[index]);
+        Candidate { index, names: vec![&scene.materials[index].name], detail }
+    };
+    materials.iter().map(|material| candidate(usize::from(*material))).collect()
 }
 
 /// The materials of a scene: what `--translucent` and `--medium` may name, how they are taken if nobody says so, how
@@ -62,11 +75,8 @@ pub fn camera_names(scene: &Scene) -> Vec<Thing<'_>> {
 pub fn material_table(scene: &Scene) -> Result<String, Failure> {
     let mut table =
         Table::new(&["index", "name", "kind", "triangles", "area, m2", "medium of the file: sigma_a, sigma_s (1/m)"]);
-    let (mut counts, mut areas) = (vec![0u64; scene.materials.len()], vec![0.0; scene.materials.len()]);
-    for (k, t) in scene.mesh.triangles.iter().enumerate() {
-        counts[usize::from(t.material)] += 1;
-        areas[usize::from(t.material)] += scene.mesh.area(k);
-    }
+    let (mut counts, areas) = (vec![0u64; scene.materials.len()], scene.area_of_materials());
+    scene.mesh.triangles.iter().for_each(|t| counts[usize::from(t.material)] += 1);
     let (lost, translucent) =
         (scene.lost_volumes(), scene.translucent().map_or(Vec::new(), |(materials, _)| materials));
     for (index, material) in scene.materials.iter().enumerate() {

@@ -13,8 +13,8 @@ use std::{
 static POOL: Mutex<Option<(usize, &'static ThreadPool)>> = Mutex::new(None);
 
 /// Cores that this process may use. Environment variables have no say: what a program does is on its command line.
-pub(crate) fn cores() -> usize {
-    std::thread::available_parallelism().map_or(1, NonZeroUsize::get)
+pub(crate) fn cores() -> NonZeroUsize {
+    thread::available_parallelism().unwrap_or(NonZeroUsize::MIN)
 }
 
 /// Runs `work` on a pool of `count` threads. `warn` is told if only fewer can be started.

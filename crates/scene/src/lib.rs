@@ -86,6 +86,14 @@ impl Scene {
         lost.into_iter().collect()
     }
 
+    /// Area of the triangles of each material, m².
+    pub fn area_of_materials(&self) -> Vec<f64> {
+        let mut areas = vec![0.0; self.materials.len()];
+        let triangles = self.mesh.triangles.iter().enumerate();
+        triangles.for_each(|(k, t)| areas[usize::from(t.material)] += self.mesh.area(k));
+        areas
+    }
+
     /// Adds light from all around; a mere color is a constant radiance, W/(m² sr).
     pub fn add_environment(&mut self, environment: impl Into<light::Environment>) {
         let environment = environment.into();

@@ -111,7 +111,7 @@ impl Arguments {
 
     /// Threads for the reading and writing of images.
     pub(crate) fn threads(&self) -> NonZeroUsize {
-        NonZeroUsize::new(self.common.thread_count()).unwrap_or(NonZeroUsize::MIN)
+        self.common.thread_count()
     }
 
     /// Where `--accept` tells what it did.

@@ -38,7 +38,7 @@ use nodes::Placed;
 use primitive::MeshParts;
 use std::{
     collections::{BTreeMap, BTreeSet},
-    path::Path,
+    path::{Path, PathBuf},
 };
 
 /// How to read the numbers of a file.
@@ -80,6 +80,18 @@ impl Scene {
     pub fn import(path: &Path, options: &ImportOptions) -> Result<Scene, SceneError> {
         let document = Document::read(path)?;
         import(&document, options).map_err(|what| SceneError::Invalid { path: path.to_owned(), what })
+    }
+
+    /// The files that a scene consists of: itself, and those in its folder or below that its buffers and images name,
+    /// whether or not they are there or anything uses them.
+    pub fn files_of(path: &Path) -> Result<Vec<PathBuf>, SceneError> {
+        let document = Document::read(path)?;
+        let buffers = document.root.buffers.iter().filter_map(|buffer| buffer.uri.as_ref());
+        let images = document.root.images.iter().filter_map(|image| image.uri.as_ref());
+        let uris = buffers.chain(images).filter(|uri| !uri.starts_with("data:"));
+        let named: BTreeSet<PathBuf> =
+            uris.filter_map(|uri| document.files.borrow().place(uri).ok()).map(|(path, _)| path).collect();
+        Ok(std::iter::once(path.to_owned()).chain(named).collect())
     }
 }
 
