@@ -1,10 +1,10 @@
-//! Lists that the programs print.
+//! Lists of what a scene holds, as the programs print them.
 
 use crate::{Candidate, Failure, printable, scene_medium};
 use bssrdf::Medium;
 use scene::{Camera, Projection, Scene};
 
-/// A table with a header, columns aligned.
+/// Rows of cells, the first of which are headers.
 struct Table(Vec<Vec<String>>);
 
 impl Table {
@@ -12,7 +12,7 @@ impl Table {
         Table(vec![header.iter().map(|s| (*s).to_owned()).collect()])
     }
 
-    /// The lines; the last column is as wide as it is.
+    /// The rows as lines with aligned columns.
     fn text(&self) -> String {
         let width = |c: usize| self.0.iter().map(|row| row[c].chars().count()).max().unwrap_or(0);
         let widths: Vec<usize> = (0..self.0[0].len()).map(width).collect();
@@ -29,7 +29,7 @@ impl Table {
     }
 }
 
-/// The cameras of a scene: what `--camera` may name, and how they look.
+/// The cameras of a scene, which `--camera` may name, with their fields of view and positions.
 pub fn camera_table(scene: &Scene) -> String {
     let mut table = Table::new(&["index", "name", "kind", "field of view", "aspect", "position, m", "node"]);
     for (index, camera) in scene.cameras.iter().enumerate() {
@@ -70,8 +70,8 @@ pub fn material_names<'a>(scene: &'a Scene, materials: &[u16]) -> Vec<Candidate<
     materials.iter().map(|material| candidate(usize::from(*material))).collect()
 }
 
-/// The materials of a scene: what `--translucent` and `--medium` may name, how they are taken if nobody says so, how
-/// large their surfaces are, and the medium that the file gives them.
+/// The materials of a scene, which `--translucent` and `--medium` may name: what each is taken for without these options,
+/// its triangles and area, and the medium that the file gives it.
 pub fn material_table(scene: &Scene) -> Result<String, Failure> {
     let mut table =
         Table::new(&["index", "name", "kind", "triangles", "area, m2", "medium of the file: sigma_a, sigma_s (1/m)"]);
