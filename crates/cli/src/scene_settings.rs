@@ -2,7 +2,7 @@
 
 use crate::{Common, Failure, Files, SceneArgs, environment::EnvironmentSource};
 use formats::cloud::{LightUnit, Normals};
-use scene::{DVec3, ImportOptions, MeshDefects, NormalKind, Scene, light::Environment};
+use scene::{DVec3, ImportOptions, MeshDefects, NormalKind, Scene, SceneError};
 use std::path::PathBuf;
 
 /// The file of a scene, and how to read it: the arguments, with the defaults of those that were left out.
@@ -47,17 +47,16 @@ impl SceneSettings {
     }
 
     /// Reads the scene and its environment, and prints the warnings of the import.
-    pub fn import(&self, common: &Common) -> Result<(Scene, Environment), Failure> {
+    pub fn import(&self, common: &Common) -> Result<Scene, Failure> {
         let options = ImportOptions {
             metres_per_unit: self.metres_per_unit,
             light_unit: of_scene(self.light_unit),
             emission_unit: of_scene(self.emission_unit),
         };
-        let mut scene = Scene::import(&self.path, &options)?;
+        let mut scene = Scene::import(&self.path, &options).map_err(with_option)?;
         self.warn(&scene.warnings, common);
-        let environment = self.environment.read(self.environment_scale, self.environment_rotation, common)?;
-        scene.add_environment(environment.clone());
-        Ok((scene, environment))
+        scene.environment = self.environment.read(self.environment_scale, self.environment_rotation, common)?;
+        Ok(scene)
     }
 
     /// Warns of what the scene's file asks for and the programs do not honor, of colors that the surfaces of translucent
@@ -87,6 +86,13 @@ impl SceneSettings {
     fn warn(&self, warnings: &[String], common: &Common) {
         warnings.iter().for_each(|warning| common.warn(format_args!("{}: {warning}", self.path.display())));
     }
+}
+
+/// The failure of an import, with the option that helps.
+fn with_option(error: SceneError) -> Failure {
+    let is_too_large = matches!(error, SceneError::TooLarge { .. });
+    let failure = Failure::from(error);
+    if is_too_large { Failure::usage(format!("{}; set --metres-per-unit", failure.message)) } else { failure }
 }
 
 /// The unit of the same name in the terms of the importer.

@@ -1,12 +1,12 @@
-//! Files written whole or not at all: a temporary file beside the target, then a rename.
+//! Files that are written whole or not at all: a temporary file beside the target is renamed over it.
 //!
-//! A link is followed, also one to a file that is not there yet: the file that it leads to is replaced, and the link stays
-//! a link. The new file has the permissions of the one that it replaces, and its owner where the system allows that.
-//! Devices (`/dev/null`) are written in place: a rename would replace them. Named pipes and sockets are refused: to open
-//! one can wait for ever.
+//! A link is followed, even to a file that does not exist yet: the file that it leads to is replaced, and the link stays. The
+//! new file has the permissions of the one that it replaces, and its owner where the system allows that. Devices (`/dev/null`)
+//! are written directly, because a rename would replace them. Named pipes and sockets are refused, because opening one can wait
+//! for ever.
 //!
-//! A writer holds a lock on its temporary file. A process that was killed holds none, on this machine or another, so
-//! the next writer of the same target removes what it left; the temporary file of a live process stays.
+//! A writer holds a lock on its temporary file. A killed process holds none, on this machine or another, so that the next writer
+//! of the same target removes its temporary file; that of a live process stays.
 
 use crate::Error;
 use std::{
@@ -24,7 +24,7 @@ use std::{
 };
 use xxhash_rust::xxh3::xxh3_64;
 
-/// Temporary files of this process that are still there.
+/// Temporary files of this process that exist.
 static TEMPORARIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// An output file that is being written. Dropped without [`Output::commit`], it leaves nothing behind.
@@ -36,7 +36,7 @@ pub struct Output {
 }
 
 impl Output {
-    /// Creates the temporary file, so that a target that cannot be written fails before the work starts.
+    /// Creates the temporary file. A target that cannot be written fails here, before the work starts.
     pub fn create(target: &Path) -> Result<Output, Error> {
         check(target)?;
         let fail = |source| Error::write(target, source);
@@ -50,13 +50,13 @@ impl Output {
         Ok(Output { target: target.clone(), temporary: Some(temporary), file: BufWriter::new(file) })
     }
 
-    /// Writes out what is buffered and puts the file in its place.
+    /// Flushes the buffer and renames the file to its target.
     pub fn commit(mut self) -> Result<(), Error> {
         let path = self.target.clone();
         self.finish().map_err(|source| Error::write(&path, source))
     }
 
-    /// Writes out what is buffered, and the path under which it can be read until it is committed.
+    /// Flushes the buffer, and returns the path at which the file can be read until it is committed.
     pub fn written(&mut self) -> Result<&Path, Error> {
         self.settle().map_err(|source| Error::write(&self.target, source))?;
         Ok(self.temporary.as_deref().unwrap_or(&self.target))
@@ -64,7 +64,7 @@ impl Output {
 
     fn finish(&mut self) -> io::Result<()> {
         self.settle()?;
-        self.take_place()
+        self.rename()
     }
 
     /// Writes all bytes to the disk.
@@ -73,15 +73,15 @@ impl Output {
         if self.temporary.is_some() { self.file.get_ref().sync_all() } else { Ok(()) }
     }
 
-    /// Puts a file in its place whose bytes are on the disk.
-    fn take_place(&mut self) -> io::Result<()> {
+    /// Renames the file, whose bytes are on the disk, to its target.
+    fn rename(&mut self) -> io::Result<()> {
         let Some(temporary) = self.temporary.as_ref() else {
             return Ok(());
         };
         fs::rename(temporary, &self.target)?;
         registered().retain(|p| p != temporary);
         self.temporary = None;
-        // The rename itself must survive a power cut; folders that cannot be opened or synced are left to the system.
+        // The rename must survive a power cut. Where a folder cannot be opened or synced, the system decides.
         if let Ok(folder) = File::open(folder_of(&self.target)) {
             folder.sync_all().ok();
         }
@@ -108,18 +108,18 @@ impl Drop for Output {
     }
 }
 
-/// Files of one run that belong together, as an image and its preview. They take their places while no other group does
-/// whose first file lies in the same folder, so that of two runs at once all files are those of one.
+/// Files of one run that belong together, as an image and its preview. They are renamed while no other group is whose first file
+/// lies in the same folder, so that after two simultaneous runs all files are those of one of them.
 #[derive(Debug, Default)]
 pub struct Group(Vec<Output>);
 
 impl Group {
-    /// Adds a file that was written and not committed.
+    /// Adds a file that was written and is not committed yet.
     pub fn add(&mut self, output: Output) {
         self.0.push(output);
     }
 
-    /// Adds a file of these bytes.
+    /// Adds a file with these bytes.
     pub fn write(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Error> {
         let mut output = Output::create(path)?;
         output.write_all(bytes).map_err(|source| Error::write(path, source))?;
@@ -127,22 +127,21 @@ impl Group {
         Ok(())
     }
 
-    /// Puts all files in their places. None is if one cannot be written out.
+    /// Renames all files to their targets, or none if one of them cannot be flushed.
     pub fn commit(mut self) -> Result<(), Error> {
         for output in &mut self.0 {
             output.written()?;
         }
-        let _turn = self.0.first().and_then(|first| wait_for_turn(folder_of(&first.target)));
+        let _lock = self.0.first().and_then(|first| lock_folder(folder_of(&first.target)));
         for output in &mut self.0 {
-            output.take_place().map_err(|source| Error::write(&output.target, source))?;
+            output.rename().map_err(|source| Error::write(&output.target, source))?;
         }
         Ok(())
     }
 }
 
-/// Locks a folder, which is held for as long as some files are renamed. Where there are no locks, or somebody else holds
-/// this one for long, there is no turn to wait for.
-fn wait_for_turn(folder: &Path) -> Option<File> {
+/// Locks a folder while files are renamed. None where the system has no locks, or another process holds this one for long.
+fn lock_folder(folder: &Path) -> Option<File> {
     let file = File::open(folder).ok()?;
     let start = Instant::now();
     while let Err(TryLockError::WouldBlock) = file.try_lock() {
@@ -154,10 +153,10 @@ fn wait_for_turn(folder: &Path) -> Option<File> {
     Some(file)
 }
 
-/// Longest time that a group waits for others.
+/// Longest time that a group waits for another.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// Refuses a target that can be seen not to be writable.
+/// Refuses a target that is visibly not writable.
 pub fn check(target: &Path) -> Result<(), Error> {
     let fail = |why: &str| Err(Error::write(target, io::Error::other(why)));
     match fs::metadata(target) {
@@ -172,24 +171,24 @@ pub fn check(target: &Path) -> Result<(), Error> {
             let file = destination(target).map_err(|source| Error::write(target, source))?;
             match fs::metadata(folder_of(&file)) {
                 Err(source) => Err(Error::write(target, source)),
-                Ok(meta) if !meta.is_dir() => fail("lies in what is no folder"),
+                Ok(meta) if !meta.is_dir() => fail("its parent is not a folder"),
                 Ok(_) => Ok(()),
             }
         }
     }
 }
 
-/// Refuses a target whose folder takes no new file, by making one and removing it again.
+/// Refuses a target whose folder takes no new file: creates one and removes it.
 pub fn probe(target: &Path) -> Result<(), Error> {
     Output::create(target).map(drop)
 }
 
-/// Whether the target is a device, which a rename would replace.
+/// True if the target is a device, which a rename would replace.
 pub fn is_written_in_place(target: &Path) -> bool {
     fs::metadata(target).is_ok_and(|meta| !meta.is_file())
 }
 
-/// The file that a path leads to, whether or not it is there: links are followed.
+/// The file to which a path leads through links, whether or not it exists.
 pub fn destination(path: &Path) -> io::Result<PathBuf> {
     if let Ok(file) = fs::canonicalize(path) {
         return Ok(file);
@@ -201,10 +200,10 @@ pub fn destination(path: &Path) -> io::Result<PathBuf> {
             Err(_) => return Ok(here),
         }
     }
-    Err(io::Error::other("is a link that leads to itself"))
+    Err(io::Error::other("is a link to itself"))
 }
 
-/// Most links from one to the next that are followed, as of the system.
+/// Most links that are followed one after another, as in the kernel.
 const MAX_LINKS: usize = 40;
 
 /// The folder that a file lies in.
@@ -219,9 +218,9 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     output.commit()
 }
 
-/// Removes the temporary files of all outputs in progress and ends the process: what a signal asks for.
+/// Removes the temporary files of all outputs in progress and ends the process, as a signal asks.
 pub fn abandon(exit_code: i32) -> ! {
-    // Held to the end, so that no thread begins another, or says that its own could not be put in its place.
+    // The lock is held to the end, so that no other thread starts a file, or reports that its own cannot be renamed.
     let mut temporaries = registered();
     temporaries.drain(..).for_each(|path| {
         fs::remove_file(path).ok();
@@ -233,20 +232,20 @@ fn registered() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
     TEMPORARIES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A new file beside the target, registered and locked.
+/// Creates a file beside the target, registered and locked.
 fn create_temporary(target: &Path) -> io::Result<(PathBuf, File)> {
     let replaced = fs::metadata(target).ok();
-    // The content of a private file is never readable by others, not even while it is written.
+    // Others must not read the content of a private file, not even while it is written.
     let mode = replaced.as_ref().map_or(0o666, |old| old.permissions().mode() & 0o777);
     loop {
         let path = temporary_name(target)?;
         let file = match OpenOptions::new().write(true).create_new(true).mode(mode).open(&path) {
-            // Of a process with the same number on another machine.
+            // A process with the same number on another machine has it.
             Err(e) if e.kind() == io::ErrorKind::AlreadyExists => continue,
             opened => opened?,
         };
         registered().push(path.clone());
-        // Where there are no locks nothing is ever taken for abandoned.
+        // Where the system has no locks, no file is ever taken for abandoned.
         let taken = matches!(file.try_lock(), Err(TryLockError::WouldBlock));
         if !taken && path.exists() {
             if let Some(old) = &replaced {
@@ -254,7 +253,7 @@ fn create_temporary(target: &Path) -> io::Result<(PathBuf, File)> {
             }
             return Ok((path, file));
         }
-        // Another process took it for abandoned before it was locked, and removes it.
+        // Another process took the file for abandoned before it was locked, and removes it.
         registered().retain(|p| *p != path);
     }
 }
@@ -267,12 +266,12 @@ fn keep_owner_and_mode(file: &File, old: &fs::Metadata) {
     file.set_permissions(fs::Permissions::from_mode(old.permissions().mode() & 0o777)).ok();
 }
 
-/// Removes temporary files of this target that nobody holds. What cannot be removed stays, and harms nobody.
+/// Removes temporary files of this target that no process has locked. Those that cannot be removed stay and do no harm.
 fn remove_abandoned(target: &Path) {
     let Some(name) = target.file_name() else { return };
     let stem = temporary_stem(name);
     for entry in fs::read_dir(folder_of(target)).into_iter().flatten().flatten() {
-        // A pipe of such a name is nobody's temporary file, and to open it would wait for its other end.
+        // A pipe of such a name is no temporary file, and opening it would wait for its other end.
         if is_temporary_of(&stem, &entry.file_name())
             && entry.file_type().is_ok_and(|kind| kind.is_file())
             && let Ok(file) = OpenOptions::new().write(true).open(entry.path())
@@ -283,7 +282,7 @@ fn remove_abandoned(target: &Path) {
     }
 }
 
-/// Whether [`temporary_name`] could have given `found` for a target with this stem.
+/// True if [`temporary_name`] could have made `found` for a target with this stem.
 fn is_temporary_of(stem: &OsStr, found: &OsStr) -> bool {
     let found = found.as_encoded_bytes();
     let numbers = found
@@ -306,14 +305,14 @@ fn temporary_name(target: &Path) -> io::Result<PathBuf> {
     Ok(target.with_file_name(hidden))
 }
 
-/// What temporary files of a target are called after: its name, or a hash of a long one, so that a temporary name is
-/// never longer than what the file system takes.
+/// The stem of the names of a target's temporary files: its name, or a hash of a long one, so that the file system takes the
+/// temporary name.
 fn temporary_stem(name: &OsStr) -> OsString {
     let bytes = name.as_encoded_bytes();
     if bytes.len() <= LONG_NAME { name.to_owned() } else { format!("{:016x}", xxh3_64(bytes)).into() }
 }
 
-/// Names of more bytes are hashed. The shortest limit on names in use is 143 bytes (eCryptfs).
+/// Longer names, in bytes, are hashed. The shortest limit in use is 143 bytes (eCryptfs).
 const LONG_NAME: usize = 100;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! What can go wrong with a file.
+//! Errors of files.
 
 use std::{
     io,
@@ -12,7 +12,7 @@ pub enum Error {
     Read { path: PathBuf, source: io::Error },
     #[error("{}: cannot write: {source}", path.display())]
     Write { path: PathBuf, source: io::Error },
-    /// Not what it should be, or damaged.
+    /// The content is damaged or of another kind.
     #[error("{}: {what}", path.display())]
     Invalid { path: PathBuf, what: String },
 }

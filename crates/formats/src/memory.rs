@@ -1,9 +1,9 @@
-//! Whether there is memory for what a file asks for.
+//! Checks that there is memory for the size that a file states.
 
 use memmap2::MmapMut;
 
-/// Whether the system would grant so many bytes now. It is asked itself: the allocator of a program may end the process
-/// instead of saying no.
+/// Whether the system would grant `bytes` of memory now. The system itself is asked, because a program's allocator may end the
+/// process instead of returning an error.
 pub(crate) fn has_room(bytes: u64) -> bool {
     usize::try_from(bytes).is_ok_and(|bytes| MmapMut::map_anon(bytes.max(1)).is_ok())
 }
@@ -13,7 +13,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_little_is_there_and_all_is_not() {
+    fn little_memory_is_granted_and_all_is_not() {
         assert!(has_room(0) && has_room(1 << 20));
         assert!(!has_room(u64::MAX) && !has_room(1 << 60));
     }

@@ -1,11 +1,18 @@
-//! Unit vectors in four bytes: the octahedral map (Meyer, Süßmuth, Sußner, Stamminger, Greiner 2010; rounding to the
-//! best of four neighbours after Cigolla, Donow, Evangelakos, Mara, McGuire, Meyer 2014).
+//! Unit vectors in four bytes: the octahedral map (Meyer, Süßmuth, Sußner, Stamminger, Greiner 2010, "On floating-point normal
+//! vectors"). The encoder takes the best of the four codes around the exact point (Cigolle, Donow, Evangelakos, Mara, McGuire,
+//! Meyer 2014, "A survey of efficient representations for independent unit vectors").
+//!
+//! ```
+//! use formats::octahedral::{decode, encode};
+//! let direction = glam::DVec3::new(0.6, 0.0, -0.8);
+//! assert!(decode(encode(direction)).angle_between(direction) < 5e-5);
+//! ```
 
 use glam::DVec3;
 
 const STEPS: f64 = i16::MAX as f64;
 
-/// The code whose vector is nearest to the unit vector `v`; within 5·10⁻⁵ rad.
+/// The code whose direction is nearest to the unit vector `v`: it is off by at most 5·10⁻⁵ rad.
 pub fn encode(v: DVec3) -> [i16; 2] {
     let flat = v / (v.x.abs() + v.y.abs() + v.z.abs());
     let (x, y) = if v.z < 0.0 {
@@ -26,7 +33,7 @@ pub fn encode(v: DVec3) -> [i16; 2] {
     best
 }
 
-/// The unit vector of a code; any code gives one.
+/// The unit vector of a code. Every code has one; −32768 reads as −32767.
 pub fn decode(code: [i16; 2]) -> DVec3 {
     let (x, y) = (f64::from(code[0]).max(-STEPS) / STEPS, f64::from(code[1]).max(-STEPS) / STEPS);
     let z = 1.0 - x.abs() - y.abs();

@@ -1,64 +1,38 @@
-//! Pictures of light from all around: OpenEXR or Radiance HDR, told apart by their first bytes.
+//! Environment maps, from OpenEXR or Radiance HDR files; the first bytes tell which.
 
 use crate::{
     Error, Image, ImageError,
     image::decode::{Outline, max_unpacked, outline, outline_of_file},
-    memory::has_room,
 };
+use pixels::{PIXEL_BYTES, black, check_size};
+pub use pixels::{Panorama, PanoramaSize};
 use std::{fs::File, io::Read, path::Path};
 use window::Overlap;
 
 mod color;
+mod pixels;
 mod radiance;
 mod window;
 
-/// Pixels of linear Rec. 709 red, green and blue; a number that is no radiance in the file is still in it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Panorama {
-    /// Pixels per row.
-    pub width: usize,
-    /// Rows.
-    pub height: usize,
-    /// Row after row, top row first.
-    pub pixels: Vec<[f32; 3]>,
-    /// What the picture differs in from the numbers of the file, a sentence each.
-    pub warnings: Vec<String>,
-}
-
-/// What the header of a picture says about its size.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PanoramaSize {
-    /// Pixels per row.
-    pub width: usize,
-    /// Rows.
-    pub height: usize,
-    /// Most bytes that [`Panorama::read`] fills at a time.
-    pub reading_bytes: u64,
-}
-
-/// Most pixels of a picture.
-const MAX_PIXELS: usize = 1 << 27;
-/// Bytes of a pixel.
-const PIXEL_BYTES: u64 = 12;
 /// Bytes of a file in which the header of an HDR picture ends.
 const START: u64 = 1 << 20;
 
 impl Panorama {
     /// Reads a file.
     ///
-    /// Of OpenEXR, the display window is the picture: black where the data window has no pixels, without those that it
-    /// has beyond. Colors of other `chromaticities`, or of other `PRIMARIES` of an HDR file, become Rec. 709, adapted to
-    /// its white (Bradford); negative channels of colors outside of it become 0 with a warning. `R`, `G` and `B` are
-    /// taken as they are beside an alpha channel, that is over black. `whiteLuminance`, `pixelAspectRatio`, `PIXASPECT` and
-    /// `VIEW` change nothing; exposures and color corrections of an HDR file are undone. What has another
-    /// projection or color model is refused.
+    /// The display window of an OpenEXR file is the picture: it is black where the data window has no pixels, and pixels
+    /// outside it are dropped. Colors with other `chromaticities`, or other `PRIMARIES` of an HDR file, are converted to
+    /// Rec. 709 and adapted to its white (Bradford); negative channels of colors outside its gamut become 0, with a warning.
+    /// `R`, `G` and `B` beside an alpha channel are taken over black. `whiteLuminance`, `pixelAspectRatio`, `PIXASPECT` and
+    /// `VIEW` are ignored. Exposures and color corrections of an HDR file are undone. Other projections and color models are
+    /// refused.
     pub fn read(path: &Path) -> Result<Panorama, Error> {
         Panorama::size(path)?;
         let bytes = std::fs::read(path).map_err(|source| Error::read(path, source))?;
         Panorama::decode(&bytes).map_err(|what| Error::invalid(path, what))
     }
 
-    /// Reads the header of a file; a picture of too many pixels is refused.
+    /// Reads the header of a file. A picture with too many pixels is refused.
     pub fn size(path: &Path) -> Result<PanoramaSize, Error> {
         let file = std::fs::metadata(path).map_err(|source| Error::read(path, source))?;
         if !file.is_file() {
@@ -93,15 +67,15 @@ fn of_open_exr(error: ImageError) -> String {
     }
 }
 
-/// The size of an OpenEXR picture, whose pixels are not read yet.
+/// The size of an OpenEXR picture from its header.
 fn size(outline: &Outline, length: u64) -> Result<PanoramaSize, String> {
     if outline.is_cube {
-        return Err("envmap: it is a cube; convert it to latitude and longitude (`exrenvmap -l`)".into());
+        return Err("envmap: the map is a cube; convert it to latitude and longitude (`exrenvmap -l`)".into());
     }
     let [width, height] = outline.display.size;
     [outline.data.size, outline.display.size].into_iter().try_for_each(check_size)?;
     let bytes = PIXEL_BYTES.saturating_mul(width as u64).saturating_mul(height as u64);
-    // A few bytes could ask for much black.
+    // A short file could state a large black display window.
     if bytes / 3 > max_unpacked(length) {
         return Err(format!(
             "{width} x {height} pixels of display window are more than a file of {length} bytes can hold"
@@ -109,20 +83,6 @@ fn size(outline: &Outline, length: u64) -> Result<PanoramaSize, String> {
     }
     Overlap::of(outline)?;
     Ok(PanoramaSize { width, height, reading_bytes: outline.dimensions.reading_bytes.saturating_add(bytes) })
-}
-
-fn check_size([width, height]: [usize; 2]) -> Result<(), String> {
-    match width.checked_mul(height) {
-        Some(1..=MAX_PIXELS) => Ok(()),
-        _ => Err(format!("{width} x {height} pixels; scale the picture down to at most {MAX_PIXELS}")),
-    }
-}
-
-/// So many black pixels, if there is memory for them.
-fn black(width: usize, height: usize) -> Result<Vec<[f32; 3]>, String> {
-    let room = has_room(PIXEL_BYTES.saturating_mul((width * height) as u64));
-    let scarce = || format!("not enough memory for {width} x {height} pixels; scale the picture down");
-    room.then(|| vec![[0.0; 3]; width * height]).ok_or_else(scarce)
 }
 
 fn from_image(image: &Image, outline: &Outline) -> Result<Panorama, String> {
@@ -138,25 +98,25 @@ fn from_image(image: &Image, outline: &Outline) -> Result<Panorama, String> {
     let mut picture = Panorama { width, height, pixels, warnings: shown.warnings(outline) };
     if let Some(stated) = outline.chromaticities {
         let matrix = color::to_rec_709(stated.map(f64::from)).map_err(|e| format!("chromaticities: {e}"))?;
-        let grey = planes[0].as_ptr() == planes[1].as_ptr();
-        if let Some(matrix) = matrix.filter(|_| !grey) {
+        let gray = planes[0].as_ptr() == planes[1].as_ptr();
+        if let Some(matrix) = matrix.filter(|_| !gray) {
             color::convert(&mut picture, matrix);
         }
     }
     Ok(picture)
 }
 
-/// `R`, `G` and `B`, or `Y` alone, which is all three.
+/// The planes `R`, `G` and `B`, or `Y` three times.
 fn planes(image: &Image) -> Result<[&[f32]; 3], String> {
     let has = |name: &str| image.channel(name).is_some();
     if ["X", "Y", "Z"].into_iter().all(has) && !has("R") {
-        return Err("channels: X, Y and Z are a color model that is not read; save R, G and B".into());
+        return Err("channels: X, Y and Z are a color model that is not supported; save R, G and B".into());
     }
-    let grey = !["R", "G", "B", "RY", "BY"].into_iter().any(has);
-    let plane = |name: &str| image.channel(if grey { "Y" } else { name });
+    let gray = !["R", "G", "B", "RY", "BY"].into_iter().any(has);
+    let plane = |name: &str| image.channel(if gray { "Y" } else { name });
     let (Some(r), Some(g), Some(b)) = (plane("R"), plane("G"), plane("B")) else {
         let names: Vec<&str> = image.channels.iter().map(|c| c.name.as_str()).collect();
-        return Err(format!("channels: R, G and B, or Y, are needed; it has {}", names.join(", ")));
+        return Err(format!("channels: R, G and B, or Y, are needed; the file has {}", names.join(", ")));
     };
     Ok([r, g, b])
 }

@@ -3,9 +3,8 @@
 use crate::{Error, atomic::Output, cloud::Cloud};
 use std::{io::Write, path::Path};
 
-/// Writes position (m), normal, direction to the light and flux (W) of every stored sample to a file, which is left to be
-/// committed. Positions are those in the world, or relative to [`crate::cloud::Meta::exchange_origin_m`], which a comment of
-/// the header then states.
+/// Writes position (m), normal, direction to the light and flux (W) of every stored sample; the caller commits the file.
+/// Positions are relative to [`crate::cloud::Meta::exchange_origin_m`], which a comment of the header states unless it is 0.
 pub fn write_ply(path: &Path, cloud: &Cloud) -> Result<Output, Error> {
     let mut output = Output::create(path)?;
     let fail = |source| Error::write(path, source);

@@ -18,7 +18,7 @@ fn value(channel: usize, x: usize, y: usize) -> f32 {
     ((x / 4 + y / 8 + channel) % 9) as f32 * 0.25
 }
 
-/// Float, half and uint; multiples of a quarter, which even PXR24 keeps.
+/// Samples of float, half and uint: multiples of a quarter, which even PXR24 keeps.
 #[track_caller]
 fn assert_pixels(image: &Image, prefix: &str) {
     for (name, channel, scale) in [("R", 0, 1.0), ("G", 1, 1.0), ("id", 2, 4.0)] {
@@ -40,7 +40,7 @@ fn lossless_flat_files_are_read_exactly() {
     }
 }
 
-/// A scan line part and one of tiles at several resolutions.
+/// One part of scan lines, and one of tiles at several resolutions.
 #[test]
 fn parts_are_layers() {
     let image = Image::read(&path("parts")).unwrap();

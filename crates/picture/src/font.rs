@@ -1,24 +1,25 @@
-//! Letters of five by seven dots.
+//! A font of five by seven dots.
 
-/// Pixels of a dot's side.
+/// Side of a dot, pixels.
 const DOT: usize = 2;
-/// From letter to letter, pixels.
+/// Advance from letter to letter, pixels.
 pub const ADVANCE: usize = 6 * DOT;
-/// From line to line, pixels.
+/// Advance from line to line, pixels.
 pub const LINE: usize = 9 * DOT;
 
-/// The pixels of a line of text that lie within `width`, from its upper left corner.
+/// The pixels of a line of text, relative to its upper left corner, with as many letters as fit `width` pixels.
 pub fn dots(text: &str, width: usize) -> impl Iterator<Item = (usize, usize)> {
     let letters = text.chars().take(width / ADVANCE).enumerate();
-    letters.flat_map(|(place, letter)| {
+    letters.flat_map(|(column, letter)| {
         let rows = glyph(letter);
         let all = (0..7 * DOT).flat_map(|y| (0..5 * DOT).map(move |x| (x, y)));
         let set = all.filter(move |(x, y)| rows[y / DOT] >> (4 - x / DOT) & 1 == 1);
-        set.map(move |(x, y)| (place * ADVANCE + x, y))
+        set.map(move |(x, y)| (column * ADVANCE + x, y))
     })
 }
 
-/// Rows from top to bottom, the leftmost dot in the bit of 16. There are small letters only; what there is not is a box.
+/// Rows of a glyph from top to bottom; the bit of 16 is the leftmost dot. There are lower-case letters only, and a box for unknown
+/// ones.
 fn glyph(letter: char) -> [u8; 7] {
     let small = letter.to_ascii_lowercase();
     let known = GLYPHS.iter().find(|(name, _)| *name == small);

@@ -1,4 +1,4 @@
-//! A picture: sRGB, eight bits.
+//! Pictures of eight-bit sRGB.
 
 use color::srgb;
 use std::{
@@ -8,17 +8,17 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Why a picture cannot be used.
+/// A picture that cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub enum PictureError {
-    /// The operating system refused.
+    /// The system cannot read the file.
     #[error("{}: cannot read: {source}", path.display())]
     Read { path: PathBuf, source: std::io::Error },
-    /// Another format, or damaged.
-    #[error("{}: not a PNG picture that can be read: {source}", path.display())]
+    /// The file has another format or is damaged.
+    #[error("{}: not a readable PNG picture: {source}", path.display())]
     Decode { path: PathBuf, source: png::DecodingError },
-    /// Grey, with alpha, or of other depth.
-    #[error("{}: not red, green and blue of 8 bits; write it with `gather --preview`", .0.display())]
+    /// The picture is gray, has alpha, or has another depth.
+    #[error("{}: not red, green and blue of 8 bits", .0.display())]
     Kind(PathBuf),
 }
 
@@ -39,7 +39,7 @@ impl Picture {
         Picture { width, height, pixels: vec![color; width * height] }
     }
 
-    /// Reads a PNG file; the decoder's own limit bounds its memory.
+    /// Reads a PNG file. The limit of the decoder bounds its memory.
     pub fn read(path: &Path) -> Result<Picture, PictureError> {
         let file = File::open(path).map_err(|source| PictureError::Read { path: path.into(), source })?;
         let fail = |source| PictureError::Decode { path: path.into(), source };
@@ -55,7 +55,7 @@ impl Picture {
         Ok(Picture { width, height, pixels })
     }
 
-    /// As large as fits a square of `side` pixels. Each pixel is the mean light of those that it replaces.
+    /// The picture scaled to fit a square of `side` pixels. Each pixel has the mean light of those that it replaces.
     pub fn fit(&self, side: usize) -> Picture {
         let longest = self.width.max(self.height);
         let scaled = |n: usize| (n * side / longest).max(1);
@@ -73,21 +73,21 @@ impl Picture {
         Picture { width, height, pixels }
     }
 
-    /// Draws `other` with its upper left corner at (`left`, `top`); what does not fit is left out.
-    pub fn place(&mut self, other: &Picture, left: usize, top: usize) {
+    /// Draws `other` with its upper left corner at (`left`, `top`), clipped to this picture.
+    pub fn draw(&mut self, other: &Picture, left: usize, top: usize) {
         for (k, color) in other.pixels.iter().enumerate() {
             self.dot(left + k % other.width, top + k / other.width, *color);
         }
     }
 
-    /// Sets one pixel, if there is such a one.
+    /// Sets one pixel, if it lies in the picture.
     pub fn dot(&mut self, x: usize, y: usize, color: [u8; 3]) {
         if x < self.width && y < self.height {
             self.pixels[y * self.width + x] = color;
         }
     }
 
-    /// Fills a rectangle; what lies outside the picture is left out.
+    /// Fills a rectangle, clipped to the picture.
     pub fn fill(&mut self, columns: Range<usize>, rows: Range<usize>, color: [u8; 3]) {
         let columns = columns.start.min(self.width)..columns.end.min(self.width);
         for row in rows.start.min(self.height)..rows.end.min(self.height) {
@@ -95,7 +95,7 @@ impl Picture {
         }
     }
 
-    /// The picture as a PNG file, with texts of Latin-1 by their keywords.
+    /// The picture as a PNG file, with texts in Latin-1 by their keywords.
     pub fn encode(&self, pack: png::Compression, texts: &[(&str, &str)]) -> Result<Vec<u8>, png::EncodingError> {
         let mut file = Vec::new();
         let mut encoder = png::Encoder::new(&mut file, self.width as u32, self.height as u32);
@@ -116,15 +116,17 @@ impl Picture {
 mod tests {
     use super::*;
 
-    /// Half the light of white is 188 in sRGB, not 128. Seen to catch: a mean of the bytes.
+    /// Half the light of white is 188 in sRGB, not 128.
+    ///
+    /// Seen to catch: a mean of the bytes.
     #[test]
-    fn black_and_white_become_the_grey_of_half_the_light() {
+    fn black_and_white_become_the_gray_of_half_the_light() {
         let pixels = vec![[0; 3], [255; 3], [255; 3], [0; 3]];
         let small = Picture { width: 2, height: 2, pixels }.fit(1);
         assert_eq!(small, Picture::new(1, 1, [188; 3]));
     }
 
-    /// Planted and caught: rows and columns exchanged, no end at the border.
+    /// Seen to catch: rows and columns exchanged, no end at the border.
     #[test]
     fn a_rectangle_ends_at_the_border() {
         let mut picture = Picture::new(3, 2, [0; 3]);

@@ -1,37 +1,35 @@
 //! What can be wrong with a scene or a view.
 
-use crate::{
-    Scene,
-    unhonoured::{quoted, rest},
-};
-use std::{collections::BTreeMap, path::PathBuf};
+use crate::unhonoured::{quoted, rest};
+use std::path::PathBuf;
 
-/// A scene or view that cannot be used. The message names the file and the field and, where there is one, the way out.
+/// A scene or view that cannot be used. The message names the file and the field and, where the file can be mended, how.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     #[error("{}: {source}", path.display())]
     Read { path: PathBuf, source: std::io::Error },
     #[error("{}: {what}", path.display())]
     Invalid { path: PathBuf, what: String },
+    #[error("{}: the mesh is too large for float32 coordinates", path.display())]
+    TooLarge { path: PathBuf },
 }
 
-/// No surface that the file marks as a volume has a triangle left. The message names them, why, and the way out.
+/// No surface that the file marks as a volume has a triangle left. The message names the materials and the reason.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("no surface that the file marks as a volume is left ({names}): {why}, or say --translucent NAME")]
+#[error("no surface that the file marks as a volume is left ({names}): {why}")]
 pub struct LostVolumes {
     names: String,
     why: String,
 }
 
 impl LostVolumes {
-    /// Of these materials, one at least.
-    pub(crate) fn new(scene: &Scene, lost: &[u16]) -> LostVolumes {
-        const NAMED: usize = 3;
-        let names: Vec<String> =
-            lost.iter().take(NAMED).map(|k| quoted(&scene.materials[usize::from(*k)].name)).collect();
-        let names = format!("{}{}", names.join(", "), rest(lost.len() - names.len()));
-        let sum = |counts: &BTreeMap<u16, u64>| lost.iter().filter_map(|k| counts.get(k)).sum::<u64>();
-        let (count, rounded) = (sum(&scene.degenerate_triangles), sum(&scene.rounded_triangles));
+    /// The number of names that the message has.
+    const NAMED: usize = 3;
+
+    /// The materials of these names, at least one, lost `count` triangles without area, `rounded` of them by rounding.
+    pub(crate) fn new(names: &[&str], count: u64, rounded: u64) -> LostVolumes {
+        let first: Vec<String> = names.iter().take(Self::NAMED).map(|name| quoted(name)).collect();
+        let names = format!("{}{}", first.join(", "), rest(names.len() - first.len()));
         let why = match (count, rounded) {
             (0, _) => "it has no triangles; give it some".into(),
             (_, 0) => format!("all {count} triangles have no area (scale 0?); repair the mesh and export again"),

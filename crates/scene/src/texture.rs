@@ -1,19 +1,19 @@
-//! Pictures on surfaces: eight bits of sRGB as files have them, looked up in linear light.
+//! Textures: pictures of eight-bit sRGB, interpolated in linear light.
 
 use color::srgb;
 use glam::{DVec3, DVec4};
 use std::sync::{Arc, LazyLock};
 
-/// A decoded picture. Its first row is the top one, where `v` is 0.
+/// A decoded picture. `v` is 0 at the top of its first row.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Picture {
     /// Texels per row.
     pub width: usize,
-    /// Red, green and blue in sRGB, and alpha, row after row.
+    /// Red, green and blue as sRGB codes, and alpha, row after row.
     pub texels: Vec<[u8; 4]>,
 }
 
-/// What there is beyond a picture's edges.
+/// How a picture continues beyond its edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wrap {
     Repeat,
@@ -21,14 +21,14 @@ pub enum Wrap {
     Clamp,
 }
 
-/// A picture and how it is laid on surfaces.
+/// A picture and its sampler.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Texture {
-    /// Textures that differ in the rest may share it.
+    /// Textures may share a picture.
     pub picture: Arc<Picture>,
-    /// Along `u` and `v`.
+    /// Wrap modes along `u` and `v`.
     pub wrap: [Wrap; 2],
-    /// The nearest texel is taken instead of the mean of the four around.
+    /// True for the nearest texel instead of bilinear interpolation.
     pub nearest: bool,
 }
 
@@ -36,8 +36,8 @@ pub struct Texture {
 static LINEAR: LazyLock<[f64; 256]> = LazyLock::new(|| std::array::from_fn(|code| srgb::decode_byte(code as u8)));
 
 impl Wrap {
-    /// The texel that stands for `index` of so many.
-    fn place(self, index: i64, count: i64) -> i64 {
+    /// The index of the texel, of `count`, that `index` is mapped to.
+    fn texel(self, index: i64, count: i64) -> i64 {
         match self {
             Wrap::Repeat => index.rem_euclid(count),
             Wrap::Clamp => index.clamp(0, count - 1),
@@ -57,7 +57,7 @@ impl Texture {
         if self.nearest {
             return self.texel(x.floor() as i64, y.floor() as i64);
         }
-        // The centre of a texel is half a texel away from its edges.
+        // The centre of a texel is half a texel from its edges.
         let [x, y] = [x - 0.5, y - 0.5];
         let [left, top] = [x.floor(), y.floor()];
         let row = |j: i64| {
@@ -69,7 +69,7 @@ impl Texture {
 
     fn texel(&self, i: i64, j: i64) -> DVec4 {
         let Picture { width, texels } = &*self.picture;
-        let [x, y] = [self.wrap[0].place(i, *width as i64), self.wrap[1].place(j, (texels.len() / width) as i64)];
+        let [x, y] = [self.wrap[0].texel(i, *width as i64), self.wrap[1].texel(j, (texels.len() / width) as i64)];
         let [r, g, b, a] = texels[y as usize * width + x as usize];
         DVec3::from_array([r, g, b].map(|c| LINEAR[c as usize])).extend(f64::from(a) / 255.0)
     }
@@ -79,13 +79,13 @@ impl Texture {
 mod tests {
     use super::*;
 
-    /// Red counts texels along a row, green rows.
+    /// A texture whose red is the column and whose green is the row.
     fn texture(wrap: Wrap, nearest: bool) -> Texture {
         let texels = (0..6).map(|k| [k % 3, k / 3, 0, 51 * k]).collect();
         Texture { picture: Arc::new(Picture { width: 3, texels }), wrap: [wrap; 2], nearest }
     }
 
-    /// Planted: `v` upwards; the mirror with the edge texel there once; the remainder with the sign of the number.
+    /// Seen to catch: `v` upwards; a mirror that does not repeat the edge texel; a remainder with the sign of the index.
     #[test]
     fn beyond_the_edges() {
         let rows = [
@@ -105,7 +105,7 @@ mod tests {
         }
     }
 
-    /// Planted: without the half texel.
+    /// Seen to catch: the half texel left out.
     #[test]
     fn between_texels_light_is_linear() {
         let texture = texture(Wrap::Clamp, false);

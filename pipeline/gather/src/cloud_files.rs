@@ -4,7 +4,7 @@ use crate::settings::Request;
 use cli::{Failure, SceneSettings};
 use formats::cloud::{Cloud, SampledMaterial};
 use gather::shards;
-use scene::{MeshDefects, Scene, light::Environment};
+use scene::{MeshDefects, Scene};
 use std::{fmt::Display, num::NonZeroUsize, path::PathBuf};
 
 /// The open clouds of a request, at least one, which are gathered as one.
@@ -44,9 +44,9 @@ impl CloudFiles {
     }
 
     /// Refuses clouds that were not sampled from this scene, read in this way, and says what differs.
-    pub fn check_fit(&self, scene: &Scene, environment: &Environment, request: &Request) -> Result<(), Failure> {
+    pub fn check_fit(&self, scene: &Scene, request: &Request) -> Result<(), Failure> {
         let (how, options) = (&request.scene, &self.clouds[0].meta().options);
-        if let Some(differs) = self.difference(scene, environment, how) {
+        if let Some(differs) = self.difference(scene, how) {
             let (cloud, scene) = (self.paths[0].display(), how.path.display());
             let message = format!("{cloud}: this cloud is not of {scene}: {differs}; sample the scene again");
             return Err(Failure::usage(message));
@@ -58,7 +58,7 @@ impl CloudFiles {
     }
 
     /// What differs between the first cloud, which stands for all, and the scene.
-    fn difference(&self, scene: &Scene, environment: &Environment, how: &SceneSettings) -> Option<String> {
+    fn difference(&self, scene: &Scene, how: &SceneSettings) -> Option<String> {
         let meta = self.clouds[0].meta();
         let options = &meta.options;
         let option = |name: &str, here: &dyn Display, there: &dyn Display| {
@@ -72,7 +72,7 @@ impl CloudFiles {
             .or_else(|| option("--emission-unit", &how.emission_unit, &options.emission_unit))
             .or_else(|| (scene.geometry_digest() != meta.geometry).then(|| "its mesh or materials differ".into()))
             .or_else(|| meta.materials.iter().any(renamed).then(|| "its materials differ".into()))
-            .or_else(|| (scene.light_digest != meta.lights).then(|| "its lights differ".into()))
-            .or_else(|| option("--environment", &environment.identity(), &options.environment))
+            .or_else(|| (scene.light_digest() != meta.lights).then(|| "its lights differ".into()))
+            .or_else(|| option("--environment", &scene.environment.identity(), &options.environment))
     }
 }

@@ -3,7 +3,7 @@
 use crate::{counts::Counts, crop::Crop, estimator::Estimator, film::Pixel};
 use bssrdf::{Medium, Model};
 use formats::cloud::Cloud;
-use scene::{Camera, NormalKind, Rays, Scene, light::Environment};
+use scene::{Camera, NormalKind, Rays, Scene};
 
 /// How paths are spread over a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,8 +50,6 @@ pub struct Settings {
     pub estimator: Estimator,
     pub model: Model,
     pub normals: NormalKind,
-    /// The environment that escaping rays see.
-    pub environment: Environment,
     pub max_depth: u32,
     pub seed: u64,
 }

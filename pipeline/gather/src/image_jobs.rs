@@ -37,9 +37,9 @@ pub struct ImageJob {
 /// All images of a request. Refuses those that cannot be rendered, before any work is done.
 pub fn image_jobs(request: &Request, inputs: &Inputs) -> Result<Vec<ImageJob>, Failure> {
     let jobs = match viewpoints(request, &inputs.scene, || inputs.middle())? {
-        Viewpoints::One(viewpoint) => turntable(request, inputs, &viewpoint)?,
+        Viewpoints::One(viewpoint) => turntable(request, &viewpoint)?,
         Viewpoints::List(views) => {
-            views.into_iter().enumerate().map(|(k, view)| listed(request, inputs, k, view)).collect::<Result<_, _>>()?
+            views.into_iter().enumerate().map(|(k, view)| listed(request, k, view)).collect::<Result<_, _>>()?
         }
     };
     warn_of_aspects(&jobs, &request.common);
@@ -48,8 +48,8 @@ pub fn image_jobs(request: &Request, inputs: &Inputs) -> Result<Vec<ImageJob>, F
 }
 
 /// The images of one camera: one, or as many as a turntable has steps.
-fn turntable(request: &Request, inputs: &Inputs, viewpoint: &Viewpoint) -> Result<Vec<ImageJob>, Failure> {
-    let (count, settings) = (request.orbit.unwrap_or(1), settings(request, inputs, viewpoint)?);
+fn turntable(request: &Request, viewpoint: &Viewpoint) -> Result<Vec<ImageJob>, Failure> {
+    let (count, settings) = (request.orbit.unwrap_or(1), settings(request, viewpoint)?);
     let job = |index: u32| {
         let degrees = 360.0 * f64::from(index) / f64::from(count);
         let camera = turned(&viewpoint.camera, viewpoint.target, degrees);
@@ -60,9 +60,9 @@ fn turntable(request: &Request, inputs: &Inputs, viewpoint: &Viewpoint) -> Resul
 }
 
 /// The image of a view in a list.
-fn listed(request: &Request, inputs: &Inputs, index: usize, view: Viewpoint) -> Result<ImageJob, Failure> {
+fn listed(request: &Request, index: usize, view: Viewpoint) -> Result<ImageJob, Failure> {
     let tag = tag(view.name.as_deref(), index);
-    let settings = settings(request, inputs, &view).map_err(|e| e.within(label(&tag)))?;
+    let settings = settings(request, &view).map_err(|e| e.within(label(&tag)))?;
     Ok(ImageJob { camera: view.camera, settings, degrees: 0.0, argument: view.argument, tag: Some(tag) })
 }
 
@@ -85,7 +85,7 @@ pub fn image_paths(names: &ImageNames) -> Result<Vec<PathBuf>, Failure> {
 }
 
 /// How to render the image of a camera.
-fn settings(request: &Request, inputs: &Inputs, viewpoint: &Viewpoint) -> Result<Settings, Failure> {
+fn settings(request: &Request, viewpoint: &Viewpoint) -> Result<Settings, Failure> {
     let (width, height) = size(request, viewpoint)?;
     Ok(Settings {
         width,
@@ -96,7 +96,6 @@ fn settings(request: &Request, inputs: &Inputs, viewpoint: &Viewpoint) -> Result
         estimator: request.estimator,
         model: request.model,
         normals: cli::normal_kind(request.scene.normals),
-        environment: inputs.environment.clone(),
         max_depth: request.max_depth,
         seed: request.common.seed,
     })

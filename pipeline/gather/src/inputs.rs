@@ -9,14 +9,13 @@ use bssrdf::Medium;
 use cli::{Failure, Files, is_file};
 use formats::cloud::Cloud;
 use gather::shards;
-use scene::{DVec3, MeshDefects, Rays, Scene, light::Environment};
+use scene::{DVec3, MeshDefects, Rays, Scene};
 use std::path::PathBuf;
 
 /// What images are made from, except for the camera.
 pub struct Inputs {
     pub cloud_files: CloudFiles,
     pub scene: Scene,
-    pub environment: Environment,
     /// The medium of each sampled material, in their order.
     pub media: Vec<Medium>,
     /// Defects of the sampled surfaces.
@@ -28,14 +27,14 @@ impl Inputs {
     /// scene's file names are declared as they become known.
     pub fn read(request: &Request, files: &mut Files) -> Result<Inputs, Failure> {
         let cloud_files = CloudFiles::open(&request.clouds)?;
-        let (mut scene, environment) = import(request)?;
+        let mut scene = import(request)?;
         scene.files.iter().try_for_each(|path| files.reads("a file that SCENE names", path))?;
-        cloud_files.check_fit(&scene, &environment, request)?;
+        cloud_files.check_fit(&scene, request)?;
         let (sampled, defects) = (shards::materials(cloud_files.clouds()), cloud_files.defects());
         let is_sampled = |material| sampled.iter().any(|m| m.index == material);
         request.scene.check_mesh(&mut scene, is_sampled, defects, &request.common)?;
         let media = media::assign(&request.media, sampled, &scene.materials)?;
-        Ok(Inputs { cloud_files, scene, environment, media, defects })
+        Ok(Inputs { cloud_files, scene, media, defects })
     }
 
     pub fn clouds(&self) -> &[Cloud] {
@@ -67,7 +66,7 @@ impl Inputs {
 }
 
 /// Reads SCENE; says so if it was left out after several clouds.
-fn import(request: &Request) -> Result<(Scene, Environment), Failure> {
+fn import(request: &Request) -> Result<Scene, Failure> {
     let path = &request.scene.path;
     request.scene.import(&request.common).map_err(|failure| match Cloud::open(path) {
         Ok(_) => Failure::usage(format!("{}: this is a cloud; give SCENE after all clouds", path.display())),

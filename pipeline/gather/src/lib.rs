@@ -10,7 +10,7 @@
 //! ```
 //! use bssrdf::Model;
 //! use gather::{Filter, Input, Settings, estimator::Estimator, render};
-//! use scene::{DVec3, ImportOptions, LightUnit, NormalKind, Rays, Scene};
+//! use scene::{ImportOptions, LightUnit, NormalKind, Rays, Scene};
 //!
 //! let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/scenes/slab.glb");
 //! let unit = LightUnit::Radiometric;
@@ -26,7 +26,6 @@
 //!     estimator: Estimator::Exhaustive,
 //!     model: Model::DirectionalDipole,
 //!     normals: NormalKind::Shading,
-//!     environment: DVec3::ONE.into(),
 //!     max_depth: 16,
 //!     seed: 0,
 //! };

@@ -28,7 +28,7 @@ fn citation(medium: &Medium) -> String {
 
 /// Prints the cameras or the materials of a scene, or both.
 pub fn scene(lists: &SceneLists) -> Result<(), Failure> {
-    let (scene, _) = lists.scene.import(&lists.common)?;
+    let scene = lists.scene.import(&lists.common)?;
     let mut text = String::new();
     if lists.cameras {
         text += &camera_table(&scene);

@@ -89,7 +89,7 @@ impl Facts<'_> {
             s.filter.name(),
             s.max_depth,
             s.seed,
-            s.environment.identity(),
+            self.inputs.scene.environment.identity(),
             self.request.scene.normals,
         )
     }

@@ -19,7 +19,7 @@ fn main() {
     let arguments = Arguments::parse();
     cli::run("sample-surface", || {
         match Task::of(arguments)? {
-            Task::ListMaterials { scene, common } => cli::print(&material_table(&scene.import(&common)?.0)?)?,
+            Task::ListMaterials { scene, common } => cli::print(&material_table(&scene.import(&common)?)?)?,
             Task::Sample(request) => sample(&request)?,
         }
         Ok(0)

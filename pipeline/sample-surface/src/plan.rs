@@ -72,7 +72,7 @@ pub struct Plan {
 impl Plan {
     /// Plans to sample these surfaces.
     pub fn new(scene: &Scene, settings: &Settings, surfaces: Surfaces) -> Result<Plan, SampleError> {
-        if scene.lights.is_empty() {
+        if scene.lights().next().is_none() {
             return Err(SampleError::NoLight);
         }
         surfaces.check()?;
@@ -80,7 +80,7 @@ impl Plan {
         let mut hasher = blake3::Hasher::new();
         hasher.update(&version().to_le_bytes());
         hasher.update(&geometry);
-        hasher.update(&scene.light_digest);
+        hasher.update(&scene.light_digest());
         hasher.update(&settings.samples.to_le_bytes());
         let options = serde_json::json!({ "options": &settings.options, "materials": &surfaces.materials });
         hasher.update(options.to_string().as_bytes());

@@ -5,9 +5,10 @@ use crate::{
     choice::TriangleChoice,
     error::SampleError,
     hierarchy,
-    pattern::{Numbers, Pattern, Place},
+    pattern::{Numbers, Pattern, SamplePoint},
     plan::{Plan, Settings},
-    sample::{LitSurface, SampleOutcome, draw},
+    sample::{SampleOutcome, draw},
+    surface::LitSurface,
 };
 use formats::cloud::{Content, Group, Meta, Record, SampledMaterial};
 use rayon::prelude::*;
@@ -52,15 +53,15 @@ pub fn sample(
     let choice = plan.choice(scene, settings);
     let pattern = settings.options.pattern;
     let numbers = Numbers::new(pattern, settings.seed(), settings.samples);
-    let lights = LightTree::new(&scene.lights);
+    let lights = LightTree::new(scene.lights());
     // Consecutive stratified samples are neighbors; independent ones lie anywhere.
     let group_size = if pattern == Pattern::Stratified || lights.is_flat() { GROUP } else { 1 };
     let bounce = Bounce::new(scene, |material| plan.samples(material));
-    let surface = LitSurface { mesh: &scene.mesh, rays, lights, normals: settings.normals(), bounce };
+    let surface = LitSurface { mesh: &scene.mesh, rays, lights, normals: settings.normals() };
     let portion = |index: u64| {
         let range = index * PORTION..((index + 1) * PORTION).min(settings.samples);
         progress(range.end - range.start);
-        draw_portion(&surface, plan, numbers.places(&choice, range), group_size)
+        draw_portion(&surface, bounce.as_ref(), plan, numbers.points(&choice, range), group_size)
     };
     let portions: Vec<Portion> = (0..settings.samples.div_ceil(PORTION)).into_par_iter().map(portion).collect();
     let not_finite = portions.iter().map(|p| p.not_finite).sum();
@@ -73,8 +74,9 @@ pub fn sample(
 /// Draws the samples of one task, in groups of neighbors.
 fn draw_portion(
     surface: &LitSurface,
+    bounce: Option<&Bounce>,
     plan: &Plan,
-    mut places: impl Iterator<Item = (usize, Place)>,
+    mut points: impl Iterator<Item = (usize, SamplePoint)>,
     group_size: usize,
 ) -> Portion {
     let mut portion = Portion { groups: vec![Default::default(); plan.surfaces.materials.len()], ..Portion::default() };
@@ -82,11 +84,11 @@ fn draw_portion(
     let mut neighbors = Vec::with_capacity(group_size);
     loop {
         neighbors.clear();
-        neighbors.extend(places.by_ref().take(group_size));
+        neighbors.extend(points.by_ref().take(group_size));
         if neighbors.is_empty() {
             return Portion { shadow_rays, ..portion };
         }
-        draw(surface, &neighbors, &mut shadow_rays, |half, outcome| portion.count(plan, half, outcome));
+        draw(surface, bounce, &neighbors, &mut shadow_rays, |half, outcome| portion.count(plan, half, outcome));
     }
 }
 
@@ -138,7 +140,7 @@ fn join(
     let meta = Meta {
         content: plan.content,
         geometry: plan.geometry,
-        lights: scene.light_digest,
+        lights: scene.light_digest(),
         options: settings.options.clone(),
         samples_drawn: settings.samples,
         samples_dropped: BTreeMap::from([

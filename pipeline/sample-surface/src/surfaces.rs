@@ -27,6 +27,7 @@ pub fn failure(request: &Request, error: &SampleError) -> Failure {
     let way_out = match error {
         SampleError::NoLight => ": give it one, or light it with --environment",
         SampleError::NoSurface => "; name one with --translucent",
+        SampleError::Lost(_) => ", or pass --translucent NAME",
         SampleError::ShareSum { .. } => " (--share)",
         _ => "",
     };

@@ -149,6 +149,8 @@ fn usage_errors() {
         &["--environment", "sky.exr", "cannot read"],
     );
     bench.refuses(PROGRAM, &[&scene, "-o", "out.cloud", "--metres-per-unit", "0"], &["--metres-per-unit"]);
+    let huge = ["too large for float32 coordinates", "set --metres-per-unit"];
+    bench.refuses(PROGRAM, &[&scene, "-o", "out.cloud", "--metres-per-unit", "1e20"], &huge);
     bench.refuses(PROGRAM, &[&scene, "-o", "out.cloud", "-j", "0"], &["--threads"]);
 }
 

@@ -22,9 +22,9 @@ fn a_committed_output_replaces_the_file() {
     assert_eq!(fs::read_dir(folder.path()).expect("lists").count(), 1);
 }
 
-/// Planted errors that this caught: the lock left out, every temporary file of the folder taken.
+/// Seen to catch: the lock left out, every temporary file of the folder taken.
 #[test]
-fn what_a_killed_process_left_is_removed_and_what_a_live_one_writes_is_not() {
+fn temporary_files_of_killed_processes_are_removed_and_of_live_ones_are_not() {
     let folder = tempfile::tempdir().expect("folder");
     let path = |name: &str| folder.path().join(name);
     let names = || {
@@ -62,7 +62,7 @@ fn a_target_in_no_folder_is_an_error_at_once() {
     assert!(Output::create(Path::new(".")).is_err());
 }
 
-/// Planted errors that this caught: no permissions kept, permissions kept under the umask, the link replaced.
+/// Seen to catch: no permissions kept, permissions kept under the umask, the link replaced.
 #[test]
 fn a_replaced_file_keeps_its_permissions_and_links_stay_links() {
     let folder = tempfile::tempdir().expect("folder");
@@ -82,7 +82,7 @@ fn a_replaced_file_keeps_its_permissions_and_links_stay_links() {
     std::os::unix::fs::symlink("real/one", path("link")).expect("links");
     std::os::unix::fs::symlink("link", path("chain")).expect("links");
     for content in [b"1", b"2"] {
-        // The first time the links lead to no file.
+        // In the first round the links lead to no file.
         write(&path("chain"), content).expect("writes");
         assert_eq!(fs::read(path("real/one")).expect("reads"), content);
     }
@@ -90,17 +90,17 @@ fn a_replaced_file_keeps_its_permissions_and_links_stay_links() {
         assert!(fs::symlink_metadata(path(link)).expect("there").is_symlink(), "{link}");
     }
     std::os::unix::fs::symlink("circle", path("circle")).expect("links");
-    write(&path("circle"), b"").expect_err("leads to itself");
+    write(&path("circle"), b"").expect_err("a link to itself");
 }
 
-/// Planted error that this caught: the whole name in the temporary one, which then has 266 bytes.
+/// Seen to catch: the whole name in the temporary one, which then has 266 bytes.
 #[test]
 fn any_name_that_the_file_system_takes_is_taken() {
     let folder = tempfile::tempdir().expect("folder");
     for length in [LONG_NAME, LONG_NAME + 1, 200, 255] {
         let path = folder.path().join("n".repeat(length));
         write(&path, b"content").expect("writes");
-        // What a killed process left of a long name is found again.
+        // A temporary file that a killed process left for a long name is found again.
         let left = temporary_name(&path).expect("a name");
         fs::write(&left, b"half").expect("writes");
         write(&path, b"again").expect("writes");
@@ -110,7 +110,7 @@ fn any_name_that_the_file_system_takes_is_taken() {
     assert!(message.contains("too long"), "{message}");
 }
 
-/// Each of these waited for ever. Planted errors that this caught: the look at the file's kind left out.
+/// Seen to catch: the check of the file's kind left out, where each of these waits for ever.
 #[test]
 fn pipes_are_refused_and_not_waited_for() {
     let folder = tempfile::tempdir().expect("folder");
@@ -126,9 +126,9 @@ fn pipes_are_refused_and_not_waited_for() {
     assert!(left.exists());
 }
 
-/// Planted error that this caught, within a few rounds: no lock.
+/// Seen to catch within a few rounds: no lock.
 #[test]
-fn of_two_groups_at_once_all_files_are_those_of_one() {
+fn after_two_simultaneous_groups_all_files_are_those_of_one() {
     let folder = tempfile::tempdir().expect("folder");
     let names = ["image.exr", "image.png", "image.json"].map(|name| folder.path().join(name));
     for _ in 0..100 {

@@ -1,7 +1,7 @@
-//! Lists and texts of a cloud's facts: lengths that a file only claims allocate nothing.
+//! Deserializers for the lists and texts of a cloud's facts that allocate nothing for a length that a file only claims.
 //!
-//! The decoder's own limit bounds what it reads, but serde would reserve room for a list, and the decoder for a text, before
-//! the first byte of it is there. Here a list grows with what was read, and a text is copied once all of it is there.
+//! The decoder's limit bounds what it reads, but serde reserves memory for a list, and the decoder for a text, before the first
+//! byte of it is read. Here a list grows with its elements, and a text is copied after all of it was read.
 
 use serde::{
     Deserialize, Deserializer,
@@ -54,24 +54,24 @@ mod tests {
     };
 
     thread_local! {
-        /// The largest request of this thread, bytes.
+        /// The largest allocation of this thread, bytes.
         static LARGEST: Cell<usize> = const { Cell::new(0) };
     }
 
     struct Watched;
 
-    // SAFETY: every request is the system's own; to note its size allocates nothing.
+    // SAFETY: the system serves every request; recording its size allocates nothing.
     #[allow(unsafe_code)]
     unsafe impl GlobalAlloc for Watched {
         unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
             LARGEST.with(|largest| largest.set(largest.get().max(layout.size())));
-            // SAFETY: the caller keeps what the system asks for.
+            // SAFETY: the caller keeps the contract of the system's allocator.
             unsafe { System.alloc(layout) }
         }
 
-        unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
-            // SAFETY: as above; the place is the system's.
-            unsafe { System.dealloc(place, layout) }
+        unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+            // SAFETY: as above; the pointer is the system's.
+            unsafe { System.dealloc(pointer, layout) }
         }
     }
 
@@ -84,9 +84,9 @@ mod tests {
         LARGEST.with(Cell::get)
     }
 
-    /// A length claimed at every place of the facts.
+    /// Writes a large length at every offset of the facts.
     ///
-    /// Seen to catch: serde's own list and the decoder's own text: a megabyte for 500 bytes.
+    /// Seen to catch: serde's own list and the decoder's own text, which allocate a megabyte for 500 bytes.
     #[test]
     fn no_claim_of_a_length_allocates_more_than_a_few_times_the_block() {
         let mut facts = meta(3);

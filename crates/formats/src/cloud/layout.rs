@@ -1,4 +1,4 @@
-//! Header and section table: the bytes, and the checks that make them trustworthy.
+//! Header and section table of a cloud: their bytes and checks.
 //!
 //! ```text
 //! offset  bytes  field
@@ -24,15 +24,16 @@ pub(super) const MAGIC: [u8; 8] = [0x89, b'P', b'C', b'L', 0x0D, 0x0A, 0x1A, 0x0
 pub(super) const HEADER: usize = 64;
 const ENTRY: usize = 64;
 const MAX_SECTIONS: u32 = 64;
-/// Sections start at multiples of this, the samples at a page.
+/// Sections start at multiples of this; the tiles start at a page.
 const ALIGN: u64 = 64;
 const PAGE: u64 = 4096;
-/// A section is checked by blocks of so many bytes, which a processor's own cache holds: they are read once for all.
+/// Bytes of the blocks by which a section is checked. A block fits the cache of a core, so that it is read from memory once for
+/// its checksum and for its values.
 pub(super) const BLOCK: usize = 1 << 18;
-/// Elements follow each other.
+/// The layout in which elements follow each other.
 const RECORDS: u16 = 1;
 
-/// The major version of the format: one number, bumped when a record changes meaning.
+/// The major version of the format. It is raised when a record changes its meaning.
 pub fn version() -> u16 {
     include_str!("../../cloud-version").trim().parse().unwrap_or(0)
 }
@@ -55,7 +56,7 @@ impl Kind {
     }
 }
 
-/// A section to write, or one that was read and checked.
+/// A section to be written, or one that was read and checked.
 #[derive(Clone, Debug)]
 pub(super) struct Section {
     pub name: &'static str,
@@ -128,7 +129,7 @@ impl Header {
     }
 }
 
-/// Reads and checks header and table against the file they stand in.
+/// Reads header and table, and checks them against the file.
 pub(super) fn decode(file: &[u8], known: &[(&'static str, Kind, u16)]) -> Result<Header, String> {
     if file.get(..8) != Some(&MAGIC) {
         return Err("not a cloud written by sample-surface".into());
@@ -154,14 +155,14 @@ pub(super) fn decode(file: &[u8], known: &[(&'static str, Kind, u16)]) -> Result
         let entry = &file[HEADER + k * ENTRY..HEADER + (k + 1) * ENTRY];
         let section = decode_entry(entry, known, file.len() as u64)?;
         if let Some(twice) = section.as_ref().filter(|s| sections.iter().any(|other: &Section| other.name == s.name)) {
-            return Err(format!("section `{}` is there twice; sample again", twice.name));
+            return Err(format!("section `{}` occurs twice; sample again", twice.name));
         }
         sections.extend(section);
     }
     Ok(Header { samples: u64::from_le_bytes(word(file, 24)?), sections })
 }
 
-/// A table entry; none if its section is of a later minor version.
+/// Reads a table entry; none if its section is of a later minor version.
 fn decode_entry(entry: &[u8], known: &[(&'static str, Kind, u16)], length: u64) -> Result<Option<Section>, String> {
     let is_named =
         |name: &str| entry[..name.len()] == *name.as_bytes() && entry[name.len()..16].iter().all(|b| *b == 0);
@@ -193,7 +194,7 @@ pub(super) fn checksum(bytes: &[u8]) -> u64 {
     checksum_of(&bytes.chunks(BLOCK).map(xxh3_64).collect::<Vec<u64>>())
 }
 
-/// The checksum of a section by those of its blocks.
+/// The checksum of a section from those of its blocks.
 pub(super) fn checksum_of(blocks: &[u64]) -> u64 {
     match blocks {
         [] => xxh3_64(&[]),
@@ -202,7 +203,7 @@ pub(super) fn checksum_of(blocks: &[u64]) -> u64 {
     }
 }
 
-/// Checks the checksum that was found for a section's bytes against the one that the table has.
+/// Compares the checksum of a section's bytes with the one in the table.
 pub(super) fn verify(found: u64, s: &Section) -> Result<(), String> {
     if found == s.checksum { Ok(()) } else { Err(format!("section `{}` is damaged (checksum); sample again", s.name)) }
 }

@@ -1,37 +1,38 @@
-//! What a cloud says of itself.
+//! The facts of a cloud, beside its samples.
 
 use super::{
     bounded::{counts, list, shares, text},
+    record::{TILE, node_count},
     settings::{Choice, LightUnit, Normals, Pattern},
 };
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, fmt};
 
-/// The struct of this version; the number is checked before this is read.
+/// The facts with the number of their version, which is checked before they are read.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Versioned {
     V6(Meta),
 }
 
-/// Facts of a cloud. Holds no time, host or path: the same inputs give the same bytes.
+/// The facts of a cloud. They hold no time, host or path, so that the same inputs give the same bytes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Meta {
-    /// Identity of everything the samples depend on.
+    /// Digest of everything that the samples depend on.
     pub content: [u8; 32],
-    /// Identity of the mesh, metres and materials' extents.
+    /// Digest of the mesh in metres, its materials, colors and holes.
     pub geometry: [u8; 32],
-    /// Identity of the lights of the scene file.
+    /// Digest of the lights of the scene file.
     pub lights: [u8; 32],
     /// How the samples were made.
     pub options: Options,
-    /// `K`: samples drawn, the unlit ones included. The estimator divides by it.
+    /// `K`: samples drawn, including those that no light reaches. The estimator divides by it.
     pub samples_drawn: u64,
-    /// Samples drawn but not stored because they carry no light, by reason.
+    /// Samples that were drawn and not stored because no light reaches them, by reason.
     #[serde(deserialize_with = "counts")]
     pub samples_dropped: BTreeMap<String, u64>,
     /// Shadow rays traced.
     pub shadow_rays: u64,
-    /// Faults of the sampled surfaces as a mesh, by name: who gathers need not look for them again.
+    /// Defects of the sampled surfaces as a mesh, by name, so that `gather` need not look for them again.
     #[serde(deserialize_with = "counts")]
     pub mesh_faults: BTreeMap<String, u64>,
     /// Area of the sampled surfaces, m².
@@ -40,9 +41,9 @@ pub struct Meta {
     pub mean_flux_w: [f64; 3],
     /// Diagonal of the scene's bounding box, m.
     pub diagonal_m: f64,
-    /// World position that sample positions are relative to, m.
+    /// World position to which the sample positions are relative, m.
     pub origin_m: [f64; 3],
-    /// The sampled materials in order; their groups follow each other in the file.
+    /// The sampled materials, in the order of their groups in the file.
     #[serde(deserialize_with = "list")]
     pub materials: Vec<SampledMaterial>,
 }
@@ -53,18 +54,18 @@ impl Meta {
         [self.samples_drawn.div_ceil(2), self.samples_drawn / 2]
     }
 
-    /// What positions in float32 are relative to in files for other programs (`P` of an image, `x y z` of a PLY), m. It is
-    /// 0, and they are world positions, unless their rounding would exceed 1e-5 of the scene's diagonal; then it is the
-    /// scene's centre, itself as float32 has it: what that is off by is 32 diagonals at most, since scenes farther from
-    /// the origin for their size are refused, and then is the rounding still 2e-6 of the diagonal.
+    /// The origin of float32 positions in files for other programs (`P` of an image, `x y z` of a PLY), m. It is 0 and the
+    /// positions are those in the world, unless float32 would round them by more than 1e-5 of the scene's diagonal. Then it is
+    /// the scene's centre rounded to float32. That rounding moves it by 32 diagonals at most, because the import refuses scenes
+    /// that lie farther from the origin, and positions relative to it are rounded by 2e-6 of the diagonal.
     pub fn exchange_origin_m(&self) -> [f32; 3] {
-        const WORST: f64 = 1e-5;
-        let farthest = self.origin_m.iter().fold(0.0, |most: f64, x| most.max(x.abs())) + 0.5 * self.diagonal_m;
+        const MAX_ROUNDING: f64 = 1e-5;
+        let farthest = self.origin_m.iter().fold(0.0, |max: f64, x| max.max(x.abs())) + 0.5 * self.diagonal_m;
         let rounding = 0.5 * f64::from(f32::EPSILON) * farthest;
-        if rounding > WORST * self.diagonal_m { self.origin_m.map(|x| x as f32) } else { [0.0; 3] }
+        if rounding > MAX_ROUNDING * self.diagonal_m { self.origin_m.map(|x| x as f32) } else { [0.0; 3] }
     }
 
-    /// True if every fact is a number that it can be: none is NaN or infinite, and only a place may be negative.
+    /// True if all facts are finite, only coordinates are negative, and the shard is one of its count.
     pub(super) fn is_sound(&self) -> bool {
         let single = [self.surface_area_m2, self.diagonal_m, self.options.metres_per_unit];
         let areas = self.materials.iter().map(|m| m.area_m2);
@@ -77,14 +78,14 @@ impl Meta {
     }
 }
 
-/// What `sample-surface` was asked for.
+/// The settings of `sample-surface`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Options {
     pub seed: u64,
     pub shard: Shard,
     pub choice: Choice,
     pub pattern: Pattern,
-    /// Materials with the share of the samples that was asked for.
+    /// Materials with the requested share of the samples.
     #[serde(deserialize_with = "shares")]
     pub shares: Vec<(String, f64)>,
     pub normals: Normals,
@@ -93,13 +94,13 @@ pub struct Options {
     pub light_unit: LightUnit,
     /// Unit of its emitting materials.
     pub emission_unit: LightUnit,
-    /// Light from all around: its radiance, or the identity of a map.
+    /// Identity of the light from all around: its radiance, or a digest of the map.
     #[serde(deserialize_with = "text")]
     pub environment: String,
 }
 
-/// Which of several clouds that are drawn apart, to be gathered together: `index` of `count`, from 0. Each is a cloud of
-/// its own random numbers and of any number of samples; 0 of 1 is the only one.
+/// The number of a cloud among several that are drawn apart and gathered together: `index` of `count`, from 0. Each shard has
+/// random numbers of its own and any number of samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shard {
     pub index: u32,
@@ -107,7 +108,7 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// A cloud that is meant to be alone.
+    /// The one shard of a whole cloud.
     pub const ALONE: Shard = Shard { index: 0, count: 1 };
 }
 
@@ -117,7 +118,7 @@ impl fmt::Display for Shard {
     }
 }
 
-/// A translucent material and its samples.
+/// A translucent material and the ranges of its samples.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SampledMaterial {
     #[serde(deserialize_with = "text")]
@@ -137,7 +138,7 @@ impl SampledMaterial {
     }
 }
 
-/// Samples in spatial order under a tree of their own: of one material and one half.
+/// The samples of one material and one half, in spatial order under a tree of their own.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Group {
     pub samples: u64,
@@ -146,14 +147,14 @@ pub struct Group {
 }
 
 impl Group {
-    /// Tiles of sixteen samples; the last one may be filled up with samples without flux.
+    /// Tiles of sixteen samples; samples without flux fill the last one.
     pub fn tiles(&self) -> u64 {
-        self.samples.div_ceil(super::TILE as u64)
+        self.samples.div_ceil(TILE as u64)
     }
 
     /// Nodes of the tree over the tiles, see [`super::Node`].
     pub fn nodes(&self) -> u64 {
-        super::node_count(self.tiles())
+        node_count(self.tiles())
     }
 }
 

@@ -1,7 +1,7 @@
-//! The point cloud: lit surface samples of phase one.
+//! The point cloud: the lit surface samples of phase one.
 //!
-//! Readable without this code: the sections `tile` and `node` are little-endian arrays of [`Record`] and [`Node`] that
-//! start where the section table says, and the section `provenance` repeats the facts as JSON. It is mapped as it lies.
+//! The file is mapped into memory as it lies. Other programs can read it, too: the section table states where the sections
+//! start, `tile` and `node` are little-endian arrays of [`Record`] and [`Node`], and `provenance` repeats the facts as JSON.
 
 mod bounded;
 mod layout;
@@ -11,19 +11,18 @@ mod settings;
 
 pub use layout::version;
 pub use meta::{Group, Meta, Options, SampledMaterial, Shard, hex};
-pub use record::{Node, Record, TILE, Tile, first_leaf, node_count, tile};
+pub use record::{Node, Record, Sample, TILE, Tile, first_leaf, node_count, tile};
 pub use settings::{Choice, LightUnit, Normals, Pattern};
 
 use crate::{Error, atomic::Output, image::parallel::parallel};
 use bytemuck::Pod;
-use glam::{DVec3, Vec3};
 use layout::{BLOCK, HEADER, Header, Kind, Section};
 use memmap2::Mmap;
 use meta::Versioned;
 use std::{fs::File, io::Write, num::NonZeroUsize, path::Path, time::SystemTime};
 use xxhash_rust::xxh3::xxh3_64;
 
-/// The sections this version knows: name, element type, components.
+/// The sections of this version: name, element type, components.
 const SECTIONS: [(&str, Kind, u16); 4] = [
     ("meta", Kind::U8, 1),
     ("provenance", Kind::U8, 1),
@@ -31,40 +30,27 @@ const SECTIONS: [(&str, Kind, u16); 4] = [
     ("node", Kind::F32, (size_of::<Node>() / 4) as u16),
 ];
 
-/// Largest metadata block that is written or read, bytes, and the largest text of the same facts.
+/// Most bytes of the facts, and of the same facts as text.
 const META_LIMIT: usize = 1 << 20;
 const PROVENANCE_LIMIT: usize = 16 * META_LIMIT;
 
-/// Samples of a group are counted by 32 bits where they are picked.
+/// Most samples of a group: estimators pick them by an index of 32 bits.
 const LARGEST_GROUP: u64 = 1 << 32;
 
-/// Most samples drawn for a cloud: the sums over thousands of clouds are whole numbers still, in float64 too.
+/// Most samples drawn for a cloud, so that the sum over thousands of clouds is still exact in float64.
 const MAX_DRAWN: u64 = 1 << 40;
 
-/// No scene is wider, m.
-const FARTHEST: f64 = 1e18;
+/// Largest diagonal of a scene, m.
+const MAX_DIAGONAL: f64 = 1e18;
 
 fn meta_config() -> impl bincode::config::Config {
     bincode::config::standard().with_little_endian().with_fixed_int_encoding().with_limit::<META_LIMIT>()
 }
 
-/// One sample: a lit point of the surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
-    /// m, relative to the cloud's origin.
-    pub position: Vec3,
-    /// Unit normal that the irradiance was taken with.
-    pub normal: DVec3,
-    /// Unit direction towards the light.
-    pub direction: DVec3,
-    /// `Φ = E/pdf(x)`, without 1/K, W.
-    pub flux: Vec3,
-}
-
 /// The stored part of a cloud: groups of tiles and the trees over them, see [`Group`].
 #[derive(Clone, Debug, Default)]
 pub struct Content {
-    /// Stored samples, fillers not counted.
+    /// Stored samples without the fillers of tiles.
     pub samples: u64,
     pub tiles: Vec<Tile>,
     pub nodes: Vec<Node>,
@@ -82,7 +68,7 @@ fn part<'a>(tiles: &'a [Tile], nodes: &'a [Node], group: &Group) -> (&'a [Tile],
     (&tiles[range(group.first_tile, group.tiles())], &nodes[range(group.first_node, group.nodes())])
 }
 
-/// Writes a cloud; the same content and facts give the same bytes.
+/// Writes a cloud. The same content and facts give the same bytes.
 pub fn write(output: &mut Output, path: &Path, content: &Content, meta: &Meta) -> Result<(), Error> {
     let facts = bincode::serde::encode_to_vec(Versioned::V6(meta.clone()), meta_config())
         .map_err(|e| Error::invalid(path, format!("the cloud's facts do not fit the file: {e}")))?;
@@ -114,7 +100,7 @@ pub fn write(output: &mut Output, path: &Path, content: &Content, meta: &Meta) -
     Ok(())
 }
 
-/// The facts as people read them: digests in hexadecimal.
+/// The facts as JSON, with digests in hexadecimal.
 fn provenance(meta: &Meta) -> serde_json::Value {
     let mut value = serde_json::json!(meta);
     for (key, digest) in [("content", &meta.content), ("geometry", &meta.geometry), ("lights", &meta.lights)] {
@@ -127,7 +113,7 @@ fn provenance(meta: &Meta) -> serde_json::Value {
 /// An open cloud, mapped into memory.
 pub struct Cloud {
     file: File,
-    /// When the file was last written before it was mapped.
+    /// When the file was last modified before it was mapped.
     modified: Option<SystemTime>,
     map: Mmap,
     header: Header,
@@ -135,13 +121,13 @@ pub struct Cloud {
 }
 
 impl Cloud {
-    /// Maps a file and checks its structure and facts, not its samples: milliseconds whatever its size.
+    /// Maps a file, and checks its structure and facts but not its samples. That takes milliseconds for any size.
     pub fn open(path: &Path) -> Result<Cloud, Error> {
         let whole = |kind: std::fs::Metadata| {
             let refused = || Error::invalid(path, "not a file; a cloud is mapped into memory");
             kind.is_file().then_some(kind).ok_or_else(refused)
         };
-        // Before it is opened, too: to open a pipe is to wait for its writer.
+        // The kind of the file is checked before it is opened, because opening a pipe waits for its writer.
         std::fs::metadata(path).map_err(|source| Error::read(path, source)).and_then(whole)?;
         let file = File::open(path).map_err(|source| Error::read(path, source))?;
         let kind = file.metadata().map_err(|source| Error::read(path, source)).and_then(whole)?;
@@ -152,14 +138,14 @@ impl Cloud {
         Ok(Cloud { modified: kind.modified().ok(), file, map, header, meta })
     }
 
-    /// Refuses a file that was written to since it was opened. One that was replaced keeps its content here, and a new
-    /// time stamp alone is no harm.
+    /// Refuses a file that was modified since it was opened. A file that was replaced keeps its content in the mapping, and a
+    /// new time stamp alone does no harm.
     pub fn check_unchanged(&self, path: &Path) -> Result<(), Error> {
         let now = self.file.metadata().map_err(|source| Error::read(path, source))?;
         if now.len() == self.bytes() && now.modified().ok() == self.modified {
             return Ok(());
         }
-        let written = |_| Error::invalid(path, "written to while it was read; rename a new cloud over it instead");
+        let written = |_| Error::invalid(path, "modified while it was read; rename a new cloud over it instead");
         if now.len() != self.bytes() {
             return Err(written(String::new()));
         }
@@ -189,16 +175,15 @@ impl Cloud {
         self.len() == 0
     }
 
-    /// [`Cloud::verify_with`] by this thread alone.
+    /// [`Cloud::verify_with`] on one thread.
     pub fn verify(&self, path: &Path) -> Result<(), Error> {
         self.verify_with(NonZeroUsize::MIN, path)
     }
 
-    /// Checks every section against its checksum, every sample for being a point of the scene with flux not negative, and
-    /// every node for numbers that a node can have. Reads the whole file, once, by so many threads: 6 GB/s each where it
-    /// is in memory already.
+    /// Checks the checksum of every section, that every sample lies in the scene and has no negative flux, and that every node
+    /// has values in range. It reads the whole file once, at 6 GB/s for each thread where the file is in memory already.
     pub fn verify_with(&self, threads: NonZeroUsize, path: &Path) -> Result<(), Error> {
-        let reach = self.meta.diagonal_m.clamp(0.0, FARTHEST) as f32;
+        let reach = self.meta.diagonal_m.clamp(0.0, MAX_DIAGONAL) as f32;
         for section in &self.header.sections {
             let is_good = |block: &[u8]| match section.name {
                 "tile" => records_are_good(bytemuck::cast_slice(block), reach),
@@ -220,12 +205,12 @@ impl Cloud {
         Ok(())
     }
 
-    /// All tiles, see [`Group::first_tile`].
+    /// The tiles of all groups; a group starts at [`Group::first_tile`].
     pub fn tiles(&self) -> &[Tile] {
         self.section("tile")
     }
 
-    /// All nodes, see [`Group::first_node`].
+    /// The nodes of all groups; a group starts at [`Group::first_node`].
     pub fn nodes(&self) -> &[Node] {
         self.section("node")
     }
@@ -243,7 +228,7 @@ impl Cloud {
         })
     }
 
-    /// A section's elements. The header was checked: the section is there, inside the file and aligned.
+    /// The elements of a section. The header was checked, so that the section exists, lies inside the file and is aligned.
     fn section<T: Pod>(&self, name: &str) -> &[T] {
         let Some(s) = self.header.sections.iter().find(|s| s.name == name) else {
             return &[];
@@ -261,38 +246,38 @@ fn records_are_good(records: &[Record], reach: f32) -> bool {
     are_within(bytemuck::cast_slice(records), MASKS, limits)
 }
 
-/// True if centres lie within `reach` of the origin along each axis, no sample is farther from them than two such points
-/// can be, and flux and deviations are finite and not negative.
+/// True if centres lie within `reach` of the origin along each axis, no radius or spread exceeds the distance between two such
+/// points, and flux and deviations are finite and not negative.
 fn nodes_are_good(nodes: &[Node], reach: f32) -> bool {
     const MASKS: [u32; 8] = [!SIGN, !SIGN, !SIGN, !0, !0, !0, !0, !0];
     let apart = 4.0 * reach;
     are_within(bytemuck::cast_slice(nodes), MASKS, [reach, reach, reach, apart, apart, f32::MAX, f32::MAX, 2.0])
 }
 
-/// True if the masked bits of eight floats, each time, are not above those of the limits.
+/// True if in each row of eight floats, the masked bits of every float are at most those of its limit.
 fn are_within(floats: &[[u32; 8]], masks: [u32; 8], limits: [f32; 8]) -> bool {
-    // As whole numbers: of floats without sign those that are finite come first, of all the positive ones. Without a
-    // branch for each this takes as long as reading the memory does.
-    let worst = floats.iter().fold([0; 8], |worst: [u32; 8], x| std::array::from_fn(|i| worst[i].max(x[i] & masks[i])));
-    worst.iter().zip(limits).all(|(word, limit)| *word <= limit.to_bits())
+    // As integers, finite floats without their sign come before infinity and NaN, and positive floats before negative ones.
+    // One maximum without branches takes as long as reading the memory.
+    let max = floats.iter().fold([0; 8], |max: [u32; 8], x| std::array::from_fn(|i| max[i].max(x[i] & masks[i])));
+    max.iter().zip(limits).all(|(word, limit)| *word <= limit.to_bits())
 }
 
 /// Maps a file for reading.
 #[allow(unsafe_code)]
 fn map(file: &File) -> std::io::Result<Mmap> {
-    // SAFETY: a mapping is sound while nobody changes the file. Clouds are never written in place: a new one is
-    // written to a temporary file and renamed over the old, whose mapping keeps the old content.
+    // SAFETY: a mapping is sound while nobody changes the file. Clouds are never modified: a new one is written to a
+    // temporary file and renamed over the old one, whose mapping keeps the old content.
     unsafe { Mmap::map(file) }
 }
 
-/// Facts that fit the header.
+/// Reads the facts, and checks them against the header.
 fn read_meta(file: &[u8], header: &Header) -> Result<Meta, String> {
     for (name, ..) in SECTIONS {
         header.section(name)?;
     }
     let damaged = "the cloud's facts are damaged; sample again";
     let section = header.section("meta")?;
-    // Before a byte of them is read: opening takes milliseconds whatever a file claims.
+    // The lengths are checked before the facts are read, so that opening takes milliseconds whatever a file claims.
     if section.bytes > META_LIMIT as u64 || header.section("provenance")?.bytes > PROVENANCE_LIMIT as u64 {
         return Err(format!("the cloud's facts are longer than the {META_LIMIT} bytes they may have; sample again"));
     }
@@ -304,13 +289,13 @@ fn read_meta(file: &[u8], header: &Header) -> Result<Meta, String> {
     if fits { Ok(meta) } else { Err(damaged.into()) }
 }
 
-/// Some if the groups of the materials follow each other and fill the sections.
+/// Some if the groups of the materials follow each other and fill their sections.
 fn groups_fit(meta: &Meta, header: &Header) -> Option<()> {
     let (mut samples, mut tiles, mut nodes) = (0u64, 0u64, 0u64);
     for half in meta.materials.iter().flat_map(|m| &m.halves) {
         let counted = half.samples <= header.samples.min(LARGEST_GROUP);
-        let placed = counted && (half.first_tile, half.first_node) == (tiles, nodes);
-        placed.then_some(())?;
+        let follows = counted && (half.first_tile, half.first_node) == (tiles, nodes);
+        follows.then_some(())?;
         samples = samples.checked_add(half.samples)?;
         tiles = tiles.checked_add(half.tiles())?;
         nodes = nodes.checked_add(half.nodes())?;

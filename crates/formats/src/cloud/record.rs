@@ -1,33 +1,46 @@
-//! The records of a cloud: samples in tiles of sixteen, and the tree over the tiles.
+//! The records of a cloud: samples in tiles of sixteen, and the nodes of the tree over the tiles.
 
-use super::Sample;
 use crate::octahedral;
 use bytemuck::{Pod, Zeroable};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// Samples in a tile.
 pub const TILE: usize = 16;
 
-/// One stored sample.
+/// A lit point of the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// m, relative to the cloud's origin.
+    pub position: Vec3,
+    /// Unit normal of the irradiance.
+    pub normal: DVec3,
+    /// Unit direction towards the light.
+    pub direction: DVec3,
+    /// `Φ = E/pdf_area`, without 1/K, W.
+    pub flux: Vec3,
+}
+
+/// A sample as it is stored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd, Pod, Zeroable)]
 #[repr(C, align(32))]
 pub struct Record {
     /// m, relative to the cloud's origin.
     pub position: [f32; 3],
-    /// Octahedral codes: x in the low half, y in the high one.
+    /// Octahedral code: x in the low half, y in the high one.
     pub normal: u32,
+    /// Octahedral code of the direction towards the light.
     pub direction: u32,
     /// W.
     pub flux: [f32; 3],
 }
 
-/// Sixteen samples that lie near each other.
+/// Sixteen neighboring samples.
 pub type Tile = [Record; TILE];
 
-/// What is known of the samples of a power of two of neighbouring tiles.
+/// Moments of the samples in 2^k neighboring tiles.
 ///
-/// The tree is a heap: node 1 is the root, nodes `2i` and `2i + 1` are the children of `i`; over `T` tiles the leaf of
-/// tile `t` is node `2^d + t` with the least `2^d ≥ T`. Node 0 is not used; nodes without tiles are zero.
+/// The tree is a heap: node 1 is the root, and nodes `2i` and `2i + 1` are the children of node `i`. Over `T` tiles, the leaf
+/// of tile `t` is node `2^d + t` with the smallest `2^d ≥ T`. Node 0 is unused; nodes without tiles are zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Node {
@@ -35,7 +48,7 @@ pub struct Node {
     pub centre: [f32; 3],
     /// Root mean square distance from the centre, m.
     pub spread: f32,
-    /// No sample is farther from the centre, m.
+    /// Largest distance of a sample from the centre, m.
     pub radius: f32,
     /// Sum of the flux over samples and channels, W.
     pub flux: f32,
@@ -45,7 +58,7 @@ pub struct Node {
     pub turn: f32,
 }
 
-/// The number of the first leaf over `tiles` tiles.
+/// Index of the first leaf over `tiles` tiles.
 pub fn first_leaf(tiles: u64) -> u64 {
     tiles.next_power_of_two()
 }
@@ -56,7 +69,7 @@ pub fn node_count(tiles: u64) -> u64 {
 }
 
 impl Record {
-    /// A sample as it is stored.
+    /// Encodes a sample.
     pub fn new(sample: &Sample) -> Record {
         let code = |v| {
             let [x, y] = octahedral::encode(v);
@@ -70,7 +83,7 @@ impl Record {
         }
     }
 
-    /// What was stored.
+    /// Decodes the sample.
     pub fn sample(&self) -> Sample {
         let decode = |code: u32| octahedral::decode([code as u16 as i16, (code >> 16) as u16 as i16]);
         Sample {
@@ -82,7 +95,7 @@ impl Record {
     }
 }
 
-/// Up to sixteen samples; what is missing repeats the last one without flux.
+/// A tile of up to sixteen samples; copies of the last one without flux fill it.
 pub fn tile(records: &[Record]) -> Tile {
     let filler = records.last().map_or(Record::default(), |last| Record { flux: [0.0; 3], ..*last });
     std::array::from_fn(|lane| records.get(lane).copied().unwrap_or(filler))

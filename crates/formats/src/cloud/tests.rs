@@ -1,6 +1,7 @@
-//! A cloud that was written is read, and what was damaged is not.
+//! Clouds are read as they were written, and damaged ones are refused.
 
 use super::*;
+use glam::{DVec3, Vec3};
 use std::{collections::BTreeMap, fs, sync::mpsc, time::Duration};
 
 pub(super) fn meta(count: u64) -> Meta {
@@ -33,15 +34,15 @@ pub(super) fn meta(count: u64) -> Meta {
     }
 }
 
-/// It depends on the ratio of distance and size, not on metres.
+/// The origin depends on the ratio of distance and size, not on metres.
 #[test]
-fn what_positions_for_others_are_relative_to() {
+fn the_exchange_origin_depends_on_distance_over_size() {
     let about = |scale: f64, x: f64| {
         let origin_m = [0.1, x, 0.3].map(|x| scale * x);
         Meta { diagonal_m: scale, origin_m, ..meta(1) }.exchange_origin_m()
     };
     for scale in [1e-9, 1.0, 1e12] {
-        // Half a step of float32 is 1e-5 of the diagonal at 167.8 diagonals; the scene reaches half of one farther.
+        // Half a step of float32 is 1e-5 of the diagonal at a distance of 167.8 diagonals; the scene extends half a diagonal farther.
         assert_eq!(about(scale, 167.2), [0.0; 3]);
         assert_eq!(about(scale, -167.5)[1], (-167.5 * scale) as f32);
     }
@@ -92,7 +93,7 @@ fn what_is_written_is_read() {
     }
 }
 
-/// Seen to fail: no limit, which several clouds together overflow.
+/// Seen to fail: no limit, where the sum over several clouds overflows.
 #[test]
 fn the_number_of_samples_drawn_is_believable() {
     let folder = tempfile::tempdir().expect("folder");
@@ -105,7 +106,7 @@ fn the_number_of_samples_drawn_is_believable() {
     }
 }
 
-/// Every byte belongs to something that is checked, or is padding that nothing reads.
+/// Every byte is checked, or is padding that nothing reads.
 #[test]
 fn every_flipped_byte_is_found_and_none_panics() {
     let (folder, path) = written(5);
@@ -124,7 +125,7 @@ fn every_flipped_byte_is_found_and_none_panics() {
     assert!(good.len() - unseen > head + table);
 }
 
-/// Seen to fail: a coordinate left out; fluxes without their sign; places however far away.
+/// Seen to fail: a coordinate left out; fluxes without their sign; no limit of the distance.
 #[test]
 fn only_samples_of_the_scene_with_flux_that_is_not_negative_are_good() {
     let good = Record::new(&sample(-2.0));
@@ -132,15 +133,15 @@ fn only_samples_of_the_scene_with_flux_that_is_not_negative_are_good() {
     assert!(records_are_good(&[], 4.0) && records_are_good(&[good; 3], 4.0));
     for bad in [f32::NAN, -f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         for c in 0..3 {
-            let (mut place, mut flux) = (good, good);
-            (place.position[c], flux.flux[c]) = (bad, bad);
-            assert!(!records_are_good(&[good, place], 4.0) && !records_are_good(&[flux, good], 4.0), "{bad}");
+            let (mut position, mut flux) = (good, good);
+            (position.position[c], flux.flux[c]) = (bad, bad);
+            assert!(!records_are_good(&[good, position], 4.0) && !records_are_good(&[flux, good], 4.0), "{bad}");
         }
     }
     for c in 0..3 {
-        let mut place = good;
-        place.position[c] = -4.5;
-        assert!(records_are_good(&[place], 4.5) && !records_are_good(&[good, place], 4.0));
+        let mut far = good;
+        far.position[c] = -4.5;
+        assert!(records_are_good(&[far], 4.5) && !records_are_good(&[good, far], 4.0));
     }
     assert!(!records_are_good(&[Record { flux: [0.0, -1e-40, 0.0], ..good }], 4.0));
 }
@@ -156,7 +157,7 @@ fn every_truncation_is_found() {
     }
 }
 
-/// Sections of several blocks, by one thread and by several: a change in any block is found.
+/// A change in any block of a section of several blocks is found, by one thread and by several.
 ///
 /// Seen to catch: the checksum of the first block alone; the last block left out.
 #[test]
@@ -182,17 +183,17 @@ fn every_block_of_a_large_section_is_checked() {
     }
 }
 
-/// A file of these sections, nearly all of it a hole.
+/// Writes a sparse file with these sections.
 fn with_sections(path: &Path, sections: &[Section]) {
     let length = sections.iter().map(Section::end).max().unwrap_or_default().max(HEADER as u64);
     fs::write(path, layout::encode(sections, length, 0)).expect("writes");
     fs::OpenOptions::new().write(true).open(path).and_then(|f| f.set_len(length)).expect("files may have holes");
 }
 
-/// Seen to catch: facts of 64 GiB that are read to the end before they are refused; a section that is there 60 times, each
-/// to be checked.
+/// Seen to catch: facts of 64 GiB that are read to the end before they are refused; a section that occurs 60 times and is
+/// checked each time.
 #[test]
-fn facts_without_end_and_sections_that_are_there_twice_are_refused_at_once() {
+fn huge_facts_and_duplicate_sections_are_refused_at_once() {
     let folder = tempfile::tempdir().expect("folder");
     let path = folder.path().join("test.cloud");
     let laid = |sizes: [u64; 4]| {
@@ -213,14 +214,14 @@ fn facts_without_end_and_sections_that_are_there_twice_are_refused_at_once() {
     }
     let mut twice = laid([16, 16, 16, 16]);
     twice.push(twice[2].clone());
-    assert!(refused(&twice).contains("`tile` is there twice"));
+    assert!(refused(&twice).contains("`tile` occurs twice"));
 }
 
-/// Samples are picked by numbers of 32 bits.
+/// Samples are picked by an index of 32 bits.
 ///
-/// Seen to catch: no limit, where a sample's number would be cut off and another one taken.
+/// Seen to catch: no limit, where an index would be truncated and another sample picked.
 #[test]
-fn groups_are_no_larger_than_their_numbers() {
+fn groups_are_no_larger_than_their_indices() {
     for (samples, good) in [(LARGEST_GROUP, true), (LARGEST_GROUP + 1, false)] {
         let mut meta = meta(0);
         let halves = &mut meta.materials[0].halves;
@@ -236,7 +237,7 @@ fn groups_are_no_larger_than_their_numbers() {
     }
 }
 
-/// Seen to catch: a file that is opened first, where a pipe's reader waits for a writer that never comes.
+/// Seen to catch: a file that is opened before its kind is checked, where a pipe's reader waits for a writer that never comes.
 #[cfg(unix)]
 #[test]
 fn a_pipe_is_no_cloud_and_is_not_waited_for() {
@@ -249,13 +250,13 @@ fn a_pipe_is_no_cloud_and_is_not_waited_for() {
     }
     let (tell, told) = mpsc::channel();
     std::thread::spawn(move || tell.send(Cloud::open(&path).map(|_| ()).map_err(|e| e.to_string())));
-    let refused = told.recv_timeout(Duration::from_secs(10)).expect("it waits for the pipe's writer");
+    let refused = told.recv_timeout(Duration::from_secs(10)).expect("opening waits for the pipe's writer");
     assert!(refused.expect_err("not a file").contains("not a file"));
 }
 
-/// What a tree over samples within 4 m of the origin can have.
+/// Nodes of a tree over samples within 4 m of the origin.
 ///
-/// Seen to catch: no sizes but the flux looked at.
+/// Seen to catch: only the flux is checked.
 #[test]
 fn only_nodes_that_a_tree_can_have_are_good() {
     let good =
@@ -274,7 +275,7 @@ fn only_nodes_that_a_tree_can_have_are_good() {
     }
 }
 
-/// A setting is a length and its name, in a file of any age.
+/// A setting is stored as the length of its name and the name.
 ///
 /// Seen to catch: the number of the variant, as serde would write it.
 #[test]

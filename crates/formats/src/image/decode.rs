@@ -1,4 +1,4 @@
-//! OpenEXR bytes to image. The bytes are not trusted.
+//! Decodes OpenEXR. The bytes are not trusted.
 
 use std::fs::File;
 use std::io::{BufReader, Cursor, Read, Seek};
@@ -15,20 +15,21 @@ use exr::meta::attribute::{Chromaticities, EnvironmentMap, IntegerBounds, Sample
 use exr::meta::header::Header;
 use exr::prelude::f16;
 
+use super::header;
 use super::parallel::parallel;
-use super::{Channel, Image, ImageError, MAX_SAMPLES, Window, header};
+use super::types::{Channel, Image, ImageError, MAX_SAMPLES, Window};
 use crate::memory::has_room;
 
 /// First bytes of every OpenEXR file.
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
-/// A file may unpack to this many times its length, and some more: deflate reaches 1032.
+/// A file may unpack to this many times its length, beyond what is always allowed. Deflate reaches 1032.
 const MAX_EXPANSION: u64 = 2048;
-/// Unpacked bytes that a thread makes before it waits for the others, and the most blocks.
+/// Unpacked bytes that a thread makes before it waits for the others, and the largest number of blocks.
 const BYTES_PER_THREAD: usize = 4 << 20;
 const MAX_BLOCKS_PER_THREAD: usize = 256;
 /// Unpacked bytes that any file may have, however short.
 const ALWAYS_ALLOWED: u64 = 64 << 20;
-/// Bytes of the start of a file in which its compression is looked for, to name it in a refusal.
+/// Bytes at the start of a file in which its compression is found for a refusal.
 const START: u64 = 1 << 20;
 
 /// What the header of an OpenEXR file says about its size.
@@ -40,13 +41,13 @@ pub struct Dimensions {
     pub height: usize,
     /// Channels of all parts.
     pub channels: usize,
-    /// Most bytes that [`Image::read`] fills at a time, those of the file included. Each further thread of
-    /// [`Image::read_with`] fills 12 MiB or three blocks more.
+    /// Largest memory of [`Image::read`], including the file. Each further thread of [`Image::read_with`] takes 12 MiB or three
+    /// blocks more.
     pub reading_bytes: u64,
 }
 
 impl Image {
-    /// Reads the header of an OpenEXR file, and refuses what [`Image::read`] would refuse for its size or kind.
+    /// Reads the header of an OpenEXR file. Refuses what [`Image::read`] refuses because of its size or kind.
     pub fn dimensions(path: &Path) -> Result<Dimensions, ImageError> {
         let outline = outline_of_file(path);
         let outline = outline.map_err(|source| ImageError::File { path: path.to_owned(), source: Box::new(source) })?;
@@ -54,7 +55,7 @@ impl Image {
     }
 }
 
-/// What a header says about the pixels.
+/// The facts of a header about its pixels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Outline {
     pub dimensions: Dimensions,
@@ -62,13 +63,13 @@ pub(crate) struct Outline {
     pub data: Window,
     /// The display window.
     pub display: Window,
-    /// Attribute `envmap`: six sides of a cube instead of latitude and longitude.
+    /// True if the attribute `envmap` states the six sides of a cube instead of latitude and longitude.
     pub is_cube: bool,
     /// CIE x and y of red, green, blue and white.
     pub chromaticities: Option<[f32; 8]>,
 }
 
-/// The outline of a file; its pixels are not read.
+/// Reads the outline of a file without its pixels.
 pub(crate) fn outline_of_file(path: &Path) -> Result<Outline, ImageError> {
     let meta = std::fs::metadata(path)?;
     if !meta.is_file() {
@@ -79,7 +80,7 @@ pub(crate) fn outline_of_file(path: &Path) -> Result<Outline, ImageError> {
     outline(BufReader::new(File::open(path)?), &start, meta.len())
 }
 
-/// The outline of a file of this length, which begins with `start`.
+/// Reads the outline of a file of this length that begins with `start`.
 pub(crate) fn outline(file: impl Read + Seek, start: &[u8], length: u64) -> Result<Outline, ImageError> {
     if !start.starts_with(&MAGIC) {
         return Err(ImageError::NotOpenExr);
@@ -108,7 +109,8 @@ fn numbers(Chromaticities { red, green, blue, white }: Chromaticities) -> [f32; 
     [red.0, red.1, green.0, green.1, blue.0, blue.1, white.0, white.1]
 }
 
-/// Blocks are unpacked by threads of our own, so that a pool of the library never exceeds a program's thread limit.
+/// Decodes a file. The blocks are unpacked by threads of this crate and not by the library's pool, so that a program keeps to its
+/// number of threads.
 pub(super) fn decode(bytes: &[u8], threads: NonZeroUsize) -> Result<Image, ImageError> {
     if !bytes.starts_with(&MAGIC) {
         return Err(ImageError::NotOpenExr);
@@ -129,8 +131,8 @@ pub(super) fn decode(bytes: &[u8], threads: NonZeroUsize) -> Result<Image, Image
         }
         for block in parallel(threads, packed, unpack) {
             let block = block.map_err(fault)?;
-            let part = parts.get_mut(block.index.layer).ok_or_else(|| damaged("a block of no part"))?;
-            part.place(&block)?;
+            let part = parts.get_mut(block.index.layer).ok_or_else(|| damaged("a block belongs to no part"))?;
+            part.store(&block)?;
         }
     }
     for part in parts {
@@ -144,7 +146,7 @@ pub(super) fn decode(bytes: &[u8], threads: NonZeroUsize) -> Result<Image, Image
     Ok(image)
 }
 
-/// Enough for each thread to outweigh its start, few enough for memory.
+/// Blocks for all threads together: enough to outweigh the start of the threads, and few enough for memory.
 fn blocks_at_a_time(headers: &[Header], threads: NonZeroUsize) -> usize {
     (BYTES_PER_THREAD / largest_block(headers)).clamp(1, MAX_BLOCKS_PER_THREAD).saturating_mul(threads.get())
 }
@@ -165,7 +167,7 @@ fn window(bounds: IntegerBounds) -> Window {
 
 /// The display window and the data window, which all parts must share.
 fn common_window(headers: &[Header]) -> Result<(Window, Window), ImageError> {
-    // The others lose data, and the library's decoders of them do not survive damaged files.
+    // The other compressions lose data, and the library's decoders for them panic at damaged files.
     let trusted = |compression| matches!(compression, Uncompressed | RLE | ZIP1 | ZIP16 | PIZ | PXR24);
     if let Some(part) = headers.iter().find(|part| !trusted(part.compression)) {
         return Err(ImageError::Unsupported(part.compression.to_string()));
@@ -177,7 +179,7 @@ fn common_window(headers: &[Header]) -> Result<(Window, Window), ImageError> {
     Ok((window(first.shared_attributes.display_window), window(first.data_window())))
 }
 
-/// The windows of all parts, without their channels.
+/// An image with the windows of all parts and no channels.
 fn empty_image(headers: &[Header]) -> Result<Image, ImageError> {
     let (display, data) = common_window(headers)?;
     let display = (display != data).then_some(display);
@@ -185,12 +187,12 @@ fn empty_image(headers: &[Header]) -> Result<Image, ImageError> {
     Ok(Image { width, height, window: data.position, display, ..Image::default() })
 }
 
-/// Bytes of pixels that a file of this length may claim.
+/// Most bytes of pixels that a file of this length may state.
 pub(crate) fn max_unpacked(file_length: u64) -> u64 {
     ALWAYS_ALLOWED.saturating_add(file_length.saturating_mul(MAX_EXPANSION))
 }
 
-/// Refuses sizes that would take much more memory than the file, before any of it is taken.
+/// Refuses sizes that need much more memory than the file, before any is allocated.
 fn check_size(headers: &[Header], file_length: u64) -> Result<(), ImageError> {
     let allowed = max_unpacked(file_length);
     let mut samples = 0_u64;
@@ -200,7 +202,7 @@ fn check_size(headers: &[Header], file_length: u64) -> Result<(), ImageError> {
         if width == 0 || height == 0 || channels == 0 {
             return Err(damaged(&format!("{width} x {height} pixels with {channels} channels")));
         }
-        // Data windows end below 2^30, so two factors fit; the third may not.
+        // Data windows end below 2^30, so that width times height fits 64 bits; the channels may overflow.
         let pixels = (width as u64).saturating_mul(height as u64);
         samples = samples.saturating_add(pixels.saturating_mul(channels as u64));
         let too_large = |limit| Err(ImageError::TooLarge { width, height, channels, limit });
@@ -221,7 +223,7 @@ fn check_size(headers: &[Header], file_length: u64) -> Result<(), ImageError> {
     Ok(())
 }
 
-/// One part while its blocks arrive.
+/// A part while its blocks are unpacked.
 struct Part {
     layer: Option<String>,
     width: usize,
@@ -253,13 +255,14 @@ impl Part {
         })
     }
 
-    /// Each block may come once: the offsets in the file could name one block twice and another never.
-    fn place(&mut self, block: &UncompressedBlock) -> Result<(), ImageError> {
+    /// Stores the samples of a block. Each block may come once: the offsets in the file could name one block twice and another
+    /// never.
+    fn store(&mut self, block: &UncompressedBlock) -> Result<(), ImageError> {
         let (Vec2(x, y), Vec2(width, height)) = (block.index.pixel_position, block.index.pixel_size);
         let number = y / self.block.1 * self.blocks_per_row + x / self.block.0;
         match self.seen.get_mut(number) {
             Some(seen) if !*seen && block.index.level == Vec2(0, 0) => *seen = true,
-            _ => return Err(damaged("a block that is out of place")),
+            _ => return Err(damaged("a block has the position of another")),
         }
         let mut rest = block.data.as_slice();
         for row in y..y + height {
@@ -268,12 +271,12 @@ impl Part {
                 let target = channel.samples.get_mut(start..start + width);
                 let source = rest.split_at_checked(width * kind.bytes_per_sample());
                 let (Some(target), Some((line, next))) = (target, source) else {
-                    return Err(damaged("a block that is too short or out of place"));
+                    return Err(damaged("a block is too short, or its position lies outside the image"));
                 };
                 if !convert(*kind, line, target) {
                     let name = &channel.name;
                     return Err(ImageError::Unsupported(format!(
-                        "channel `{name}` holds whole numbers that float32 does not hold"
+                        "channel `{name}` holds integers that float32 cannot represent"
                     )));
                 }
                 rest = next;
@@ -298,12 +301,12 @@ impl Part {
     }
 }
 
-/// So many zeros, if there is memory for them.
+/// `count` zeros, if there is memory for them.
 fn zeros<T: Clone + Default>(count: usize) -> Option<Vec<T>> {
     has_room((count as u64).saturating_mul(size_of::<T>() as u64)).then(|| vec![T::default(); count])
 }
 
-/// One row of one channel, in the byte order of this machine, to float32; whether all of it is exact.
+/// Converts one row of one channel, in the byte order of this machine, to float32. False if a value is not exact.
 fn convert(kind: SampleType, line: &[u8], target: &mut [f32]) -> bool {
     match kind {
         SampleType::F16 => {
@@ -320,7 +323,7 @@ fn convert(kind: SampleType, line: &[u8], target: &mut [f32]) -> bool {
             for (value, bytes) in target.iter_mut().zip(line.as_chunks().0) {
                 let whole = u32::from_ne_bytes(*bytes);
                 *value = whole as f32;
-                // In f64, which holds both: back to u32 the largest would saturate and look equal.
+                // The comparison is in float64, which represents both: in uint32 the largest value would saturate and look equal.
                 if f64::from(*value) != f64::from(whole) {
                     return false;
                 }
@@ -330,7 +333,7 @@ fn convert(kind: SampleType, line: &[u8], target: &mut [f32]) -> bool {
     true
 }
 
-/// The library does not name the compressions that came after it.
+/// The error of a file, with the names of compressions that are newer than the library.
 fn refusal(error: ExrError, bytes: &[u8]) -> ImageError {
     match (fault(error), header::compression(bytes)) {
         (ImageError::Unsupported(_), Some(number @ 12..)) => ImageError::Unsupported(match number {

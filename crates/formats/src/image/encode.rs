@@ -1,4 +1,4 @@
-//! Image to OpenEXR bytes.
+//! Encodes OpenEXR.
 
 use std::collections::HashMap;
 use std::io::Cursor;
@@ -15,26 +15,27 @@ use exr::meta::attribute::{
 use exr::meta::header::{Header, LayerAttributes};
 use exr::prelude::SmallVec;
 
+use super::header;
 use super::parallel::parallel;
-use super::{Attribute, Channel, Image, ImageError, MAX_SAMPLES, Window, header};
+use super::types::{Attribute, Channel, Image, ImageError, MAX_SAMPLES, Window};
 
-/// Blocks of 16 rows that a thread compresses at a time: enough to outweigh its start, few enough for memory.
+/// Blocks of 16 rows that a thread compresses at a time: enough to outweigh the start of the thread, and few enough for memory.
 const BLOCKS_PER_THREAD: usize = 4;
 /// Longest name of a channel or attribute, bytes (OpenEXR file layout, "long names").
 const MAX_NAME: usize = 255;
-/// Longest name of a type, bytes: the flag for long names is set by those of channels and attributes only.
+/// Longest name of a type, bytes. Only names of channels and attributes set the flag for long names.
 const MAX_KIND: usize = 31;
 /// Largest coordinate of a data window that OpenEXR libraries accept.
 const MAX_COORDINATE: i64 = (i32::MAX / 2) as i64;
 
-/// Compression takes the time, so blocks are compressed by several threads, then written in order.
+/// Encodes an image. Several threads compress the blocks, which takes most of the time; then they are written in order.
 pub(super) fn encode(image: &Image, threads: NonZeroUsize) -> Result<Vec<u8>, ImageError> {
     check(image)?;
     let mut channels: Vec<&Channel> = image.channels.iter().collect();
     channels.sort_by(|a, b| a.name.as_bytes().cmp(b.name.as_bytes()));
     let header = describe(image, &channels);
     let mut file = Cursor::new(Vec::new());
-    // The library's own checks would refuse standard attributes that it has fields for.
+    // The checks of the library are off: they refuse standard attributes for which it has fields.
     write(&mut file, SmallVec::from_iter([header]), false, |meta, writer| {
         let blocks: Vec<_> = meta.enumerate_ordered_header_block_indices().collect();
         for group in blocks.chunks(threads.get().saturating_mul(BLOCKS_PER_THREAD)) {
@@ -52,7 +53,7 @@ pub(super) fn encode(image: &Image, threads: NonZeroUsize) -> Result<Vec<u8>, Im
     Ok(bytes)
 }
 
-/// The samples of some whole rows as the file stores them: row by row, in it channel by channel.
+/// The samples of a block of whole rows as the file stores them: row by row, and in a row channel by channel.
 fn block(width: usize, channels: &[&Channel], index: BlockIndex) -> UncompressedBlock {
     let first = index.pixel_position.y();
     let rows = first..first + index.pixel_size.height();
@@ -93,10 +94,10 @@ fn describe(image: &Image, channels: &[&Channel]) -> Header {
     header
 }
 
-/// Attributes that every file has, and the library a field for.
+/// Attributes that every file has and for which the library has a field.
 const REQUIRED: [&str; 3] = [header::PIXEL_ASPECT, header::SCREEN_CENTER, header::SCREEN_WIDTH];
 
-/// Sets those of the attributes that the image has; their types were checked.
+/// Sets the required attributes that the image has; their types were checked.
 fn require(header: &mut Header, image: &Image) {
     if let Some(Attribute::Float(aspect)) = image.attributes.get(header::PIXEL_ASPECT) {
         header.shared_attributes.pixel_aspect = *aspect;
@@ -111,7 +112,7 @@ fn require(header: &mut Header, image: &Image) {
     }
 }
 
-/// Bytes as they are: OpenEXR text has no encoding of its own, and its tools show UTF-8.
+/// Text of the library. OpenEXR defines no encoding, and its tools show UTF-8.
 fn text(value: &str) -> Text {
     Text::from_bytes_unchecked(SmallVec::from_slice(value.as_bytes()))
 }
@@ -146,7 +147,7 @@ fn check(image: &Image) -> Result<(), ImageError> {
     }
     if samples == Some(0) {
         return unwritable(format!(
-            "{} x {} pixels with {} channels hold nothing",
+            "{} x {} pixels with {} channels are empty",
             image.width,
             image.height,
             image.channels.len()
@@ -201,7 +202,7 @@ fn check_attribute(name: &str, value: &Attribute) -> Result<(), ImageError> {
     }
 }
 
-/// The library panics at a type without a name.
+/// Checks the name of a type: the library panics at an empty one.
 fn check_kind(name: &str, kind: &str) -> Result<(), ImageError> {
     if kind.is_empty() || kind.len() > MAX_KIND || kind.contains('\0') {
         return unwritable(format!(

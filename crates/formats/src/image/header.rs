@@ -1,13 +1,13 @@
-//! The attributes of an OpenEXR header as bytes: name, zero, type, zero, size, value; a zero ends the list.
+//! The attributes of an OpenEXR header as bytes. Each is a name, a zero, a type, a zero, a size and a value; a zero ends the list.
 
-use super::{Attribute, ImageError};
+use super::types::{Attribute, ImageError};
 
 /// Bytes of the magic number and of the version field, which come first.
 const PREAMBLE: usize = 8;
-/// Bit of the version field: the file has several parts.
+/// The bit of the version field that states several parts.
 const SEVERAL_PARTS: u8 = 0x10;
 
-/// Attributes that describe the layout of the file: written by the library, never part of an image.
+/// Attributes that describe the layout of the file. The library writes them; an image never has them.
 pub(super) const LAYOUT: [&str; 11] = [
     "channels",
     "chunkCount",
@@ -26,14 +26,14 @@ pub(super) const PIXEL_ASPECT: &str = "pixelAspectRatio";
 pub(super) const SCREEN_CENTER: &str = "screenWindowCenter";
 pub(super) const SCREEN_WIDTH: &str = "screenWindowWidth";
 
-/// Between the name of an attribute and the number of a part that disagrees about it.
+/// The text between the name of an attribute and the number of the part that disagrees about it.
 const OF_PART: &str = " of part ";
 
-/// Attributes that every file has, with the bytes of the values that say nothing.
+/// Attributes that every file has, with the bytes of their usual values.
 const USUAL: [(&str, &[u8]); 3] =
     [(PIXEL_ASPECT, &1f32.to_le_bytes()), (SCREEN_CENTER, &[0; 8]), (SCREEN_WIDTH, &1f32.to_le_bytes())];
 
-/// Standard attributes and their types (openexr.com, "Standard Attributes"): readers expect these.
+/// Standard attributes and the types that readers expect (openexr.com, "Standard Attributes").
 const STANDARD: [(&str, &str); 38] = [
     ("adoptedNeutral", "v2f"),
     ("altitude", "float"),
@@ -80,7 +80,7 @@ pub(super) fn standard_kind(name: &str) -> Option<&'static str> {
     STANDARD.iter().find(|(standard, _)| *standard == name).map(|(_, kind)| *kind)
 }
 
-/// One attribute as it lies in the file.
+/// An attribute as bytes of the file.
 struct HeaderField<'a> {
     name: &'a [u8],
     kind: &'a [u8],
@@ -88,10 +88,10 @@ struct HeaderField<'a> {
     all: &'a [u8],
 }
 
-/// Puts the attributes of a file of one part in order of name.
+/// Sorts the attributes of a file of one part by name.
 ///
-/// The exr crate keeps custom attributes in a hash map, so their order changes from run to run. Sorting keeps
-/// the length of the header, hence the offsets of the pixels stay valid.
+/// The exr crate keeps custom attributes in a hash map, so that their order changes from run to run. Sorting keeps the length of
+/// the header, and the offsets of the pixels stay valid.
 pub(super) fn sort(bytes: &mut [u8]) -> Result<(), ImageError> {
     let malformed = || ImageError::Unwritable("the header came out malformed".to_owned());
     let (mut entries, rest) = split(bytes.get(PREAMBLE..).ok_or_else(malformed)?).ok_or_else(malformed)?;
@@ -102,8 +102,8 @@ pub(super) fn sort(bytes: &mut [u8]) -> Result<(), ImageError> {
     Ok(())
 }
 
-/// The attributes of all parts that an image may hold. Where a part disagrees with those before it, its attribute is there
-/// too, named `... of part 2`.
+/// The attributes of all parts, without those of the layout. Where a part disagrees with the parts before it, its attribute is
+/// added with the name `... of part 2`.
 pub(super) fn attributes(bytes: &[u8]) -> Option<std::collections::BTreeMap<String, Attribute>> {
     let several = bytes.get(5)? & SEVERAL_PARTS != 0;
     let mut found = std::collections::BTreeMap::new();
@@ -112,8 +112,8 @@ pub(super) fn attributes(bytes: &[u8]) -> Option<std::collections::BTreeMap<Stri
         let (entries, after) = split(rest)?;
         for entry in &entries {
             let name = text(entry.name);
-            let says_nothing = LAYOUT.contains(&name.as_str()) || USUAL.contains(&(name.as_str(), entry.value));
-            if let (false, Some(value)) = (says_nothing, value(entry)) {
+            let is_implied = LAYOUT.contains(&name.as_str()) || USUAL.contains(&(name.as_str(), entry.value));
+            if let (false, Some(value)) = (is_implied, value(entry)) {
                 match found.get(&name) {
                     Some(first) if *first == value => {}
                     Some(_) if part > 1 => drop(found.insert(format!("{name}{OF_PART}{part}"), value)),
@@ -136,7 +136,7 @@ pub(super) fn compression(bytes: &[u8]) -> Option<u8> {
     entries.iter().find(|entry| entry.name == b"compression")?.value.first().copied()
 }
 
-/// The attributes up to the zero that ends the list, and what follows it.
+/// The attributes up to the zero that ends the list, and the bytes after it.
 fn split(bytes: &[u8]) -> Option<(Vec<HeaderField<'_>>, &[u8])> {
     let mut entries = Vec::new();
     let mut rest = bytes;
@@ -158,7 +158,7 @@ fn split_at_zero(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     Some((&bytes[..end], &bytes[end + 1..]))
 }
 
-/// `None` for values of the wrong size.
+/// The value of an attribute; none if its size is wrong.
 fn value(entry: &HeaderField<'_>) -> Option<Attribute> {
     Some(match entry.kind {
         b"string" => Attribute::Text(text(entry.value)),
@@ -192,7 +192,7 @@ fn texts(bytes: &[u8]) -> Option<Vec<String>> {
     Some(list)
 }
 
-/// Text is UTF-8 in files of today; Latin-1, which never fails, in older ones.
+/// Text of the file: UTF-8 in current files, and Latin-1, which any bytes are, in older ones.
 pub(super) fn text(bytes: &[u8]) -> String {
     match std::str::from_utf8(bytes) {
         Ok(text) => text.to_owned(),
@@ -223,9 +223,9 @@ mod tests {
         }
     }
 
-    /// Caught: an attribute of the second part that nobody could see.
+    /// Seen to catch: an attribute of the second part that is lost.
     #[test]
-    fn parts_that_disagree_are_both_heard() {
+    fn attributes_of_disagreeing_parts_are_all_kept() {
         let mut bytes = b"\x76\x2f\x31\x01\x02\x10\0\0".to_vec();
         bytes.extend(b"a\0int\0\x04\0\0\0\x07\0\0\0b\0int\0\x04\0\0\0\x07\0\0\0\0");
         bytes.extend(b"a\0int\0\x04\0\0\0\x07\0\0\0b\0int\0\x04\0\0\0\x08\0\0\0\0\0");
@@ -234,7 +234,7 @@ mod tests {
         assert_eq!(attributes(&bytes), Some(expected.into()));
     }
 
-    /// A size that is negative or beyond the end ends the reading, not the program.
+    /// A size that is negative or beyond the end is no panic.
     #[test]
     fn damage_never_panics() {
         let whole = header();
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn old_text_is_latin() {
+    fn text_that_is_not_utf8_is_latin1() {
         assert_eq!(text(b"Gr\xc3\xbc\xc3\x9fe"), "Grüße");
         assert_eq!(text(b"Gr\xfc\xdfe"), "Grüße");
     }

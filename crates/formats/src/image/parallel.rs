@@ -1,4 +1,4 @@
-//! Blocks of pixels, packed and unpacked, and of a cloud, checked, by several threads.
+//! Work on blocks of a file by several threads.
 
 use std::{
     num::NonZeroUsize,
@@ -6,7 +6,7 @@ use std::{
     thread::{Builder, ScopedJoinHandle},
 };
 
-/// What `work` makes of each item, in the order of the items, whatever the number of threads.
+/// The results of `work` for each item, in the order of the items for any number of threads.
 pub(crate) fn parallel<T: Send, R: Send>(threads: NonZeroUsize, items: Vec<T>, work: impl Fn(T) -> R + Sync) -> Vec<R> {
     if threads.get() == 1 || items.len() < 2 {
         return items.into_iter().map(work).collect();
@@ -15,7 +15,7 @@ pub(crate) fn parallel<T: Send, R: Send>(threads: NonZeroUsize, items: Vec<T>, w
     let mut rest = items.into_iter();
     let shares = std::iter::from_fn(|| Some(rest.by_ref().take(share).collect::<Vec<T>>()).filter(|s| !s.is_empty()));
     let shares: Vec<Mutex<Vec<T>>> = shares.map(Mutex::new).collect();
-    // Each share is taken once, by its thread or, where that cannot be started, by this one.
+    // Each share is done once, by its own thread, or by this one where the system starts no thread.
     let done = |share: &Mutex<Vec<T>>| {
         let items = std::mem::take(&mut *share.lock().unwrap_or_else(PoisonError::into_inner));
         items.into_iter().map(&work).collect::<Vec<R>>()
@@ -25,7 +25,7 @@ pub(crate) fn parallel<T: Send, R: Send>(threads: NonZeroUsize, items: Vec<T>, w
         let start = |share| (share, Builder::new().spawn_scoped(scope, move || done(share)).ok());
         let started: Vec<_> = shares.iter().map(start).collect();
         let result = |(share, thread): (_, Option<ScopedJoinHandle<Vec<R>>>)| match thread {
-            Some(thread) => thread.join().expect("no block is one that packing panics at"),
+            Some(thread) => thread.join().expect("work on a block does not panic"),
             None => done(share),
         };
         started.into_iter().flat_map(result).collect()
@@ -38,7 +38,7 @@ mod tests {
 
     use super::*;
 
-    /// Planted and caught: threads joined last first, more shares than threads, the last share left out.
+    /// Seen to catch: threads joined last first, more shares than threads, the last share left out.
     #[test]
     fn results_keep_the_order_of_the_items() {
         for count in [0, 1, 2, 7, 64] {

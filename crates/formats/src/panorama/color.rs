@@ -1,9 +1,8 @@
-//! Colors of other primaries as linear Rec. 709, which the programs compute in.
+//! Conversion of colors with other primaries to linear Rec. 709, in which the programs compute.
 //!
-//! Where the white differs too, von Kries adaptation in Bradford's cones (Lam 1985) takes it along, so that what is
-//! neutral stays neutral.
+//! Where the white differs, von Kries adaptation of Bradford's cone responses (Lam 1985) keeps neutral colors neutral.
 
-use super::Panorama;
+use super::pixels::Panorama;
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 
@@ -13,23 +12,23 @@ const REC_709: [f64; 8] = {
     [rx, ry, gx, gy, bx, by, wx, wy]
 };
 
-/// Coordinates that differ by less are the same, printed with fewer digits.
-const NEAR: f64 = 5e-4;
+/// Coordinates that differ by less are taken as equal, since files print them with few digits.
+const TOLERANCE: f64 = 5e-4;
 
-/// A share of the light that need not be spoken of: half floats are rounded by more.
-const LITTLE: f64 = 1e-5;
+/// The relative change of the mean radiance that needs no warning: half floats are rounded by more.
+const NEGLIGIBLE: f64 = 1e-5;
 
-/// XYZ to the responses of the cones.
+/// From CIE XYZ to the responses of the cones.
 const BRADFORD: DMat3 = DMat3::from_cols_array(&[
     0.8951, -0.7502, 0.0389, //
     0.2664, 1.7135, -0.0685, //
     -0.1614, 0.0367, 1.0296,
 ]);
 
-/// The color space that a file states, by CIE x and y of red, green, blue and white. Returns the matrix to linear Rec.
-/// 709; `None` is that the colors are in it already.
+/// The matrix to linear Rec. 709 from the color space with these CIE x and y of red, green, blue and white; none if that is
+/// Rec. 709.
 pub(super) fn to_rec_709(stated: [f64; 8]) -> Result<Option<DMat3>, String> {
-    if stated.iter().zip(REC_709).all(|(a, b)| (a - b).abs() < NEAR) {
+    if stated.iter().zip(REC_709).all(|(a, b)| (a - b).abs() < TOLERANCE) {
         return Ok(None);
     }
     let matrix = to_xyz(stated).zip(to_xyz(REC_709)).and_then(|((own, own_white), (target, white))| {
@@ -38,11 +37,12 @@ pub(super) fn to_rec_709(stated: [f64; 8]) -> Result<Option<DMat3>, String> {
         let matrix = target.inverse() * adapted * own;
         (from.min_element() > 0.0 && matrix.is_finite()).then_some(matrix)
     });
-    let unusable = || format!("{stated:?} are no red, green, blue and white; save the picture as linear Rec. 709");
+    let unusable =
+        || format!("{stated:?} are no primaries and white of a color space; save the picture as linear Rec. 709");
     matrix.map(Some).ok_or_else(unusable)
 }
 
-/// The matrix from a color space to CIE XYZ, and its white there.
+/// The matrix from a color space to CIE XYZ, and the XYZ of its white.
 fn to_xyz([rx, ry, gx, gy, bx, by, wx, wy]: [f64; 8]) -> Option<(DMat3, DVec3)> {
     let xyz = |x: f64, y: f64| DVec3::new(x, y, 1.0 - x - y);
     let primaries = DMat3::from_cols(xyz(rx, ry), xyz(gx, gy), xyz(bx, by));
@@ -52,15 +52,15 @@ fn to_xyz([rx, ry, gx, gy, bx, by, wx, wy]: [f64; 8]) -> Option<(DMat3, DVec3)> 
     usable.then(|| (primaries * DMat3::from_diagonal(amounts), white))
 }
 
-/// Converts all pixels. A color outside Rec. 709 has a negative channel, and radiance that is chosen by cannot be
-/// negative: 0 takes its place, and a warning says what the map's light then is.
+/// Converts all pixels. A color outside the gamut of Rec. 709 has a negative channel, which becomes 0 because a density is made
+/// of the radiance; a warning states how much the light of the map changes.
 pub(super) fn convert(picture: &mut Panorama, matrix: DMat3) {
     let (mut exact_mean, mut mean, mut outside) = (DVec3::ZERO, DVec3::ZERO, 0_u64);
     let (width, height) = (picture.width, picture.height);
     for (row, pixels) in picture.pixels.chunks_mut(width).enumerate() {
         let weight = share_of_sphere(row, height) / width as f64;
         for pixel in pixels {
-            // What is no radiance stays: the map refuses it by its place.
+            // Numbers that are no radiance stay: the environment map refuses them and names the pixel.
             if !pixel.iter().all(|x| x.is_finite() && *x >= 0.0) {
                 continue;
             }
@@ -72,10 +72,10 @@ pub(super) fn convert(picture: &mut Panorama, matrix: DMat3) {
             *pixel = kept.as_vec3().to_array();
         }
     }
-    if (mean - exact_mean).max_element() > LITTLE * mean.max_element() {
+    if (mean - exact_mean).max_element() > NEGLIGIBLE * mean.max_element() {
         let three = |v: DVec3| v.to_array().map(|x| format!("{x:.4e}")).join(" ");
         picture.warnings.push(format!(
-            "{outside} of {} pixels have colors outside Rec. 709: channels below 0 are taken as 0, and the mean radiance \
+            "{outside} of {} pixels have colors outside Rec. 709: negative channels become 0, and the mean radiance \
              of the picture is {} instead of {} (red, green, blue)",
             width * height,
             three(mean),
@@ -84,7 +84,7 @@ pub(super) fn convert(picture: &mut Panorama, matrix: DMat3) {
     }
 }
 
-/// Share of the sphere's solid angle that a row covers.
+/// The fraction of the sphere's solid angle that a row covers.
 fn share_of_sphere(row: usize, height: usize) -> f64 {
     let border = |row: usize| (PI * row as f64 / height as f64).cos();
     0.5 * (border(row) - border(row + 1))

@@ -1,13 +1,16 @@
-//! Radiance HDR bytes to pixels (Ward 1994, "Real pixels", and the reference manual's picture format). The bytes are
-//! not trusted.
+//! Decodes Radiance HDR (Ward 1991, "Real pixels", Graphics Gems II; and the picture format in the Radiance reference manual).
+//! The bytes are not trusted.
 
-use super::{PIXEL_BYTES, Panorama, PanoramaSize, black, check_size, color};
+use super::{
+    color,
+    pixels::{PIXEL_BYTES, Panorama, PanoramaSize, black, check_size},
+};
 use glam::DMat3;
 
-/// Widths that the scan lines of run-length coding have.
+/// Widths of scan lines with run-length coding.
 const CODED_WIDTHS: std::ops::Range<usize> = 8..32768;
 
-/// A byte stands for fewer pixels than this: four runs of two bytes code 127.
+/// A byte codes at most this many pixels: four runs of two bytes code 127.
 const PIXELS_PER_BYTE: u64 = 16;
 
 pub(super) fn decode(bytes: &[u8]) -> Result<Panorama, String> {
@@ -26,14 +29,14 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Panorama, String> {
     Ok(picture)
 }
 
-/// The size of a file of this length, which begins with `bytes`.
+/// The size of the picture in a file of this length that begins with `bytes`.
 pub(super) fn size(bytes: &[u8], length: u64) -> Result<PanoramaSize, String> {
     let (_, [width, height]) = start(&mut Reader { rest: bytes }, length)?;
     let pixels = (width as u64).saturating_mul(height as u64).saturating_mul(PIXEL_BYTES);
     Ok(PanoramaSize { width, height, reading_bytes: length.saturating_add(pixels) })
 }
 
-/// Reads all before the first row: the header, columns and rows.
+/// Reads all that comes before the first row: header, columns and rows.
 fn start(reader: &mut Reader, length: u64) -> Result<(Header, [usize; 2]), String> {
     let whole = reader.rest.len() as u64;
     let header = header(reader)?;
@@ -47,7 +50,7 @@ fn start(reader: &mut Reader, length: u64) -> Result<(Header, [usize; 2]), Strin
     Ok((header, size))
 }
 
-/// Scene-linear color: mantissas share an exponent.
+/// Scene-linear color of three mantissas with one exponent.
 fn radiance([r, g, b, exponent]: [u8; 4], gain: [f64; 3]) -> [f32; 3] {
     if exponent == 0 {
         return [0.0; 3];
@@ -57,16 +60,16 @@ fn radiance([r, g, b, exponent]: [u8; 4], gain: [f64; 3]) -> [f32; 3] {
     [r * gain[0], g * gain[1], b * gain[2]].map(|x| (x * unit) as f32)
 }
 
-/// What a header says about the numbers of the pixels.
+/// The facts of a header about the pixels.
 struct Header {
-    /// What they are multiplied by: all exposures and color corrections that they were multiplied with are undone.
+    /// Factors that undo all exposures and color corrections.
     gain: [f64; 3],
-    /// From their primaries to Rec. 709, if they have others.
+    /// Conversion to Rec. 709 from other primaries.
     matrix: Option<DMat3>,
 }
 
-/// Reads the lines before the resolution. A line that begins with a space or tab tells of a picture that this one was
-/// made from.
+/// Reads the lines before the resolution. A line that begins with a space or tab describes a picture from which this one was
+/// made, and is skipped.
 fn header(reader: &mut Reader) -> Result<Header, String> {
     let mut header = Header { gain: [1.0; 3], matrix: None };
     loop {
@@ -90,7 +93,7 @@ fn header(reader: &mut Reader) -> Result<Header, String> {
             }
             "PRIMARIES" => {
                 let stated: [f64; 8] = numbers()?.try_into().map_err(|_| bad())?;
-                // Some programs write zeros for what they do not know.
+                // Some programs write zeros for unknown primaries.
                 let known = stated != [0.0; 8];
                 header.matrix =
                     if known { color::to_rec_709(stated).map_err(|e| format!("{name}: {e}"))? } else { None };
@@ -107,7 +110,7 @@ fn header(reader: &mut Reader) -> Result<Header, String> {
     }
 }
 
-/// Rows from the top, columns from the left: the one order that programs write.
+/// Reads the size. Only rows from the top and columns from the left are supported, the one order that programs write.
 fn resolution(line: &str) -> Result<[usize; 2], String> {
     let unknown = || format!("`{line}`: the line `-Y height +X width` is needed; save the picture again");
     let words: Vec<&str> = line.split_whitespace().collect();
@@ -118,7 +121,7 @@ fn resolution(line: &str) -> Result<[usize; 2], String> {
     Ok([number(width)?, number(height)?])
 }
 
-/// What is left of the file.
+/// The rest of the file.
 struct Reader<'a> {
     rest: &'a [u8],
 }
@@ -138,7 +141,7 @@ impl<'a> Reader<'a> {
         std::str::from_utf8(line).map(str::trim_end).map_err(|_| "the header is no text; make the file again".into())
     }
 
-    /// Reads one row of mantissas and exponents, in runs or pixel by pixel.
+    /// Reads one row of mantissas and exponents, run by run or pixel by pixel.
     fn scan_line(&mut self, width: usize, line: &mut Vec<[u8; 4]>) -> Result<(), String> {
         line.clear();
         let coded = self.rest.first_chunk().is_some_and(|[a, b, c, _]| *a == 2 && *b == 2 && *c < 128);
@@ -153,14 +156,14 @@ impl<'a> Reader<'a> {
         for _ in 0..width {
             let pixel = self.take()?;
             if pixel[..3] == [1; 3] {
-                return Err("its runs are coded as before 1991; save the picture again".into());
+                return Err("its runs have the coding of before 1991; save the picture again".into());
             }
             line.push(pixel);
         }
         Ok(())
     }
 
-    /// One component of a row: runs of one value, and values one by one.
+    /// Reads one component of a row: runs of one value, and single values.
     fn runs(&mut self, line: &mut [[u8; 4]], component: usize) -> Result<(), String> {
         let mut at = 0;
         while at < line.len() {
@@ -195,7 +198,7 @@ mod tests {
     /// Ten pixels: a run of seven reds and three single ones, runs of the other components.
     const CODED: [u8; 18] = [2, 2, 0, 10, 135, 64, 3, 1, 2, 3, 138, 128, 138, 0, 133, 129, 133, 130];
 
-    /// Planted: a run taken as single values, the exponent's offset one off, rows of runs one short.
+    /// Seen to catch: a run taken as single values, the exponent's offset one off, rows of runs one short.
     #[test]
     fn runs_and_single_values() {
         let picture = decode(&file(HEAD, "-Y 1 +X 10", &CODED)).expect("a picture");
@@ -207,7 +210,7 @@ mod tests {
         assert_eq!(flat.pixels, [[1.0, 0.0, 0.0], [0.0; 3]]);
     }
 
-    /// Planted: pixels multiplied by the exposure.
+    /// Seen to catch: pixels multiplied by the exposure.
     #[test]
     fn exposure_and_color_correction_are_undone() {
         let head = format!("{HEAD}EXPOSURE= 2\nEXPOSURE=4\nCOLORCORR=1 0.5 1\nSOFTWARE=x=y\n");
@@ -219,8 +222,7 @@ mod tests {
         }
     }
 
-    /// The tree without this took all primaries for Rec. 709, undid the exposures of pictures that this one was made
-    /// from, and took a picture for display for a linear one.
+    /// Seen to catch: all primaries taken for Rec. 709; exposures of earlier pictures undone; gamma ignored.
     #[test]
     fn primaries_are_converted_and_history_is_not_read() {
         let with = |line: &str| decode(&file(&format!("{HEAD}{line}\n"), "-Y 1 +X 1", &[128, 128, 128, 129]));

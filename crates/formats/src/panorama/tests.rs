@@ -1,4 +1,4 @@
-//! Pictures of either format, their windows and colors, and damaged ones.
+//! Environment maps of both formats, their windows and colors, and damaged files.
 
 use super::*;
 use crate::{Attribute, Channel, Window};
@@ -62,8 +62,8 @@ fn decoded(image: &Image) -> Result<Panorama, String> {
     Panorama::decode(&image.encode().expect("encodes"))
 }
 
-/// The tree without this stretched the data window over the sphere, whatever the display window. Planted: the offset of
-/// one window for that of the other, rows for columns.
+/// Seen to catch: the data window stretched over the sphere; the offset of one window taken for that of the other; rows taken
+/// for columns.
 #[test]
 fn the_display_window_is_the_sphere() {
     let window = |x: i32, y: i32, width: usize, height: usize| Window { position: [x, y], size: [width, height] };
@@ -78,7 +78,7 @@ fn the_display_window_is_the_sphere() {
     assert_eq!((reds(&both), both.warnings.len()), (vec![4.0, 0.0, 0.0, 0.0], 2));
     let apart = decoded(&windows(window(4, 0, 2, 1), window(0, 0, 4, 2))).expect_err("nothing is shown");
     assert!(apart.contains("outside its display window"), "{apart}");
-    // Black is free in a file, and not in memory.
+    // Black takes no room in a file, but it does in memory.
     for size in [[16_000, 8_000], [1 << 20, 1 << 20]] {
         let display = Window { position: [0, 0], size };
         let message = decoded(&windows(window(0, 0, 1, 1), display)).expect_err("refused");
@@ -95,7 +95,7 @@ fn with_chromaticities(numbers: [f32; 8], planes: &[(&str, [f32; 2])]) -> Image 
 
 const ACESCG: [f32; 8] = [0.713, 0.293, 0.165, 0.830, 0.128, 0.044, 0.32168, 0.33767];
 
-/// The tree without this took the numbers for Rec. 709, whatever the file said.
+/// Seen to catch: all numbers taken for Rec. 709.
 #[test]
 fn other_primaries_become_rec_709() {
     let inside = [("R", [0.5, 1.0]), ("G", [0.5, 0.9]), ("B", [0.5, 0.8])];
@@ -105,7 +105,7 @@ fn other_primaries_become_rec_709() {
         assert!((found - expected).abs() < 2e-4, "{found} {expected}");
     }
     assert_eq!(picture.warnings, [""; 0]);
-    // Pure green, in half of the sphere: what is cut off is said.
+    // Half of the sphere is pure green: the warning states the change of the light.
     let green = [("R", [0.0, 0.5]), ("G", [1.0, 0.5]), ("B", [0.0, 0.5])];
     let picture = decoded(&with_chromaticities(ACESCG, &green)).expect("a picture");
     let [r, g, b] = picture.pixels[0];
@@ -113,7 +113,7 @@ fn other_primaries_become_rec_709() {
     let said = "1 of 2 pixels have colors outside Rec. 709: channels below 0 are taken as 0, and the mean radiance of the \
                 picture is 2.5000e-1 8.2040e-1 2.5000e-1 instead of -6.0";
     assert!(picture.warnings.len() == 1 && picture.warnings[0].starts_with(said), "{:?}", picture.warnings);
-    // What is no radiance is left for the map to refuse by its place.
+    // Numbers that are no radiance are kept, for the environment map to refuse.
     let bad = [("R", [f32::NAN, -1.0]), ("G", [1.0, 1.0]), ("B", [1.0, 1.0])];
     let picture = decoded(&with_chromaticities(ACESCG, &bad)).expect("a picture");
     assert!(picture.pixels[0][0].is_nan() && picture.pixels[1] == [-1.0, 1.0, 1.0]);
@@ -131,15 +131,15 @@ fn rec_709_and_grey_keep_their_bits_and_alpha_is_over_black() {
     assert_eq!(grey.pixels, [[0.1; 3], [0.2; 3]]);
 }
 
-/// The tree without this took a cube for latitude and longitude, and X, Y and Z for grey.
+/// Seen to catch: a cube taken for latitude and longitude; X, Y and Z taken for gray.
 #[test]
 fn other_projections_and_color_models_are_refused() {
     let mut image = with_chromaticities(ACESCG, &[("R", [1.0; 2]), ("G", [1.0; 2]), ("B", [1.0; 2])]);
     for (kind, refused) in [("\u{0}", false), ("\u{1}", true)] {
         image.attributes = [("envmaQ".to_owned(), Attribute::Text(kind.into()))].into();
         let mut bytes = image.encode().expect("encodes");
-        let place = bytes.windows(14).position(|w| w == b"envmaQ\0string\0").expect("the attribute");
-        bytes[place..place + 14].copy_from_slice(b"envmap\0envmap\0");
+        let start = bytes.windows(14).position(|w| w == b"envmaQ\0string\0").expect("the attribute");
+        bytes[start..start + 14].copy_from_slice(b"envmap\0envmap\0");
         let message = Panorama::decode(&bytes).err().unwrap_or_default();
         assert_eq!(message.contains("envmap: it is a cube"), refused, "{message}");
     }
@@ -147,14 +147,14 @@ fn other_projections_and_color_models_are_refused() {
     assert!(message.contains("X, Y and Z"), "{message}");
 }
 
-/// The size is known without the pixels, and the need of memory covers them.
+/// The size is read without the pixels, and the stated memory covers them.
 #[test]
 fn the_size_is_in_the_header() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("sky.exr");
     let window = |width: usize, height: usize| Window { position: [0, 0], size: [width, height] };
     let whole = windows(window(30, 20), window(40, 50)).encode().expect("encodes");
-    // Of the first block of pixels some is there still.
+    // Part of the first block of pixels is there.
     std::fs::write(&path, &whole[..whole.len() * 2 / 3]).expect("writes");
     let size = Panorama::size(&path).expect("a size");
     assert_eq!((size.width, size.height), (40, 50));

@@ -1,9 +1,9 @@
-//! The display window of an OpenEXR picture is the whole sphere: what the data window has beyond it is cropped, and
-//! where it has nothing it is black.
+//! The display window of an OpenEXR picture is the whole sphere: pixels of the data window outside it are dropped, and the rest
+//! of it is black.
 
 use crate::image::decode::Outline;
 
-/// Which part of a data window is shown, and where.
+/// The part of a data window that lies in the display window.
 pub(super) struct Overlap {
     /// First column and row in the data window, and in the display window.
     from: [usize; 2],
@@ -13,7 +13,7 @@ pub(super) struct Overlap {
 }
 
 impl Overlap {
-    /// What the two windows share.
+    /// The pixels that both windows share.
     pub fn of(outline: &Outline) -> Result<Overlap, String> {
         let (data, display) = (outline.data, outline.display);
         let mut overlap = Overlap { from: [0; 2], to: [0; 2], size: [0; 2] };
@@ -22,7 +22,9 @@ impl Overlap {
             let end = |start: i64, count: usize| start.saturating_add(count as i64);
             let (first, last) = (a.max(b), end(a, data.size[k]).min(end(b, display.size[k])));
             if first >= last {
-                return Err("its data window lies outside its display window: nothing is shown; save it again".into());
+                return Err(
+                    "its data window lies outside its display window, which leaves no pixel; save it again".into()
+                );
             }
             (overlap.from[k], overlap.to[k]) = ((first - a) as usize, (first - b) as usize);
             overlap.size[k] = (last - first) as usize;
@@ -30,7 +32,7 @@ impl Overlap {
         Ok(overlap)
     }
 
-    /// Says what is cropped and what is black.
+    /// Tells what is cropped and what is black.
     pub fn warnings(&self, outline: &Outline) -> Vec<String> {
         let [data, display] = [outline.data, outline.display].map(|w| w.size);
         let mut list = Vec::new();
@@ -46,7 +48,7 @@ impl Overlap {
         list
     }
 
-    /// Ranges of pixels of the data window and of the display window, row by row.
+    /// For each row, the ranges of its pixels in the data window and in the display window.
     pub fn rows(&self, outline: &Outline) -> impl Iterator<Item = [std::ops::Range<usize>; 2]> {
         let Overlap { from, to, size } = *self;
         let [data, display] = [outline.data.size[0], outline.display.size[0]];

@@ -1,9 +1,8 @@
-//! Accessors with every range checked before anything is read.
+//! Accessors. Their ranges are checked before any element is read.
 
 use super::{
-    Fault,
     container::{Document, part},
-    get,
+    fault::{Fault, get},
     number::Number,
 };
 use gltf::json::{
@@ -13,19 +12,19 @@ use gltf::json::{
     validation::Checked,
 };
 
-/// An accessor whose type and range are right; its elements are still bytes.
+/// An accessor whose type and range are checked. Its elements are still bytes.
 pub(super) struct Column<'a> {
-    /// Where the file names it, for messages.
+    /// The field of the file that names it, for messages.
     field: String,
-    /// What an element is made of.
+    /// The type of its numbers.
     number: Number,
     elements: Elements<'a>,
     changes: Option<Changes<'a>>,
 }
 
-/// Elements of a sparse accessor that differ from its buffer view.
+/// Elements of a sparse accessor that replace those of its buffer view.
 struct Changes<'a> {
-    places: Elements<'a>,
+    indices: Elements<'a>,
     values: Elements<'a>,
 }
 
@@ -45,12 +44,12 @@ impl<'a> Elements<'a> {
 }
 
 impl<'a> Column<'a> {
-    /// A list of vectors, of float32 or quantised (KHR_mesh_quantization).
+    /// A list of vectors of float32 or quantized (KHR_mesh_quantization).
     pub fn vectors(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self, Fault> {
         Column::of_vectors(document, index, (Type::Vec3, 3), field)
     }
 
-    /// A list of texture coordinates, of float32 or integers.
+    /// A list of texture coordinates of float32 or integers.
     pub fn coordinates(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self, Fault> {
         Column::of_vectors(document, index, (Type::Vec2, 2), field)
     }
@@ -71,7 +70,7 @@ impl<'a> Column<'a> {
         }
     }
 
-    /// A list of colors with or without alpha, of float32 or of normalized integers.
+    /// A list of colors with or without alpha, of float32 or normalized integers.
     pub fn colors(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self, Fault> {
         let accessor = get(&document.root.accessors, index, &field)?;
         let number = component(accessor).and_then(|c| Number::of_color(c, accessor.normalized));
@@ -128,7 +127,7 @@ impl<'a> Column<'a> {
         self.elements.count
     }
 
-    /// The elements, every number finite; numbers that they do not have are 1.
+    /// The elements. Every number is finite, and components that the accessor lacks are 1.
     pub fn read_reals<const N: usize>(&self) -> Result<Vec<[f32; N]>, Fault> {
         let (number, size) = (self.number, self.number.size());
         let list = self.read(|bytes| {
@@ -136,7 +135,7 @@ impl<'a> Column<'a> {
             std::array::from_fn(|_| numbers.next().unwrap_or(1.0))
         })?;
         match list.iter().enumerate().find(|(_, v)| !v.iter().all(|x| x.is_finite())) {
-            // What it is stays untold, here and below: a link can make a buffer of any file.
+            // Here and below, messages do not state the value, because a link can make a buffer of any file.
             Some((k, _)) => Err(format!("{}: element {k} is not finite; repair the mesh and export again", self.field)),
             None => Ok(list),
         }
@@ -156,8 +155,8 @@ impl<'a> Column<'a> {
     fn read<T>(&self, decode: impl Fn(&[u8]) -> T) -> Result<Vec<T>, Fault> {
         let mut list: Vec<T> = self.elements.iter().map(&decode).collect();
         let Some(changes) = &self.changes else { return Ok(list) };
-        for (at, (place, value)) in changes.places.iter().zip(changes.values.iter()).enumerate() {
-            let slot = list.get_mut(Number::unsigned(place) as usize);
+        for (at, (index, value)) in changes.indices.iter().zip(changes.values.iter()).enumerate() {
+            let slot = list.get_mut(Number::unsigned(index) as usize);
             let slot = slot.ok_or_else(|| format!("{}: the sparse index at {at} is out of range", self.field))?;
             *slot = decode(value);
         }
@@ -166,7 +165,7 @@ impl<'a> Column<'a> {
 }
 
 impl<'a> Changes<'a> {
-    /// Of an accessor of `all` elements: each changes once at most, so that a file cannot make few of them long to read.
+    /// The changes of an accessor of `all` elements. There are at most as many, so that a short accessor is not slow to read.
     fn new(document: &'a Document, sparse: &Sparse, all: u64, size: usize, unit: usize) -> Result<Self, Fault> {
         let count = sparse.count.0;
         if count > all {
@@ -179,9 +178,9 @@ impl<'a> Changes<'a> {
         };
         let index_size = index_size.ok_or("the indices must be unsigned integers")?;
         let offset = indices.byte_offset.0;
-        let places = Run { view: &indices.buffer_view, offset, count, size: index_size, unit: index_size };
+        let replaced = Run { view: &indices.buffer_view, offset, count, size: index_size, unit: index_size };
         let values = Run { view: &values.buffer_view, offset: values.byte_offset.0, count, size, unit };
-        Ok(Changes { places: places.elements(document)?, values: values.elements(document)? })
+        Ok(Changes { indices: replaced.elements(document)?, values: values.elements(document)? })
     }
 }
 
@@ -215,14 +214,14 @@ impl Run<'_> {
     }
 }
 
-/// The least that a vertex takes in a file: a position of 8-bit integers, aligned.
-const BYTES_PER_VERTEX: u64 = 4;
+/// Fewest bytes of a vertex in a file: an aligned position of 8-bit integers.
+const MIN_BYTES_PER_VERTEX: u64 = 4;
 
-/// What a sparse accessor without a buffer view starts from. No byte of the file bears these elements out, but others
-/// of the same vertices must: a short file that names many would take any memory.
+/// The zeros that a sparse accessor without a buffer view changes. They take no bytes of the file, but other attributes of the
+/// same vertices do; without this limit, a short file could need any memory.
 fn zeros(count: u64, size: usize, longest: usize) -> Result<Elements<'static>, Fault> {
     const ZEROS: [u8; 16] = [0; 16];
-    let limit = longest as u64 / BYTES_PER_VERTEX;
+    let limit = longest as u64 / MIN_BYTES_PER_VERTEX;
     if count > limit {
         return Err(format!("{count} elements without a bufferView, a file of this length holds at most {limit}"));
     }

@@ -1,11 +1,14 @@
-//! The file's cameras.
+//! Import of cameras.
 
-use super::{Fault, get, nodes::Placed};
+use super::{
+    fault::{Fault, get},
+    nodes::Placed,
+};
 use crate::{Camera, Projection};
 use gltf::json::{self, camera::Type, validation::Checked};
 use std::f64::consts::PI;
 
-/// Most bytes of the names of all cameras, each of as many nodes as carry it.
+/// Most bytes of the names of all cameras, counted for each node that carries one.
 const MAX_NAME_BYTES: usize = 1 << 24;
 
 /// One camera for each node that carries one, in the order of the nodes.
@@ -48,7 +51,7 @@ fn of_node(placed: &Placed, camera: &json::Camera, metres_per_unit: f64) -> Resu
 
 fn perspective(yfov: f64) -> Result<Projection, Fault> {
     let tangent = (0.5 * yfov).tan();
-    // Beyond pi the tangent is that of another angle.
+    // Beyond pi, the tangent is that of another angle.
     if !(yfov > 0.0 && yfov < PI && tangent.is_finite()) {
         return Err(format!("yfov {yfov} must lie between 0 and pi"));
     }

@@ -1,16 +1,16 @@
-//! What a camera's near and far planes would cut off: they are not honoured, which matters only then.
+//! Whether the near and far planes of a camera, which are not honoured, would cut anything off.
 
 use crate::{Camera, Projection, mesh::Mesh};
 use glam::DVec3;
 
-/// So many triangles are asked for all cameras; of what is left, a plane is taken to cut.
+/// Most triangles that are tested for all cameras together. Planes that are left after that count as cutting.
 pub(super) const MAX_TESTS: usize = 1 << 26;
 
-/// What clipping a triangle costs, in triangles that are only asked for their depth.
+/// Cost of clipping a triangle, in tests of depth.
 const COST_OF_CLIPPING: usize = 4;
 
-/// Whether something is seen nearer than the first, and farther than the second plane, m. `bounds` are the mesh's, and
-/// `room` is how many triangles may still be asked.
+/// Whether the camera sees anything nearer than the first plane, and farther than the second, m. `bounds` are those of the mesh,
+/// and `room` is the number of tests that are left.
 pub(super) fn cuts(
     (mesh, bounds): (&Mesh, (DVec3, DVec3)),
     origin: DVec3,
@@ -48,34 +48,35 @@ pub(super) fn cuts(
     cut
 }
 
-/// Some of the triangle lies within the frame, and before the near or behind the far plane.
+/// True if a part of the triangle lies in the frame, and before the near plane (`side` 0) or behind the far plane.
 fn is_seen(camera: &Camera, corners: [DVec3; 3], [near, far]: [f64; 2], side: usize) -> bool {
     let local = |p: DVec3| DVec3::new(p.dot(camera.right), p.dot(camera.up), p.dot(camera.forward));
     let corners = corners.map(local);
-    // Half the frame's width and height: what they are at depth 0, and what they gain with depth.
+    // Half the height of the frame: at depth 0, and its increase with depth.
     let (fixed, slope) = match camera.projection {
         Projection::Perspective { tangent } => (0.0, tangent),
         Projection::Orthographic { half_height } => (half_height, 0.0),
     };
-    // A camera without an aspect sees as wide as its image is; square, say.
+    // A camera without an aspect ratio has that of the image, which is taken as square.
     let aspect = camera.aspect.unwrap_or(1.0);
     let edge = |axis: DVec3, scale: f64| (DVec3::Z * (slope * scale) - axis, fixed * scale);
     let frame = [edge(DVec3::X, aspect), edge(-DVec3::X, aspect), edge(DVec3::Y, 1.0), edge(-DVec3::Y, 1.0)];
     let depth = if side == 0 { [(DVec3::Z, 0.0), (-DVec3::Z, near)] } else { [(DVec3::Z, -far), (DVec3::Z, 0.0)] };
     let bounds = || frame.into_iter().chain(depth);
+    // Most triangles lie outside one of the planes.
     if bounds().any(|(normal, offset)| corners.iter().all(|p| normal.dot(*p) + offset < 0.0)) {
-        return false; // most are, at once
+        return false;
     }
     let polygon =
         bounds().fold(corners.to_vec(), |polygon, (normal, offset)| clip(&polygon, |p| normal.dot(p) + offset));
-    // What only touches a plane is not cut.
+    // A polygon that touches the plane is not cut.
     let margin = 1e-6;
     polygon
         .iter()
         .any(|p| if side == 0 { p.z > 0.0 && p.z < near * (1.0 - margin) } else { p.z > far * (1.0 + margin) })
 }
 
-/// The part of a convex polygon where a linear function is not negative.
+/// The part of a convex polygon in which a linear function is not negative.
 fn clip(polygon: &[DVec3], height: impl Fn(DVec3) -> f64) -> Vec<DVec3> {
     let mut kept = Vec::with_capacity(polygon.len() + 1);
     for (k, a) in polygon.iter().enumerate() {

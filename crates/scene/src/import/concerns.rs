@@ -1,4 +1,4 @@
-//! Which of what the file has and is not honoured concerns the scene: only what is drawn or lights does.
+//! The properties that are not honoured, of all parts of the file that the image shows or that light it.
 
 use super::{
     clipping,
@@ -16,27 +16,27 @@ use glam::DVec3;
 use gltf::json::{self, Root};
 use std::collections::BTreeSet;
 
-/// What the scene is made of.
+/// The parts of the scene.
 pub(super) struct RenderedParts<'a> {
     pub mesh: &'a Mesh,
     pub nodes: &'a [Placed<'a>],
-    /// One for each node that carries one, in their order.
+    /// One camera for each node that carries one, in the order of the nodes.
     pub cameras: &'a [Camera],
     pub origin: DVec3,
     pub metres_per_unit: f64,
 }
 
-/// What is not honoured of all that is drawn or lights.
-pub(super) fn of(document: &Document, drawn: &RenderedParts) -> Vec<Unhonoured> {
+/// Collects the properties that are not honoured.
+pub(super) fn of(document: &Document, parts: &RenderedParts) -> Vec<Unhonoured> {
     let root = &document.root;
     let mut list = Collected { survey: &document.survey, list: Vec::new() };
-    let materials: BTreeSet<u16> = drawn.mesh.triangles.iter().map(|t| t.material).collect();
+    let materials: BTreeSet<u16> = parts.mesh.triangles.iter().map(|t| t.material).collect();
     for k in &materials {
         list.add(honoured::MATERIALS, usize::from(*k), Some(Holder::Material(*k)));
     }
     list.add_pictures(root, &materials);
-    list.add_nodes(root, drawn.nodes);
-    list.add_cameras(root, drawn);
+    list.add_nodes(root, parts.nodes);
+    list.add_cameras(root, parts);
     let scene = root.scene.as_ref().map_or(0, |s| s.value());
     let name = |s: &json::Scene| s.name.clone();
     list.add(honoured::SCENES, scene, Some(holder(root.scenes.get(scene).and_then(name), scene)));
@@ -57,13 +57,13 @@ struct Collected<'a> {
 }
 
 impl Collected<'_> {
-    /// Adds what was found of an element.
+    /// Adds the findings about an element.
     fn add(&mut self, list: &'static str, index: usize, holder: Option<Holder>) {
         self.add_if(list, index, holder, |_| true);
     }
 
-    fn add_if(&mut self, list: &'static str, index: usize, holder: Option<Holder>, is_so: impl Fn(&Find) -> bool) {
-        for find in self.survey.of(list, index).iter().filter(|find| is_so(find)) {
+    fn add_if(&mut self, list: &'static str, index: usize, holder: Option<Holder>, accept: impl Fn(&Find) -> bool) {
+        for find in self.survey.of(list, index).iter().filter(|find| accept(find)) {
             let start = if list == honoured::DOCUMENT { String::new() } else { format!("{list}[].") };
             let taken = |fate: Fate| if let Fate::TakenAs(numbers) = fate { numbers } else { &[][..] };
             let on = find.on.map(|fate| fate.map(taken));
@@ -71,7 +71,7 @@ impl Collected<'_> {
         }
     }
 
-    /// The textures that are read, with their samplers and images.
+    /// Adds the base color textures with their samplers and images.
     fn add_pictures(&mut self, root: &Root, materials: &BTreeSet<u16>) {
         let materials = materials.iter().filter_map(|k| root.materials.get(usize::from(*k)));
         let infos = materials.filter_map(|m| m.pbr_metallic_roughness.base_color_texture.as_ref());
@@ -92,7 +92,7 @@ impl Collected<'_> {
         }
     }
 
-    /// The nodes that are placed, with their meshes and lights.
+    /// Adds the nodes of the scene with their meshes and lights.
     fn add_nodes(&mut self, root: &Root, nodes: &[Placed]) {
         let (mut meshes, mut lights) = (BTreeSet::new(), BTreeSet::new());
         for placed in nodes {
@@ -112,14 +112,14 @@ impl Collected<'_> {
         }
     }
 
-    /// Cameras; their planes only where these would cut something off.
-    fn add_cameras(&mut self, root: &Root, drawn: &RenderedParts) {
-        let (mut room, bounds) = (clipping::MAX_TESTS, drawn.mesh.bounds());
-        let indices = drawn.nodes.iter().filter_map(|placed| placed.node.camera.as_ref());
-        for (index, camera) in indices.zip(drawn.cameras) {
+    /// Adds the cameras. Their planes are added only where they would cut anything off.
+    fn add_cameras(&mut self, root: &Root, parts: &RenderedParts) {
+        let (mut room, bounds) = (clipping::MAX_TESTS, parts.mesh.bounds());
+        let indices = parts.nodes.iter().filter_map(|placed| placed.node.camera.as_ref());
+        for (index, camera) in indices.zip(parts.cameras) {
             let Some(planes) = root.cameras.get(index.value()).and_then(planes) else { continue };
-            let planes = planes.map(|z| z * drawn.metres_per_unit);
-            let cut = clipping::cuts((drawn.mesh, bounds), drawn.origin, camera, planes, &mut room);
+            let planes = planes.map(|z| z * parts.metres_per_unit);
+            let cut = clipping::cuts((parts.mesh, bounds), parts.origin, camera, planes, &mut room);
             self.add_if(honoured::CAMERAS, index.value(), Some(Holder::Named(camera.name.clone())), |find| {
                 let [near, far] = [".znear", ".zfar"].map(|plane| find.path.ends_with(plane));
                 find.on[0] != Some(Fate::Cuts) || near && cut[0] || far && cut[1]
@@ -128,7 +128,7 @@ impl Collected<'_> {
     }
 }
 
-/// Distances of the planes between which a camera of glTF sees, in the file's units.
+/// Distances of the near and far planes, in units of the file.
 fn planes(camera: &json::Camera) -> Option<[f64; 2]> {
     let perspective = camera.perspective.as_ref().map(|p| [Some(p.znear), p.zfar]);
     let planes = perspective.or_else(|| camera.orthographic.as_ref().map(|o| [Some(o.znear), Some(o.zfar)]))?;

@@ -1,37 +1,36 @@
-//! The file as bytes: .glb or .gltf, and its buffers.
+//! The container, .glb or .gltf, and its buffers.
 
 use super::{
-    Fault,
+    fault::{Fault, get},
     files::{self, Files},
-    get,
-    nodes::NodeTransform,
     survey::Survey,
+    transform::NodeTransform,
 };
 use crate::SceneError;
 use gltf::json::{self, Index, buffer::View};
 use serde::Deserialize;
 use std::{cell::RefCell, collections::BTreeMap, ops::Range, path::Path, rc::Rc};
 
-/// A parsed file with its buffers; nothing in it is checked yet.
+/// A parsed file with its buffers. Its content is not checked yet.
 pub(super) struct Document {
-    /// The file itself, and those that it names.
+    /// The file itself and the files that it names.
     pub files: RefCell<Files>,
     pub root: json::Root,
-    /// As the file has them: the gltf crate rounds them to float32. One for each node.
+    /// The transform of each node.
     pub transforms: Vec<NodeTransform>,
-    /// Bytes of the file or of its longest buffer.
+    /// Length of the file or of its longest buffer, bytes.
     pub longest: usize,
-    /// What of it is not honoured.
+    /// Properties of the file that are not honoured.
     pub survey: Survey,
     bytes: Vec<u8>,
     buffers: Vec<Buffer>,
 }
 
-/// Where the bytes of a buffer are.
+/// The bytes of a buffer.
 enum Buffer {
-    /// In the .glb itself.
+    /// A range of the .glb itself.
     Chunk(Range<usize>),
-    /// Read or decoded; buffers that name the same file share it.
+    /// A file or a data URI, and the length of the buffer. Buffers that name the same file share it.
     Loaded(Rc<Vec<u8>>, usize),
 }
 
@@ -60,7 +59,7 @@ impl Document {
         let whole = 0..bytes.len();
         let (text, chunk) = if bytes.starts_with(b"glTF") { split_glb(&bytes)? } else { (whole, None) };
         let text = &bytes[text];
-        let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text); // byte order mark of some editors
+        let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text); // Some editors write a byte order mark.
         let not_gltf = |e: json::Error| format!("not a glTF file (.glb or .gltf): {e}");
         let root: json::Root = json::deserialize::from_slice(text).map_err(not_gltf)?;
         let transforms: Transforms = json::deserialize::from_slice(text).map_err(not_gltf)?;
@@ -76,7 +75,7 @@ impl Document {
         Ok(Document { files, root, transforms: transforms.nodes, survey, longest, bytes, buffers })
     }
 
-    /// The bytes of a buffer, as many as its `byteLength` says.
+    /// The first `byteLength` bytes of a buffer.
     pub fn buffer(&self, index: usize) -> Option<&[u8]> {
         match self.buffers.get(index)? {
             Buffer::Chunk(range) => self.bytes.get(range.clone()),
@@ -84,7 +83,7 @@ impl Document {
         }
     }
 
-    /// Bytes of all buffers; what several share counts once.
+    /// Bytes of all buffers; shared ones count once.
     pub fn buffer_bytes(&self) -> u64 {
         let mut longest_at: BTreeMap<*const u8, usize> = BTreeMap::new();
         for data in (0..self.buffers.len()).filter_map(|k| self.buffer(k)) {
@@ -107,7 +106,7 @@ impl Document {
     }
 }
 
-/// Some of the bytes, if they are there.
+/// A part of the bytes; none if it exceeds them.
 pub(super) fn part(data: &[u8], start: u64, length: u64) -> Option<&[u8]> {
     let end = start.checked_add(length)?;
     data.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?)
@@ -115,15 +114,15 @@ pub(super) fn part(data: &[u8], start: u64, length: u64) -> Option<&[u8]> {
 
 fn check_version(asset: &json::Asset) -> Result<(), Fault> {
     if !asset.version.starts_with("2.") {
-        return Err(format!("asset.version is `{}`; only glTF 2 is read", asset.version));
+        return Err(format!("asset.version is `{}`; only glTF 2 is supported", asset.version));
     }
     match &asset.min_version {
-        Some(version) if version != "2.0" => Err(format!("asset.minVersion is `{version}`; only 2.0 is read")),
+        Some(version) if version != "2.0" => Err(format!("asset.minVersion is `{version}`; only 2.0 is supported")),
         _ => Ok(()),
     }
 }
 
-/// Finds the bytes of buffer `k`, and checks that they are as many as it says.
+/// Finds the bytes of buffer `k`, and checks their number.
 fn locate(k: usize, buffer: &json::Buffer, chunk: Option<Range<usize>>, files: &mut Files) -> Result<Buffer, Fault> {
     let wanted = buffer.byte_length.0;
     let enough = |have: usize| match usize::try_from(wanted) {
@@ -144,17 +143,17 @@ fn locate(k: usize, buffer: &json::Buffer, chunk: Option<Range<usize>>, files: &
     }
 }
 
-/// A chunk of a .glb: its kind and where its content lies.
+/// A chunk of a .glb: its kind and the range of its content.
 struct Chunk {
     kind: [u8; 4],
     content: Range<usize>,
 }
 
-/// Where JSON and binary chunk of a .glb file lie. The binary chunk is the second, if there is one.
+/// The ranges of the JSON chunk and of the binary chunk, which is the second one if there is any.
 fn split_glb(bytes: &[u8]) -> Result<(Range<usize>, Option<Range<usize>>), Fault> {
     let version = word(bytes, 4)?;
     if version != 2 {
-        return Err(format!("the .glb has version {version}; only version 2 is read"));
+        return Err(format!("the .glb has version {version}; only version 2 is supported"));
     }
     let length = word(bytes, 8)? as usize;
     let Some(bytes) = bytes.get(..length) else {
@@ -169,7 +168,7 @@ fn split_glb(bytes: &[u8]) -> Result<(Range<usize>, Option<Range<usize>>), Fault
         return Ok((text.content, None));
     }
     let binary = chunk_at(bytes, second)?;
-    // glTF wants chunks of other kinds to be ignored.
+    // glTF says that chunks of other kinds are ignored.
     Ok((text.content, (&binary.kind == b"BIN\0").then_some(binary.content)))
 }
 

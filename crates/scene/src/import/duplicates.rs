@@ -1,12 +1,12 @@
-//! Triangles that are there more than once: each copy would let in, or emit, light of its own.
+//! Copies of triangles, each of which would transmit or emit light of its own.
 
 use crate::{Material, mesh::Mesh};
 use std::collections::BTreeMap;
 
-/// Drops triangles whose three positions another of the same material has, wound either way; the first in the file stays.
-/// Tells how many of which material.
+/// Drops triangles with the three positions of an earlier one of the same material, in any winding. Returns their number by
+/// material.
 ///
-/// A sheet that emits to its front only keeps a back of the same place: that is how a lamp of two sides is modelled.
+/// A triangle of a one-sided emitter keeps a copy with the opposite winding: some lamps with two sides are modelled so.
 pub(super) fn drop_duplicates(mesh: &mut Mesh, materials: &[Material]) -> BTreeMap<u16, u64> {
     let mut dropped = BTreeMap::new();
     let later = later_copies(mesh, |material| {
@@ -27,18 +27,18 @@ pub(super) fn drop_duplicates(mesh: &mut Mesh, materials: &[Material]) -> BTreeM
     dropped
 }
 
-/// What makes two triangles copies of each other.
+/// Triangles with equal keys are copies.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Key {
     positions: [[u32; 3]; 3],
     material: u16,
-    /// Only of materials whose sides differ.
+    /// The winding, for materials whose sides differ.
     turned: bool,
 }
 
-/// Indices of the triangles that repeat one before them, ascending. Sorts one word for each triangle, 32 bits of hash
-/// above its index; then those of equal hash are compared with the first of them in the order of the mesh, which keeps
-/// memory near. Those that share its hash only, a few in a million, are sorted by what they are.
+/// Indices of the triangles that repeat an earlier one, ascending. Sorts a word for each triangle: 32 bits of hash above its
+/// index. Triangles of equal hash are then compared with the first of them, in the order of the mesh for the sake of the cache. A
+/// few in a million share only the hash; they are sorted by their keys.
 fn later_copies(mesh: &Mesh, has_sides: impl Fn(u16) -> bool) -> Vec<u32> {
     let word = |high: u64, low: u32| high << 32 | u64::from(low);
     let mut words: Vec<u64> = (0..mesh.triangles.len() as u32).map(|k| word(hash(mesh, k), k)).collect();
@@ -66,14 +66,14 @@ fn later_copies(mesh: &Mesh, has_sides: impl Fn(u16) -> bool) -> Vec<u32> {
     later
 }
 
-/// Positions of the corners; zero has two signs.
+/// Positions of the corners as bits, without negative zeros.
 fn corners(mesh: &Mesh, triangle: u32) -> [[u32; 3]; 3] {
     mesh.triangles[triangle as usize]
         .vertices
         .map(|i| mesh.positions[i as usize].to_array().map(|x| (x + 0.0).to_bits()))
 }
 
-/// 32 bits; the same for any order of the corners.
+/// A hash of 32 bits, equal for any order of the corners.
 fn hash(mesh: &Mesh, triangle: u32) -> u64 {
     let corner = |[x, y, z]: [u32; 3]| {
         let (xy, z) = (u64::from(x) << 32 | u64::from(y), u64::from(z));
@@ -83,7 +83,7 @@ fn hash(mesh: &Mesh, triangle: u32) -> u64 {
     mix(corners(mesh, triangle).into_iter().map(corner).fold(material, u64::wrapping_add)) >> 32
 }
 
-/// The finalizer of SplitMix64: every bit depends on all.
+/// The finalizer of SplitMix64: every output bit depends on every input bit.
 fn mix(x: u64) -> u64 {
     let x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -106,9 +106,9 @@ mod tests {
     use crate::mesh::Triangle;
     use glam::Vec3;
 
-    /// Triangles that share a hash are told apart, and copies are found among them.
+    /// Triangles that share a hash are distinguished, and copies are found among them.
     ///
-    /// Seen to catch: of equal hashes, only those that equal the first looked at.
+    /// Seen to catch: triangles of equal hash that are compared only with the first.
     #[test]
     fn equal_hashes_are_not_copies() {
         let strip = |z: f32| (0..1 << 17).map(move |k| Vec3::new(k as f32, (k % 2) as f32, z));

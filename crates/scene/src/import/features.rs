@@ -1,6 +1,6 @@
-//! What a file asks for and we do not do: refused by name where the picture would be wrong, else a warning.
+//! Features that are not supported: an error where the image would be wrong, else a warning.
 
-use super::{Fault, container::Document, honoured, nodes::Placed};
+use super::{container::Document, fault::Fault, honoured, nodes::Placed};
 use crate::unhonoured::{Holder, Unhonoured, quoted, rest};
 use gltf::json;
 use std::collections::BTreeSet;
@@ -18,7 +18,7 @@ const SUPPORTED: &[&str] = &[
     "KHR_texture_transform",
 ];
 
-/// Extensions that change what is there: without them the picture would be wrong, required or not.
+/// Extensions that change the geometry, with the way out. Without them the image would be wrong, whether they are required or not.
 const GEOMETRY: &[(&str, &str)] = &[
     ("KHR_draco_mesh_compression", "export again without compression"),
     ("EXT_meshopt_compression", "export again without compression"),
@@ -27,7 +27,7 @@ const GEOMETRY: &[(&str, &str)] = &[
     ("KHR_node_visibility", "delete what is hidden and export again"),
 ];
 
-/// Refuses what is required and unknown, and what is used and would change what is there, declared or not.
+/// Refuses required extensions that are unknown, and used ones that change the geometry, declared or not.
 pub(super) fn check(document: &Document) -> Result<(), Fault> {
     let root = &document.root;
     for name in &root.extensions_required {
@@ -44,13 +44,13 @@ pub(super) fn check(document: &Document) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Unknown extensions that the file declares without a trace of them: nobody can tell what they are to change. Others
-/// are named where they are.
+/// Unknown extensions that the file declares but has no object of, so that their effect is unknown. Others are named where their
+/// objects are.
 pub(super) fn undeclared_effects(document: &Document) -> Vec<Unhonoured> {
     let declared: BTreeSet<&String> = document.root.extensions_used.iter().collect();
     let means_something = |name: &str| {
-        let place = honoured::look_up(honoured::DOCUMENT, &format!("extensions.{name}"));
-        !SUPPORTED.contains(&name) && place == honoured::Place::Unknown
+        let found = honoured::look_up(honoured::DOCUMENT, &format!("extensions.{name}"));
+        !SUPPORTED.contains(&name) && found == honoured::Lookup::Unknown
     };
     let unseen = declared.into_iter().filter(|name| !document.survey.extensions.contains(*name));
     let named = unseen.filter(|name| means_something(name)).map(|name| Unhonoured {
@@ -61,13 +61,13 @@ pub(super) fn undeclared_effects(document: &Document) -> Vec<Unhonoured> {
     named.collect()
 }
 
-/// So many animations are named.
+/// Number of animations that a warning names.
 const NAMED: usize = 3;
 
-/// Refuses poses that are not in the mesh itself: skins, morph targets, animations of anything above a mesh.
+/// Refuses poses that are not baked into the mesh: skins, morph targets, and animations of a mesh or its ancestors.
 pub(super) fn check_nodes(root: &json::Root, nodes: &[Placed], warnings: &mut Vec<String>) -> Result<(), Fault> {
     const BAKE: &str = "apply the pose to the mesh and export again";
-    // Once for each mesh, however often it is placed.
+    // Once for each mesh, for any number of nodes.
     let morphs = |p: &json::mesh::Primitive| p.targets.as_ref().is_some_and(|t| !t.is_empty());
     let morphs: Vec<bool> = root.meshes.iter().map(|mesh| mesh.primitives.iter().any(morphs)).collect();
     for placed in nodes {
@@ -94,13 +94,13 @@ pub(super) fn check_nodes(root: &json::Root, nodes: &[Placed], warnings: &mut Ve
     if !unused.is_empty() {
         let first: Vec<String> = unused.iter().take(NAMED).map(|name| quoted(name)).collect();
         let (names, more) = (first.join(", "), rest(unused.len() - first.len()));
-        warnings.push(format!("animations are not used, cameras and lights stay at rest: {names}{more}"));
+        warnings.push(format!("animations are not used, and cameras and lights stay at rest: {names}{more}"));
     }
     Ok(())
 }
 
-/// For each node, whether it or one below it carries a mesh. The nodes in use were found to be a tree; others may not
-/// be, so each is visited once.
+/// For each node, whether it or a descendant carries a mesh. Nodes outside the scene need not form a tree, so that each is visited
+/// once.
 fn above_meshes(root: &json::Root) -> Vec<bool> {
     let mut parents = vec![Vec::new(); root.nodes.len()];
     for (k, node) in root.nodes.iter().enumerate() {

@@ -1,6 +1,6 @@
-//! Files that a scene is made of: itself, data URIs, and what lies in its folder.
+//! The files of a scene: its own, data URIs, and files in its folder.
 
-use super::Fault;
+use super::fault::Fault;
 use base64::{
     Engine, alphabet,
     engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig},
@@ -12,13 +12,13 @@ use std::{
     rc::{Rc, Weak},
 };
 
-/// Base64 with or without its padding: writers differ.
+/// Base64 with or without padding, since writers differ.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
     &alphabet::STANDARD,
     GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
 );
 
-/// Reads a regular file; a pipe or a device might never end.
+/// Reads a regular file. A pipe or a device could be endless.
 pub(crate) fn read(path: &Path) -> io::Result<Vec<u8>> {
     if !std::fs::metadata(path)?.is_file() {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "not a regular file"));
@@ -26,12 +26,12 @@ pub(crate) fn read(path: &Path) -> io::Result<Vec<u8>> {
     std::fs::read(path)
 }
 
-/// Resolves URIs relative to a scene, and keeps account of what was read.
+/// Resolves URIs relative to a scene, and records the files that were read.
 pub(super) struct Files {
     folder: PathBuf,
-    /// By their places. Many buffers may name one file: it is read once, as long as one of them has it.
+    /// By canonical path. A file that many buffers name is read once, while one of them holds it.
     known: HashMap<PathBuf, Weak<Vec<u8>>>,
-    /// Paths of all that was read, the scene's own first.
+    /// Paths of all files that were read, the scene's own first.
     read: Vec<PathBuf>,
 }
 
@@ -41,40 +41,40 @@ impl Files {
         Files { folder, known: HashMap::new(), read: vec![scene.to_owned()] }
     }
 
-    /// Paths of all that was read, each once and in the order of reading, the scene's own first.
+    /// Paths of all files that were read, each once and in the order of reading, the scene's own first.
     pub fn read(&self) -> &[PathBuf] {
         &self.read
     }
 
-    /// The path that a URI means, and where its file is when all links are followed: a link to the folder that it lies in
-    /// gives one file any number of paths.
-    pub fn place(&self, uri: &str) -> Result<(PathBuf, PathBuf), Fault> {
+    /// The path of a URI, and its canonical path. A link to its own folder gives a file any number of paths, but one canonical
+    /// path.
+    pub fn locate(&self, uri: &str) -> Result<(PathBuf, PathBuf), Fault> {
         let path = self.folder.join(relative_path(uri)?);
-        let place = path.canonicalize().unwrap_or_else(|_| path.clone());
-        Ok((path, place))
+        let canonical = path.canonicalize().unwrap_or_else(|_| path.clone());
+        Ok((path, canonical))
     }
 
     /// The bytes of a data URI, or of a file in the scene's folder or below.
     pub fn resolve(&mut self, uri: &str) -> Result<Rc<Vec<u8>>, Fault> {
         if let Some(data) = uri.strip_prefix("data:") {
-            let encoded = data.split_once(";base64,").ok_or("a data URI without `;base64,` is not read")?.1;
+            let encoded = data.split_once(";base64,").ok_or("a data URI without `;base64,` is not supported")?.1;
             return BASE64.decode(encoded).map(Rc::new).map_err(|e| format!("the data URI is not base64: {e}"));
         }
-        let (path, place) = self.place(uri)?;
-        if let Some(data) = self.known.get(&place).and_then(Weak::upgrade) {
+        let (path, canonical) = self.locate(uri)?;
+        if let Some(data) = self.known.get(&canonical).and_then(Weak::upgrade) {
             return Ok(data);
         }
         let data = read(&path).map(Rc::new).map_err(|e| {
             format!("{}: {e}; a .gltf needs the files it names beside it, a .glb has them inside", path.display())
         })?;
-        if self.known.insert(place, Rc::downgrade(&data)).is_none() {
+        if self.known.insert(canonical, Rc::downgrade(&data)).is_none() {
             self.read.push(path);
         }
         Ok(data)
     }
 }
 
-/// The path that a URI means, without `.` parts; refuses what leads out of the folder.
+/// The relative path of a URI, without `.` components. Refuses a path that leads out of the folder.
 fn relative_path(uri: &str) -> Result<PathBuf, Fault> {
     let decoded =
         percent_encoding::percent_decode_str(uri).decode_utf8().map_err(|_| format!("`{uri}` is not UTF-8"))?;

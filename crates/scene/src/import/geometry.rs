@@ -1,8 +1,8 @@
-//! Primitives to one triangle mesh, centred, in float32.
+//! Joins all primitives to one mesh in float32, relative to its centre.
 
 use super::{
-    Fault,
     accessor::Column,
+    fault::{Fault, Refusal},
     nodes::Placed,
     primitive::{MeshParts, Part},
 };
@@ -11,19 +11,17 @@ use glam::{DMat3, DVec3, Vec3};
 use memmap2::MmapMut;
 use std::collections::BTreeMap;
 
-/// More than this, instances included, is refused before memory is asked for: a small file can name a large mesh many
-/// times.
+/// Limits with all instances. They are checked before memory is allocated, because a small file can have many instances of a
+/// large mesh.
 const MAX_TRIANGLES: u64 = 1 << 26;
 const MAX_VERTICES: u64 = 1 << 27;
 const MAX_PRIMITIVES: u64 = 1 << 22;
 
-/// What a triangle takes with its vertices and its share of the tree of rays while that is built: 360 were measured.
+/// Bytes of a triangle with its vertices, and its part of the ray tree while that is built. 360 were measured.
 const BYTES_PER_TRIANGLE: usize = 512;
 
-/// Longest diagonal, m: squares of distances stay numbers in float32.
-const LARGEST: f64 = 1e18;
-
-const TOO_LARGE: &str = "the mesh is too large for float32 coordinates; set --metres-per-unit";
+/// Longest diagonal, m, with which squares of distances are finite in float32.
+const MAX_DIAGONAL: f64 = 1e18;
 
 /// A mesh on a node.
 pub(super) struct Instance<'a> {
@@ -34,14 +32,14 @@ pub(super) struct Instance<'a> {
 pub(super) struct Geometry {
     pub mesh: Mesh,
     pub origin: DVec3,
-    /// Triangles without area, left out: how many of which material.
+    /// Number of triangles without area, which are left out, by material.
     pub degenerate: BTreeMap<u16, u64>,
-    /// Those of them that have area until positions are rounded to float32.
+    /// Number of those that have an area before their positions are rounded to float32.
     pub rounded: BTreeMap<u16, u64>,
 }
 
 /// Joins all instances, in their order.
-pub(super) fn join(instances: &[Instance]) -> Result<Geometry, Fault> {
+pub(super) fn join(instances: &[Instance]) -> Result<Geometry, Refusal> {
     let mut builder = Builder::default();
     builder.reserve(instances)?;
     for instance in instances {
@@ -58,13 +56,14 @@ struct Builder {
     positions: Vec<DVec3>,
     normals: Vec<Vec3>,
     triangles: Vec<Triangle>,
-    /// As far as vertices have any.
+    /// Texture coordinates; vertices at the end may have none.
     coordinates: Vec<[f32; 2]>,
+    /// Vertex colors; vertices at the end may have none.
     colors: Vec<[f32; 4]>,
 }
 
 impl Builder {
-    /// Adds up what is to come, refuses what is too much, and asks for the memory.
+    /// Counts all vertices and triangles, checks the limits, and reserves the memory.
     fn reserve(&mut self, instances: &[Instance]) -> Result<(), Fault> {
         let total = |of: fn(&MeshParts) -> u64| instances.iter().map(|i| of(i.parts)).fold(0, u64::saturating_add);
         let counts = [
@@ -75,11 +74,13 @@ impl Builder {
         for (count, limit, what) in counts {
             if count > limit {
                 let way_out = "export fewer instances, or a coarser mesh";
-                return Err(format!("nodes: {count} {what} with all instances, at most {limit} are read; {way_out}"));
+                return Err(format!(
+                    "nodes: {count} {what} with all instances, at most {limit} are supported; {way_out}"
+                ));
             }
         }
         let [triangles, vertices, _] = counts.map(|(count, ..)| count as usize);
-        // Asked for and given back, from the system: an allocator may end the process instead of saying no.
+        // The system is asked first, because an allocator may end the process instead of returning an error.
         let room = MmapMut::map_anon((triangles * BYTES_PER_TRIANGLE).max(1)).is_ok()
             && self.triangles.try_reserve_exact(triangles).is_ok()
             && self.positions.try_reserve_exact(vertices).is_ok()
@@ -101,8 +102,9 @@ impl Builder {
             Some(indices) => indices.read_indices(positions.len())?,
             None => (0..positions.len() as u32).collect(),
         };
-        let first = self.positions.len() as u32; // the limits keep it in range
-        self.add_looks(part)?;
+        // The limits keep it in range.
+        let first = self.positions.len() as u32;
+        self.add_colors(part)?;
         let mirrored = self.add_vertices(&positions, &normals, placed)?;
         for mut vertices in part.triangles(&indices) {
             if mirrored {
@@ -113,21 +115,21 @@ impl Builder {
         Ok(())
     }
 
-    /// Adds what colors the vertices that come next.
-    fn add_looks(&mut self, part: &Part) -> Result<(), Fault> {
-        if let Some((column, place)) = &part.coordinates {
+    /// Adds texture coordinates and colors of the next vertices.
+    fn add_colors(&mut self, part: &Part) -> Result<(), Fault> {
+        if let Some((column, transform)) = &part.coordinates {
             self.coordinates.resize(self.positions.len(), [0.0; 2]);
-            self.coordinates.extend(column.read_reals()?.into_iter().map(|uv| place.place(uv)));
+            self.coordinates.extend(column.read_reals()?.into_iter().map(|uv| transform.apply(uv)));
         }
         if let Some(column) = &part.colors {
             self.colors.resize(self.positions.len(), [1.0; 4]);
-            // glTF: clamped.
+            // glTF says that colors are clamped.
             self.colors.extend(column.read_reals::<4>()?.into_iter().map(|c| c.map(|x| x.clamp(0.0, 1.0))));
         }
         Ok(())
     }
 
-    /// Places vertices in the world; true if the transform mirrors, so that winding must be turned.
+    /// Adds vertices in world space. True if the transform is a reflection, which reverses the winding.
     fn add_vertices(&mut self, positions: &[Vec3], normals: &[Vec3], placed: &Placed) -> Result<bool, Fault> {
         let linear = DMat3::from_mat4(placed.transform);
         let determinant = linear.determinant();
@@ -139,60 +141,62 @@ impl Builder {
             }
             self.positions.push(world);
         }
-        let place = |n: &Vec3| (normal_matrix * n.as_dvec3()).normalize_or_zero().as_vec3();
-        self.normals.extend(normals.iter().map(place));
+        let in_world = |n: &Vec3| (normal_matrix * n.as_dvec3()).normalize_or_zero().as_vec3();
+        self.normals.extend(normals.iter().map(in_world));
         Ok(determinant < 0.0)
     }
 
     /// Centre of the box around all triangles.
-    fn centre(&self) -> Result<DVec3, Fault> {
+    fn centre(&self) -> Result<DVec3, Refusal> {
         let corners = self.triangles.iter().flat_map(|t| t.vertices.map(|i| self.positions[i as usize]));
         let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let (low, high) = corners.fold(start, |(low, high), p| (low.min(p), high.max(p)));
         let size = high - low;
-        if size.length() > LARGEST {
-            return Err(TOO_LARGE.into());
+        if size.length() > MAX_DIAGONAL {
+            return Err(Refusal::TooLarge);
         }
         let centre = low + size * 0.5;
-        // Beyond, float64 has fewer digits left than the float32 that follows.
+        // Beyond this distance, float64 resolves less than the float32 of relative positions.
         if size != DVec3::ZERO && centre.length() * f64::EPSILON > size.length() * f64::from(f32::EPSILON) {
-            let way_out = "move it there and export again";
-            return Err(format!("the mesh is too far from the origin for its size, at {centre}; {way_out}"));
+            let way_out = "move it to the origin and export again";
+            return Err(format!("the mesh is too far from the origin for its size, at {centre}; {way_out}").into());
         }
         Ok(centre)
     }
 
-    /// Positions about an origin, m, in float32.
-    fn about(&self, origin: DVec3) -> Result<Vec<Vec3>, Fault> {
+    /// Positions relative to an origin, m, in float32.
+    fn relative_to(&self, origin: DVec3) -> Result<Vec<Vec3>, Refusal> {
         let positions: Vec<Vec3> = self.positions.iter().map(|p| (*p - origin).as_vec3()).collect();
         if !positions.iter().all(|p| p.is_finite()) {
-            return Err(TOO_LARGE.into());
+            return Err(Refusal::TooLarge);
         }
         Ok(positions)
     }
 
-    /// Drops triangles without area and centres what remains. One that has none in float32 about a centre of its own goes
-    /// first: a needle to a stray vertex far away would move the centre of all, and cost the others their digits.
-    fn finish(mut self) -> Result<Geometry, Fault> {
+    /// Drops triangles without area, and makes positions relative to the centre of the rest. Triangles that have no area in
+    /// float32 relative to their own centre are dropped first: a needle to a stray vertex far away would move the centre of all
+    /// and cost the others their precision.
+    fn finish(mut self) -> Result<Geometry, Refusal> {
         if self.triangles.is_empty() {
-            return Err("no triangles: nothing to light or to see".into());
+            return Err(Refusal::Invalid("no triangles: nothing to light or to see".into()));
         }
         let count = self.triangles.len();
         let (mut degenerate, mut rounded) = (BTreeMap::new(), BTreeMap::new());
         drop_degenerate(
             &mut self.triangles,
-            |corners| area_by_itself(corners.map(|i| self.positions[i as usize])),
+            |corners| area_alone(corners.map(|i| self.positions[i as usize])),
             &mut degenerate,
         );
-        // Each turn but the last drops triangles, which are 2^24 times as large as what they cost its digits: few turns.
+        // Dropping a triangle can move the centre, so this repeats until none is dropped. A dropped triangle is 2^24 times smaller
+        // than the mesh, so that there are few iterations.
         let (origin, positions) = loop {
             if self.triangles.is_empty() {
-                return Err(format!("all {count} triangles have no area (scale 0?)"));
+                return Err(format!("all {count} triangles have no area (scale 0?)").into());
             }
             let origin = self.centre()?;
-            let (positions, before) = (self.about(origin)?, self.triangles.len());
-            let placed = |corners: [u32; 3]| area(corners.map(|i| positions[i as usize].as_dvec3()));
-            drop_degenerate(&mut self.triangles, placed, &mut rounded);
+            let (positions, before) = (self.relative_to(origin)?, self.triangles.len());
+            let rounded_area = |corners: [u32; 3]| area(corners.map(|i| positions[i as usize].as_dvec3()));
+            drop_degenerate(&mut self.triangles, rounded_area, &mut rounded);
             if self.triangles.len() == before {
                 break (origin, positions);
             }
@@ -216,8 +220,8 @@ fn drop_degenerate(triangles: &mut Vec<Triangle>, area: impl Fn([u32; 3]) -> f64
     });
 }
 
-/// Area of a triangle alone in the world, as the smaller of what float64 and, about its centre, float32 make of it.
-fn area_by_itself(corners: [DVec3; 3]) -> f64 {
+/// Area of a triangle in a scene of its own: the smaller of those in float64 and, relative to its centre, in float32.
+fn area_alone(corners: [DVec3; 3]) -> f64 {
     let [a, b, c] = corners;
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     let centre = low + (high - low) * 0.5;

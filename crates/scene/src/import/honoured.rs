@@ -1,28 +1,28 @@
-//! The table of what is done with each property that glTF knows. What it does not have is not honoured, and is said.
+//! The table of glTF properties and how each is honoured. Properties outside the table are not honoured, and a warning names them.
 //!
-//! A path runs from an element of a list of the file; `[]` stands for each element of a list in it, and a `*` at the end
-//! for any end. `name`, `extras` and metadata mean nothing anywhere.
+//! A path starts at an element of a list of the file. `[]` stands for any index, and a final `*` for any ending. `name`, `extras`
+//! and metadata have no effect anywhere.
 
-/// What becomes of a property.
+/// How a property is honoured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Fate {
-    /// The picture shows it.
+    /// The image shows it.
     Shown,
-    /// By itself it changes no picture.
+    /// It changes no image by itself.
     Neutral,
-    /// An error or a warning of its own tells of it.
+    /// An error or a warning of its own names it.
     Told,
-    /// The picture is that of these numbers, the first of the property: others are named.
+    /// The image is made as if the first numbers of the property were these; other values are named.
     TakenAs(&'static [f64]),
-    /// Not shown; the same as absent if its first numbers are these.
+    /// Not shown, and without effect if its first numbers are these.
     Unless(&'static [f64]),
-    /// Not shown, and named where it would cut something off.
+    /// Not shown, and named where it would cut anything off.
     Cuts,
     /// Not shown.
     No,
 }
 
-/// Properties that have the same fate, on opaque and on translucent surfaces.
+/// Properties that are honoured alike.
 pub(super) struct Row {
     pub list: &'static str,
     pub paths: &'static [&'static str],
@@ -30,7 +30,7 @@ pub(super) struct Row {
     pub translucent: Fate,
 }
 
-/// Lists of the file whose elements have properties; an element counts only if what is drawn or lights uses it.
+/// Lists of the file whose elements have properties. An element counts only if the image shows it or it lights the scene.
 pub(super) const LISTS: &[&str] =
     &[MATERIALS, TEXTURES, SAMPLERS, IMAGES, MESHES, NODES, LIGHTS, CAMERAS, SCENES, ACCESSORS, VIEWS, BUFFERS];
 
@@ -49,7 +49,7 @@ pub(super) const BUFFERS: &str = "buffers";
 /// The document itself.
 pub(super) const DOCUMENT: &str = "";
 
-/// What means nothing wherever it is.
+/// Properties without effect anywhere.
 pub(super) const ANYWHERE: &[&str] = &["name", "extras", "extensions.KHR_xmp", "extensions.KHR_xmp_json_ld"];
 
 const fn row(list: &'static str, fate: Fate, paths: &'static [&'static str]) -> Row {
@@ -62,7 +62,8 @@ const fn material(opaque: Fate, translucent: Fate, paths: &'static [&'static str
 
 use Fate::{Cuts, Neutral, No, Shown, TakenAs, Told, Unless};
 
-#[rustfmt::skip] // as the table that it is
+// rustfmt would break the rows.
+#[rustfmt::skip]
 pub(super) const TABLE: &[Row] = &[
     material(Shown, Shown, &["emissiveFactor", "extensions.KHR_materials_emissive_strength.emissiveStrength", "doubleSided"]),
     material(Shown, TakenAs(&[1.0, 1.0, 1.0]), &["pbrMetallicRoughness.baseColorFactor"]),
@@ -96,7 +97,7 @@ pub(super) const TABLE: &[Row] = &[
     material(Unless(&[1.0]), Unless(&[1.0]), &["extensions.KHR_materials_specular.specularFactor"]),
     material(Unless(&[1.0, 1.0, 1.0]), Unless(&[1.0, 1.0, 1.0]), &["extensions.KHR_materials_specular.specularColorFactor"]),
     material(No, No, &["extensions.KHR_materials_specular.specularTexture", "extensions.KHR_materials_specular.specularColorTexture"]),
-    // They do nothing where the factor of their extension is 0.
+    // These have no effect where the factor of their extension is 0.
     material(Neutral, Neutral, &["extensions.KHR_materials_anisotropy.*", "extensions.KHR_materials_clearcoat.*",
         "extensions.KHR_materials_diffuse_transmission.*", "extensions.KHR_materials_iridescence.*", "extensions.KHR_materials_sheen.*"]),
     row(TEXTURES, Shown, &["source", "sampler"]),
@@ -108,7 +109,7 @@ pub(super) const TABLE: &[Row] = &[
     row(MESHES, Shown, &["primitives[].attributes.POSITION", "primitives[].attributes.NORMAL", "primitives[].attributes.TEXCOORD_*",
         "primitives[].indices", "primitives[].material", "primitives[].mode"]),
     row(MESHES, Told, &["primitives[].targets"]),
-    // Tangents serve normal maps, the others skins, targets, and what a program makes of them.
+    // Tangents serve normal maps; the others serve skins, morph targets and applications.
     row(MESHES, Neutral, &["primitives[].attributes.TANGENT", "primitives[].attributes.COLOR_*", "primitives[].attributes.JOINTS_*",
         "primitives[].attributes.WEIGHTS_*", "primitives[].attributes._*", "weights"]),
     row(NODES, Shown, &["mesh", "camera", "children", "matrix", "translation", "rotation", "scale", "extensions.KHR_lights_punctual.light"]),
@@ -130,46 +131,46 @@ pub(super) const TABLE: &[Row] = &[
     row(DOCUMENT, Told, &["animations", "skins", "extensionsUsed", "extensionsRequired"]),
 ];
 
-/// What the table says of a path.
+/// The result of looking a path up.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Place {
-    /// One of [`LISTS`].
+pub(super) enum Lookup {
+    /// The path is one of [`LISTS`].
     List(&'static str),
-    /// What lies in it has rows of its own.
+    /// Properties inside have rows of their own.
     Inside,
-    /// On opaque, and on translucent surfaces.
+    /// Fates on opaque and on translucent surfaces.
     Property([Fate; 2]),
     Unknown,
 }
 
-/// Looks a path up; the first row counts.
-pub(super) fn look_up(list: &str, path: &str) -> Place {
+/// Looks a path up. The first row that fits counts.
+pub(super) fn look_up(list: &str, path: &str) -> Lookup {
     if list == DOCUMENT
         && let Some(known) = LISTS.iter().find(|known| **known == path)
     {
-        return Place::List(known);
+        return Lookup::List(known);
     }
     let ends = |with: &&str| path.strip_suffix(*with).is_some_and(|rest| rest.is_empty() || rest.ends_with('.'));
     if ANYWHERE.iter().any(ends) {
-        return Place::Property([Neutral; 2]);
+        return Lookup::Property([Neutral; 2]);
     }
     let fits = |known: &&str| known.strip_suffix('*').map_or(*known == path, |start| path.starts_with(start));
     let rows = || TABLE.iter().filter(|row| row.list == list);
     if let Some(row) = rows().find(|row| row.paths.iter().any(fits)) {
-        return Place::Property([row.opaque, row.translucent]);
+        return Lookup::Property([row.opaque, row.translucent]);
     }
     let below = |known: &&str| known.strip_prefix(path).is_some_and(|rest| rest.starts_with(['.', '[']));
     let inside = |paths: &[&str]| paths.iter().any(below);
-    // Extensions are told one by one.
+    // Extensions are looked up one by one.
     let opens = ends(&"extensions") || list == DOCUMENT && inside(LISTS) || rows().any(|row| inside(row.paths));
-    if opens { Place::Inside } else { Place::Unknown }
+    if opens { Lookup::Inside } else { Lookup::Unknown }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Paths, with what neighbours begin with said once; extensions begin with their own names.
+    /// Paths in short: neighbors share their prefix, and extensions begin with their names.
     fn brief(paths: &[&'static str]) -> String {
         let split = |path: &&'static str| path.rsplit_once('.').unwrap_or(("", path));
         let parts: Vec<(&str, &str)> = paths.iter().map(split).collect();
@@ -186,7 +187,7 @@ mod tests {
         format!("`{}`", groups.join(", "))
     }
 
-    /// The table as the documentation has it.
+    /// The table as Markdown.
     fn text() -> String {
         let numbers = |v: &[f64]| if v.iter().all(|x| *x == v[0]) { v[0].to_string() } else { format!("{v:?}") };
         let cell = |fate: Fate| match fate {
@@ -207,7 +208,7 @@ mod tests {
         text
     }
 
-    /// `docs/scenes.md` has the table as the program has it; where it differs, this prints what it should have.
+    /// `docs/scenes.md` has the same table. Where it differs, the test prints the right one.
     #[test]
     fn the_documentation_has_this_table() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes.md");
@@ -217,18 +218,18 @@ mod tests {
 
     #[test]
     fn paths_are_looked_up() {
-        assert_eq!(look_up(DOCUMENT, "materials"), Place::List(MATERIALS));
-        assert_eq!(look_up(DOCUMENT, "extensions"), Place::Inside);
-        assert_eq!(look_up(DOCUMENT, LIGHTS), Place::List(LIGHTS));
-        assert_eq!(look_up(DOCUMENT, "extensions.EXT_lights_ies"), Place::Unknown);
-        assert_eq!(look_up(MATERIALS, "extensions.KHR_materials_volume"), Place::Inside);
-        assert_eq!(look_up(MATERIALS, "extensions.KHR_materials_volume.extras"), Place::Property([Neutral; 2]));
-        assert_eq!(look_up(MATERIALS, "extensions.KHR_materials_unlit"), Place::Unknown);
-        assert_eq!(look_up(MATERIALS, "pbrMetallicRoughness.extensions"), Place::Inside);
-        assert_eq!(look_up(MESHES, "primitives[].attributes.TEXCOORD_3"), Place::Property([Shown; 2]));
-        assert_eq!(look_up(MESHES, "primitives[].attributes.COLOR_0"), Place::Property([Shown, Told]));
-        assert_eq!(look_up(MESHES, "primitives[].attributes.KHR_x:ROTATION"), Place::Unknown);
-        assert_eq!(look_up(NODES, "surname"), Place::Unknown);
-        assert_eq!(look_up(CAMERAS, "perspective.znear"), Place::Property([Cuts; 2]));
+        assert_eq!(look_up(DOCUMENT, "materials"), Lookup::List(MATERIALS));
+        assert_eq!(look_up(DOCUMENT, "extensions"), Lookup::Inside);
+        assert_eq!(look_up(DOCUMENT, LIGHTS), Lookup::List(LIGHTS));
+        assert_eq!(look_up(DOCUMENT, "extensions.EXT_lights_ies"), Lookup::Unknown);
+        assert_eq!(look_up(MATERIALS, "extensions.KHR_materials_volume"), Lookup::Inside);
+        assert_eq!(look_up(MATERIALS, "extensions.KHR_materials_volume.extras"), Lookup::Property([Neutral; 2]));
+        assert_eq!(look_up(MATERIALS, "extensions.KHR_materials_unlit"), Lookup::Unknown);
+        assert_eq!(look_up(MATERIALS, "pbrMetallicRoughness.extensions"), Lookup::Inside);
+        assert_eq!(look_up(MESHES, "primitives[].attributes.TEXCOORD_3"), Lookup::Property([Shown; 2]));
+        assert_eq!(look_up(MESHES, "primitives[].attributes.COLOR_0"), Lookup::Property([Shown, Told]));
+        assert_eq!(look_up(MESHES, "primitives[].attributes.KHR_x:ROTATION"), Lookup::Unknown);
+        assert_eq!(look_up(NODES, "surname"), Lookup::Unknown);
+        assert_eq!(look_up(CAMERAS, "perspective.znear"), Lookup::Property([Cuts; 2]));
     }
 }

@@ -1,19 +1,15 @@
-//! Whether a JPEG file is whole: decoders pad what is missing with grey and say nothing. The coded coefficients of every
-//! scan are walked through (ITU-T T.81, annexes B, F and G); their values do not matter.
+//! Checks that a JPEG file is complete: decoders silently pad missing data with gray. All coded coefficients of every scan are
+//! decoded, and their values are dropped (ITU-T T.81, annexes B, F and G).
 
-use huffman::{Bits, Table, next_marker};
+use huffman::{Bits, DAMAGED, EARLY, Table, next_marker};
 use std::array;
 
 mod huffman;
 
-const EARLY: &str = "its JPEG data ends early";
-const DAMAGED: &str = "its JPEG data is damaged";
-
-/// Most scans: more are of no use, and each costs the time of the whole picture.
+/// Most scans. More have no use, and each takes the time of the whole picture.
 const MAX_SCANS: usize = 100;
 
-/// Refuses a file whose data ends early or cannot be what an encoder wrote. Kinds that are not coded by Huffman are left
-/// to the decoder.
+/// Refuses a file whose data ends early or is damaged. Files without Huffman coding are left to the decoder.
 pub(super) fn check(bytes: &[u8]) -> Result<(), &'static str> {
     let mut file = File::default();
     let mut rest = bytes.strip_prefix(&[0xff, 0xd8]).ok_or(DAMAGED)?;
@@ -47,13 +43,13 @@ pub(super) fn check(bytes: &[u8]) -> Result<(), &'static str> {
     }
 }
 
-/// What is known of a file before a scan.
+/// The state of a file between scans.
 #[derive(Default)]
 struct File {
     size: [usize; 2],
     progressive: bool,
     components: Vec<Component>,
-    /// For the first coefficient and for the others, by number.
+    /// Tables of the first coefficient and of the others, by number.
     tables: [[Option<Table>; 4]; 2],
     /// MCUs between restarts, 0 for none.
     interval: usize,
@@ -65,12 +61,12 @@ struct Component {
     sampling: [usize; 2],
     /// Blocks in a row of memory.
     stride: usize,
-    /// Of each block, which coefficients are not 0; of progressive files alone.
+    /// The nonzero coefficients of each block, for progressive files.
     nonzero: Vec<u64>,
     seen: bool,
 }
 
-/// One scan: its components with the numbers of their tables, and its coefficients.
+/// A scan: its components with the numbers of their tables, and the range of its coefficients.
 struct Scan {
     parts: Vec<(usize, [usize; 2])>,
     first: u32,
@@ -88,8 +84,8 @@ impl File {
         if !usable || list.is_empty() || size.contains(&0) || !self.components.is_empty() {
             return None;
         }
-        let most: [usize; 2] = array::from_fn(|d| list.iter().map(|c| sampling(c)[d]).max().unwrap_or(1));
-        let mcus: [usize; 2] = array::from_fn(|d| size[d].div_ceil(8 * most[d]));
+        let max: [usize; 2] = array::from_fn(|d| list.iter().map(|c| sampling(c)[d]).max().unwrap_or(1));
+        let mcus: [usize; 2] = array::from_fn(|d| size[d].div_ceil(8 * max[d]));
         let component = |c: &[u8; 3]| {
             let [across, down] = sampling(c);
             let stride = mcus[0] * across;
@@ -106,8 +102,8 @@ impl File {
             let (counts, rest) = rest.split_first_chunk::<16>()?;
             let total = counts.iter().map(|n| usize::from(*n)).sum();
             let (symbols, rest) = rest.split_at_checked(total)?;
-            let place = self.tables.get_mut(usize::from(kind >> 4))?.get_mut(usize::from(kind & 15))?;
-            *place = Some(Table::new(counts, symbols)?);
+            let table = self.tables.get_mut(usize::from(kind >> 4))?.get_mut(usize::from(kind & 15))?;
+            *table = Some(Table::new(counts, symbols)?);
             segment = rest;
         }
         Some(())
@@ -132,7 +128,7 @@ impl File {
         (good && !parts.is_empty()).then_some(Scan { parts, first: first.into(), last: last.into(), refines })
     }
 
-    /// Goes through the data of a scan; returns what follows it.
+    /// Decodes the data of a scan, and returns the bytes after it.
     fn walk<'a>(&mut self, scan: &Scan, data: &'a [u8]) -> Result<&'a [u8], &'static str> {
         let mut bits = Bits::new(data);
         let mcus = self.mcus(scan);
@@ -143,7 +139,7 @@ impl File {
                 run = 0;
             }
             for (index, tables) in &scan.parts {
-                // A component alone is coded block by block.
+                // The blocks of a single component are coded one by one.
                 let [across, down] = if scan.parts.len() > 1 { self.components[*index].sampling } else { [1, 1] };
                 for block in 0..across * down {
                     let x = mcu % mcus[0] * across + block % across;
@@ -157,10 +153,10 @@ impl File {
 
     /// MCUs of a scan, across and down.
     fn mcus(&self, scan: &Scan) -> [usize; 2] {
-        let most = |d: usize| self.components.iter().map(|c| c.sampling[d]).max().unwrap_or(1);
+        let max = |d: usize| self.components.iter().map(|c| c.sampling[d]).max().unwrap_or(1);
         array::from_fn(|d| match scan.parts[..] {
-            [(index, _)] => (self.size[d] * self.components[index].sampling[d]).div_ceil(8 * most(d)),
-            _ => self.size[d].div_ceil(8 * most(d)),
+            [(index, _)] => (self.size[d] * self.components[index].sampling[d]).div_ceil(8 * max(d)),
+            _ => self.size[d].div_ceil(8 * max(d)),
         })
     }
 
@@ -191,7 +187,7 @@ impl File {
     }
 }
 
-/// The other coefficients of a block (F.2.2.2).
+/// Decodes the other coefficients of a block (F.2.2.2).
 fn sequential(bits: &mut Bits, table: Option<&Table>) -> Result<(), &'static str> {
     let mut k = 1;
     while k < 64 {
@@ -212,7 +208,7 @@ fn sequential(bits: &mut Bits, table: Option<&Table>) -> Result<(), &'static str
     Ok(())
 }
 
-/// Coefficients of a block for the first time; `run` counts blocks without any (G.1.2.2).
+/// Decodes the first bits of the coefficients of a block; `run` counts blocks without any (G.1.2.2).
 fn first_pass(
     bits: &mut Bits,
     table: Option<&Table>,
@@ -247,7 +243,7 @@ fn first_pass(
     Ok(())
 }
 
-/// One more bit of the coefficients that are not 0, and coefficients that become so (G.1.2.3).
+/// Decodes one more bit of the nonzero coefficients, and those that become nonzero (G.1.2.3).
 fn refine(
     bits: &mut Bits,
     table: Option<&Table>,

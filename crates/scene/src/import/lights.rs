@@ -1,98 +1,77 @@
-//! The file's lights, and their identity.
+//! Import of lights.
 
-use super::{Fault, ImportOptions, Light, Root, get, nodes::Placed};
+use super::{
+    fault::{Fault, get},
+    nodes::Placed,
+    options::ImportOptions,
+};
 use crate::{
     Material,
-    light::{AreaLight, DirectionalLight, PointLight, Spot},
+    light::{AreaLight, DirectionalLight, Light, PointLight, Spot},
     mesh::Mesh,
 };
 use glam::DVec3;
 use gltf::json::{
+    Root,
     extensions::scene::khr_lights_punctual::{Light as Punctual, Type},
     validation::Checked,
 };
 use std::f64::consts::FRAC_PI_2;
 
-/// Lights with a digest of everything that defines them.
-#[derive(Default)]
-pub(super) struct Lights {
-    pub list: Vec<Box<dyn Light>>,
-    pub digest: blake3::Hasher,
+/// One area light for each emitting material that is on the mesh.
+pub(super) fn emitters(mesh: &Mesh, materials: &[Material]) -> Vec<Box<dyn Light>> {
+    let mut triangles = vec![Vec::new(); materials.len()];
+    for (k, t) in mesh.triangles.iter().enumerate() {
+        if materials[t.material as usize].emits() {
+            triangles[t.material as usize].push(k);
+        }
+    }
+    let light = |(m, own): (&Material, &Vec<usize>)| AreaLight::new(mesh, own, m.emission, m.double_sided);
+    let lights = materials.iter().zip(&triangles).filter_map(light);
+    lights.map(|light| Box::new(light) as Box<dyn Light>).collect()
 }
 
-impl Lights {
-    fn note(&mut self, kind: u8, numbers: &[f64]) {
-        self.digest.update(&[kind]);
-        numbers.iter().for_each(|x| {
-            self.digest.update(&x.to_le_bytes());
-        });
-    }
-
-    /// One area light for each emitting material that is on the mesh.
-    pub fn add_emitters(&mut self, mesh: &Mesh, materials: &[Material]) {
-        let mut triangles = vec![Vec::new(); materials.len()];
-        for (k, t) in mesh.triangles.iter().enumerate() {
-            if materials[t.material as usize].emits() {
-                triangles[t.material as usize].push(k);
-            }
+/// The light of a node.
+fn light_of(light: &Punctual, pose: &Pose, power: DVec3, metres_per_unit: f64) -> Result<Box<dyn Light>, Fault> {
+    match light.type_ {
+        Checked::Valid(Type::Directional) => {
+            Ok(Box::new(DirectionalLight { direction: -pose.axis()?, irradiance: power }))
         }
-        for (k, m) in materials.iter().enumerate() {
-            if let Some(light) = AreaLight::new(mesh, &triangles[k], m.emission, m.double_sided) {
-                self.note(3, &[k as f64, f64::from(u8::from(m.double_sided))]);
-                self.note(3, &m.emission.to_array());
-                self.list.push(Box::new(light));
-            }
+        Checked::Valid(kind) => {
+            let cone = if kind == Type::Spot { Some((pose.axis()?, angles_of(light)?)) } else { None };
+            let spot = cone.map(|(axis, [inner, outer])| Spot::new(axis, inner, outer));
+            let range = range_of(light, metres_per_unit)?;
+            Ok(Box::new(PointLight { position: pose.position, intensity: power, spot, range }))
         }
-    }
-
-    /// Adds the light of a node.
-    fn add(&mut self, light: &Punctual, place: &Place, power: DVec3, metres_per_unit: f64) -> Result<(), Fault> {
-        match light.type_ {
-            Checked::Valid(Type::Directional) => {
-                let axis = place.axis()?;
-                self.note(1, &[axis.to_array(), power.to_array()].concat());
-                self.list.push(Box::new(DirectionalLight { direction: -axis, irradiance: power }));
-            }
-            Checked::Valid(kind) => {
-                let cone = if kind == Type::Spot { Some((place.axis()?, angles_of(light)?)) } else { None };
-                let spot = cone.map(|(axis, [inner, outer])| Spot::new(axis, inner, outer));
-                let range = range_of(light, metres_per_unit)?;
-                self.note(2, &[place.position.to_array(), power.to_array()].concat());
-                self.note(2, &cone.map_or(vec![], |(axis, angles)| [&axis.to_array()[..], &angles].concat()));
-                self.note(2, &[range.unwrap_or(f64::INFINITY)]);
-                self.list.push(Box::new(PointLight { position: place.position, intensity: power, spot, range }));
-            }
-            Checked::Invalid => return Err("its type is not directional, point or spot".into()),
-        }
-        Ok(())
+        Checked::Invalid => Err("its type is not directional, point or spot".into()),
     }
 }
 
-/// Where a light is.
-struct Place<'a> {
+/// Position and orientation of a light.
+struct Pose<'a> {
     node: &'a Placed<'a>,
     /// m, relative to the scene's origin.
     position: DVec3,
 }
 
-impl Place<'_> {
-    /// Unit vector that the light shines along.
+impl Pose<'_> {
+    /// Unit vector along which the light shines.
     fn axis(&self) -> Result<DVec3, Fault> {
         let axis = self.node.transform.transform_vector3(DVec3::NEG_Z).try_normalize();
         axis.ok_or_else(|| "its node's matrix has no direction (scale 0?)".into())
     }
 }
 
-/// The directional, point and spot lights of the nodes; positions relative to `origin`. Lights shine along their
-/// node's −Z; its scale does not matter.
+/// The directional, point and spot lights of the nodes, with positions relative to `origin`. A light shines along the −Z axis of
+/// its node, whose scale does not matter.
 pub(super) fn punctual(
     root: &Root,
     nodes: &[Placed],
     options: &ImportOptions,
     origin: DVec3,
     warnings: &mut Vec<String>,
-) -> Result<Lights, Fault> {
-    let mut lights = Lights::default();
+) -> Result<Vec<Box<dyn Light>>, Fault> {
+    let mut lights = Vec::new();
     let defined = root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
     for node in nodes {
         let Some(reference) = node.node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref()) else {
@@ -107,12 +86,12 @@ pub(super) fn punctual(
             continue;
         }
         let position = node.transform.transform_point3(DVec3::ZERO) - origin;
-        lights.add(light, &Place { node, position }, power, options.metres_per_unit).map_err(fault)?;
+        lights.push(light_of(light, &Pose { node, position }, power, options.metres_per_unit).map_err(fault)?);
     }
     Ok(lights)
 }
 
-/// W/m² or W/sr.
+/// Irradiance of a directional light, W/m², or intensity of the others, W/sr.
 fn power_of(light: &Punctual, options: &ImportOptions) -> Result<DVec3, Fault> {
     let power = DVec3::from_array(light.color.map(f64::from)) * f64::from(light.intensity);
     if !power.is_finite() || power.min_element() < 0.0 {
@@ -121,7 +100,7 @@ fn power_of(light: &Punctual, options: &ImportOptions) -> Result<DVec3, Fault> {
     Ok(power * options.light_unit.watts())
 }
 
-/// Inner and outer angle of a spot, rad. A hard edge (inner = outer) is beyond the letter of glTF, but writers have it.
+/// Inner and outer angle of a spot, rad. glTF excludes a hard edge (inner = outer), but some writers have it.
 fn angles_of(light: &Punctual) -> Result<[f64; 2], Fault> {
     let cone = light.spot.as_ref().ok_or("a spot light without its `spot` object")?;
     let (inner, outer) = (f64::from(cone.inner_cone_angle), f64::from(cone.outer_cone_angle));
@@ -131,6 +110,7 @@ fn angles_of(light: &Punctual) -> Result<[f64; 2], Fault> {
     Ok([inner, outer])
 }
 
+/// Range, m.
 fn range_of(light: &Punctual, metres_per_unit: f64) -> Result<Option<f64>, Fault> {
     let range = light.range.map(|r| f64::from(r) * metres_per_unit);
     match range {

@@ -1,10 +1,11 @@
-//! The file's materials.
+//! Import of materials.
 
-use super::{Fault, ImportOptions, Material, container::Document, textures::Textures, volumes};
+use super::{container::Document, fault::Fault, options::ImportOptions, textures::Textures, volumes};
+use crate::Material;
 use glam::{DVec3, DVec4};
 use gltf::json::{self, material::AlphaMode, validation::Checked};
 
-/// Triangles name their material with 16 bits, and one is needed for those without.
+/// Triangles have a material index of 16 bits, and one index is for triangles without material.
 const MAX_MATERIALS: usize = u16::MAX as usize;
 
 pub(super) fn read(
@@ -16,7 +17,7 @@ pub(super) fn read(
     let count = root.materials.len();
     if count > MAX_MATERIALS {
         return Err(format!(
-            "materials: {count} of them, at most {MAX_MATERIALS} are read; export without unused ones"
+            "materials: {count} of them, at most {MAX_MATERIALS} are supported; export without unused ones"
         ));
     }
     let mut textures = Textures::new(document);
@@ -27,7 +28,7 @@ pub(super) fn read(
     root.materials.iter().enumerate().map(named).collect()
 }
 
-/// What covers triangles that name no material.
+/// The material of triangles that name none.
 pub(super) fn default() -> Material {
     Material {
         name: "default".into(),

@@ -1,17 +1,17 @@
-//! The numbers that accessors hold, little-endian.
+//! The little-endian numbers of accessors.
 
 use gltf::json::accessor::ComponentType;
 
-/// How a number is written.
+/// The type of a number.
 #[derive(Clone, Copy)]
 pub(super) struct Number {
     component: ComponentType,
-    /// Integers stand for 0 to 1, or -1 to 1.
+    /// Integers represent 0 to 1, or -1 to 1.
     normalized: bool,
 }
 
 impl Number {
-    /// Of a position or a normal: float32, or an integer of 8 or 16 bits (KHR_mesh_quantization).
+    /// The type of a component of a position or normal: float32, or an integer of 8 or 16 bits (KHR_mesh_quantization).
     pub fn of_vector(component: ComponentType, normalized: bool) -> Option<Number> {
         let allowed = match component {
             ComponentType::U32 => false,
@@ -21,7 +21,7 @@ impl Number {
         allowed.then_some(Number { component, normalized })
     }
 
-    /// Of a color: float32, or an integer of 8 or 16 bits that stands for 0 to 1.
+    /// The type of a component of a color: float32, or an integer of 8 or 16 bits that represents 0 to 1.
     pub fn of_color(component: ComponentType, normalized: bool) -> Option<Number> {
         let allowed = match component {
             ComponentType::F32 => !normalized,
@@ -31,18 +31,18 @@ impl Number {
         allowed.then_some(Number { component, normalized })
     }
 
-    /// Of a vertex index.
+    /// The type of a vertex index.
     pub fn of_index(component: ComponentType) -> Option<Number> {
         let allowed = matches!(component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32);
         allowed.then_some(Number { component, normalized: false })
     }
 
-    /// Bytes.
+    /// Size, bytes.
     pub fn size(self) -> usize {
         self.component.size()
     }
 
-    /// Its value from as many bytes as it has.
+    /// The value of its bytes.
     pub fn real(self, bytes: &[u8]) -> f32 {
         let bits = Number::unsigned(bytes);
         let (value, largest) = match self.component {
@@ -52,7 +52,7 @@ impl Number {
             ComponentType::U16 => (f32::from(bits as u16), 65535.0),
             ComponentType::U32 | ComponentType::F32 => return f32::from_bits(bits),
         };
-        // The least integer would be a little below -1.
+        // The smallest integer is a little below -1.
         if self.normalized { (value / largest).max(-1.0) } else { value }
     }
 

@@ -1,6 +1,6 @@
-//! The primitives of a mesh, checked but not read: a mesh may be placed many times, or be too large to place at all.
+//! The primitives of a mesh, checked and not read yet: a mesh may have many instances, or be too large to be read.
 
-use super::{Fault, accessor::Column, container::Document, textures::Coordinates};
+use super::{accessor::Column, container::Document, fault::Fault, textures::Coordinates};
 use gltf::json::{
     self, Accessor, Index,
     mesh::{Mode, Primitive, Semantic},
@@ -15,22 +15,22 @@ pub(super) struct MeshParts<'a> {
     pub vertices: u64,
 }
 
-/// A primitive: where its vertices and triangles are in the file.
+/// A primitive with the accessors of its vertices and triangles.
 pub(super) struct Part<'a> {
     pub positions: Column<'a>,
     pub normals: Option<Column<'a>>,
     pub indices: Option<Column<'a>>,
-    /// Texture coordinates, and where the texture puts them.
+    /// Texture coordinates, and their transform by the texture.
     pub coordinates: Option<(Column<'a>, Coordinates)>,
     pub colors: Option<Column<'a>>,
-    /// The material's index; one past the file's last for primitives without.
+    /// Index of the material. Primitives without one have the number of materials.
     pub material: u16,
     mode: Mode,
 }
 
 impl<'a> MeshParts<'a> {
-    /// Checks the primitives of a mesh; `warnings` tells which make no triangles. Each of them keeps the mesh's name for
-    /// messages, so a long name is cut.
+    /// Checks the primitives of a mesh, and warns of those without triangles. Each primitive keeps the name of the mesh for
+    /// messages, so that a long name is cut.
     pub fn new(
         document: &'a Document,
         mesh: &json::Mesh,
@@ -61,7 +61,7 @@ impl<'a> MeshParts<'a> {
     }
 }
 
-/// The start of a name, as long as names are.
+/// The first characters of a name.
 fn short(name: &str) -> String {
     const LONGEST: usize = 200;
     match name.char_indices().nth(LONGEST) {
@@ -70,7 +70,7 @@ fn short(name: &str) -> String {
     }
 }
 
-/// How a list of vertices is found.
+/// The function that checks an attribute.
 type ColumnOf<'a> = fn(&'a Document, &Index<Accessor>, String) -> Result<Column<'a>, Fault>;
 
 impl<'a> Part<'a> {
@@ -106,13 +106,14 @@ impl<'a> Part<'a> {
         let material = u16::try_from(material).map_err(|_| format!("{name}: too many materials"))?;
         let texture = document.root.materials.get(usize::from(material));
         let texture = texture.and_then(|m| m.pbr_metallic_roughness.base_color_texture.as_ref());
-        let place = texture.map(Coordinates::new).transpose().map_err(|e| format!("{name}: {e}"))?;
-        let coordinates = match place {
+        let transform = texture.map(Coordinates::new).transpose().map_err(|e| format!("{name}: {e}"))?;
+        let coordinates = match transform {
             None => None,
-            Some(place) => match beside(Semantic::TexCoords(place.set), Column::coordinates)? {
-                Some(column) => Some((column, place)),
+            Some(transform) => match beside(Semantic::TexCoords(transform.set), Column::coordinates)? {
+                Some(column) => Some((column, transform)),
                 None => {
-                    warnings.push(format!("{name}: no TEXCOORD_{}: one texel of its texture is taken", place.set));
+                    let set = transform.set;
+                    warnings.push(format!("{name}: no TEXCOORD_{set}: one texel of its texture is taken"));
                     None
                 }
             },
@@ -128,7 +129,7 @@ impl<'a> Part<'a> {
         }
     }
 
-    /// Corner indices of the triangles; a remainder that makes no triangle is dropped, as glTF says.
+    /// Corner indices of the triangles. Indices at the end that make no triangle are dropped, as glTF says.
     pub fn triangles(&self, indices: &[u32]) -> Vec<[u32; 3]> {
         match self.mode {
             Mode::TriangleStrip => {

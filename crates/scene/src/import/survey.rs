@@ -1,8 +1,8 @@
-//! What a file says that is not honoured: its JSON, walked along the table of what is.
+//! Finds the properties of a file that are not honoured: its JSON is visited along the table of those that are.
 //!
-//! Nothing is built of what is skipped, so that the walk needs no more memory than it finds.
+//! Skipped values are not built, so that the memory of the visit is that of its findings.
 
-use super::honoured::{DOCUMENT, Fate, Place, look_up};
+use super::honoured::{DOCUMENT, Fate, Lookup, look_up};
 use crate::unhonoured::cut;
 use serde::de::{Deserialize, DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_json::Value;
@@ -11,32 +11,32 @@ use std::{
     fmt,
 };
 
-/// Bytes of a property's name; a longer one is cut.
-const LONGEST_KEY: usize = 60;
+/// Most bytes of the name of a property; a longer one is cut.
+const MAX_KEY_BYTES: usize = 60;
 
-/// What is not honoured of the elements of each list, used or not.
+/// Properties that are not honoured, for each element of each list of the file.
 #[derive(Default)]
 pub(super) struct Survey {
     lists: BTreeMap<&'static str, Vec<Vec<Find>>>,
-    /// Names of all extensions whose objects were met.
+    /// Names of all extensions that have an object.
     pub extensions: BTreeSet<String>,
 }
 
 /// A property that is not honoured.
 pub(super) struct Find {
-    /// From its element on.
+    /// Path from the element.
     pub path: String,
-    /// On opaque, and on translucent surfaces; none if the picture shows it there.
+    /// Fates on opaque and on translucent surfaces; none where the image shows the property.
     pub on: [Option<Fate>; 2],
 }
 
 impl Survey {
-    /// What was found of an element of a list.
+    /// The findings about an element of a list.
     pub fn of(&self, list: &str, index: usize) -> &[Find] {
         self.lists.get(list).and_then(|elements| elements.get(index)).map_or(&[], Vec::as_slice)
     }
 
-    /// How many elements a list has.
+    /// Number of elements of a list.
     pub fn len(&self, list: &str) -> usize {
         self.lists.get(list).map_or(0, Vec::len)
     }
@@ -51,7 +51,7 @@ impl<'de> Deserialize<'de> for Survey {
     }
 }
 
-/// Walks what lies at a path.
+/// Visits the value at a path.
 struct Walk<'a> {
     survey: &'a mut Survey,
     list: &'static str,
@@ -59,14 +59,14 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// Notes what is not honoured at a path.
+    /// Records a property that is not honoured.
     fn find(&mut self, path: String, on: [Option<Fate>; 2]) {
         if let Some(finds) = self.survey.lists.get_mut(self.list).and_then(|elements| elements.last_mut()) {
             finds.push(Find { path, on });
         }
     }
 
-    /// Reads a property whose fates are known.
+    /// Reads a property of the table.
     fn property<'de, A: MapAccess<'de>>(&mut self, map: &mut A, path: String, on: [Fate; 2]) -> Result<(), A::Error> {
         let by_value = on.iter().any(|fate| matches!(fate, Fate::TakenAs(_) | Fate::Unless(_)));
         let (numbers, is_there) = if by_value {
@@ -91,7 +91,7 @@ impl Walk<'_> {
 
 /// A number, or the numbers of a list.
 fn numbers(value: &Value) -> Vec<f64> {
-    // As the import reads them: in float32.
+    // The import reads them in float32.
     let number = |v: &Value| v.as_f64().map_or(f64::NAN, |x| f64::from(x as f32));
     value.as_array().map_or_else(|| vec![number(value)], |list| list.iter().map(number).collect())
 }
@@ -118,12 +118,12 @@ impl<'de> Visitor<'de> for Walk<'_> {
             }
             let path = if self.path.is_empty() { key } else { format!("{}.{key}", self.path) };
             match look_up(self.list, &path) {
-                Place::List(list) => map.next_value_seed(Elements { survey: self.survey, list })?,
-                Place::Inside => map.next_value_seed(Walk { survey: self.survey, list: self.list, path: &path })?,
-                Place::Property(on) => self.property(&mut map, path, on)?,
-                Place::Unknown => {
+                Lookup::List(list) => map.next_value_seed(Elements { survey: self.survey, list })?,
+                Lookup::Inside => map.next_value_seed(Walk { survey: self.survey, list: self.list, path: &path })?,
+                Lookup::Property(on) => self.property(&mut map, path, on)?,
+                Lookup::Unknown => {
                     map.next_value::<IgnoredAny>()?;
-                    self.find(cut(&path, self.path.len() + LONGEST_KEY), [Some(Fate::No); 2]);
+                    self.find(cut(&path, self.path.len() + MAX_KEY_BYTES), [Some(Fate::No); 2]);
                 }
             }
         }
@@ -161,7 +161,7 @@ impl<'de> Visitor<'de> for Walk<'_> {
     }
 }
 
-/// Walks the elements of a list, each by itself.
+/// Visits the elements of a list.
 struct Elements<'a> {
     survey: &'a mut Survey,
     list: &'static str,

@@ -1,6 +1,10 @@
-//! Pictures that the file names: PNG and JPEG.
+//! Import of textures, from PNG and JPEG pictures.
 
-use super::{Fault, container::Document, get, jpeg};
+use super::{
+    container::Document,
+    fault::{Fault, get},
+    jpeg,
+};
 use crate::texture::{Picture, Texture, Wrap};
 use glam::{DMat2, DVec2};
 use gltf::json::{
@@ -18,26 +22,27 @@ use std::{
     sync::Arc,
 };
 
-/// Most texels of one picture, and of all: a small file can claim to be a large picture.
+/// Most texels of one picture and of all, because a small file can state a large picture.
 const MAX_TEXELS: u64 = 1 << 26;
 const MAX_TEXELS_OF_ALL: u64 = 1 << 28;
 
-/// Reads textures; each picture once, however many textures and images name it.
+/// Reads textures. Each picture is read once, for any number of textures and images that name it.
 pub(super) struct Textures<'a> {
     document: &'a Document,
     known: BTreeMap<Source, Arc<Picture>>,
     texels_left: u64,
-    /// Bytes of buffers that pictures may still be made of.
+    /// Bytes of buffers that are left for pictures.
     bytes_left: u64,
 }
 
-/// Where a picture comes from.
+/// The source of a picture.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 enum Source {
+    /// Canonical path.
     File(PathBuf),
-    /// Bytes of a buffer: where they start, and how many.
+    /// Bytes of a buffer: address and length.
     View(usize, usize),
-    /// The image with this index has it in its URI.
+    /// The data URI of the image with this index.
     Own(usize),
 }
 
@@ -71,22 +76,22 @@ impl<'a> Textures<'a> {
     fn picture(&mut self, index: usize, image: &json::Image) -> Result<Arc<Picture>, Fault> {
         let source = match (&image.uri, &image.buffer_view) {
             (Some(uri), _) if uri.starts_with("data:") => Source::Own(index),
-            (Some(uri), _) => Source::File(self.document.files.borrow().place(uri)?.1),
+            (Some(uri), _) => Source::File(self.document.files.borrow().locate(uri)?.1),
             (None, Some(view)) => {
                 let bytes = self.document.view(view)?;
                 Source::View(bytes.as_ptr() as usize, bytes.len())
             }
-            (None, None) => return Err("it has neither uri nor bufferView".into()),
+            (None, None) => return Err("the image has neither uri nor bufferView".into()),
         };
-        let place = match self.known.entry(source) {
+        let vacant = match self.known.entry(source) {
             Entry::Occupied(known) => return Ok(known.get().clone()),
-            Entry::Vacant(place) => place,
+            Entry::Vacant(vacant) => vacant,
         };
         let picture = match (&image.uri, &image.buffer_view) {
             (None, Some(view)) => {
                 let bytes = self.document.view(view)?;
-                // Pictures that do not overlap never have more: a short file could name one picture many times, each
-                // time a byte longer.
+                // Pictures that do not overlap never exceed this. A short file could name one picture many times, each time
+                // a byte longer.
                 let left = self.bytes_left.checked_sub(bytes.len() as u64);
                 self.bytes_left = left.ok_or("the bufferViews of the images overlap; export them apart")?;
                 decode(bytes, self.texels_left)?
@@ -97,7 +102,7 @@ impl<'a> Textures<'a> {
             }
         };
         self.texels_left -= picture.texels.len() as u64;
-        Ok(place.insert(Arc::new(picture)).clone())
+        Ok(vacant.insert(Arc::new(picture)).clone())
     }
 }
 
@@ -109,21 +114,21 @@ fn name_of(index: usize, image: &json::Image) -> String {
     }
 }
 
-/// A PNG without the chunks that hold compressed text or a profile: nobody looks at them, and unpacked they may be a
-/// thousand times as long.
-fn without_packed_chunks(bytes: &[u8]) -> Cow<'_, [u8]> {
+/// A PNG without the chunks of compressed text and profiles, which are not used and may be a thousand times as long when
+/// decompressed.
+fn without_compressed_chunks(bytes: &[u8]) -> Cow<'_, [u8]> {
     const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
     const PACKED: [&[u8]; 3] = [b"iCCP", b"zTXt", b"iTXt"];
     let mut kept = Cow::Borrowed(bytes);
     let Some(mut rest) = bytes.strip_prefix(SIGNATURE) else { return kept };
-    // Length, name, as many bytes and a checksum; what is shorter is left for the decoder to refuse.
+    // A chunk is length, name, content and checksum. The decoder refuses a shorter one.
     while let Some((size, after)) = rest.split_first_chunk::<4>() {
         let length = (u32::from_be_bytes(*size) as usize).saturating_add(12);
         let Some((chunk, next)) = rest.split_at_checked(length) else { break };
-        let place = bytes.len() - rest.len();
+        let offset = bytes.len() - rest.len();
         let packed = PACKED.iter().any(|name| after.starts_with(name));
         match &mut kept {
-            Cow::Borrowed(_) if packed => kept = Cow::Owned(bytes[..place].to_vec()),
+            Cow::Borrowed(_) if packed => kept = Cow::Owned(bytes[..offset].to_vec()),
             Cow::Owned(kept) if !packed => kept.extend(chunk),
             _ => {}
         }
@@ -135,12 +140,12 @@ fn without_packed_chunks(bytes: &[u8]) -> Cow<'_, [u8]> {
     kept
 }
 
-/// Decodes a picture of no more texels than there is room for. Messages do not repeat the decoder's, which show bytes: a
-/// link can make a picture of any file.
+/// Decodes a picture of at most `room` texels. Messages do not repeat those of the decoder, which show bytes, because a link can
+/// make a picture of any file.
 fn decode(bytes: &[u8], room: u64) -> Result<Picture, Fault> {
     const WAY_OUT: &str = "export it as PNG or JPEG";
-    let fault = |_| format!("a damaged PNG or JPEG picture, or of a kind that is not read; {WAY_OUT} again");
-    let bytes = without_packed_chunks(bytes);
+    let fault = |_| format!("the PNG or JPEG picture is damaged or of a kind that is not supported; {WAY_OUT} again");
+    let bytes = without_compressed_chunks(bytes);
     let reader = ImageReader::new(Cursor::new(&*bytes)).with_guessed_format().map_err(|e| e.to_string())?;
     let format = reader.format();
     if !matches!(format, Some(ImageFormat::Png | ImageFormat::Jpeg)) {
@@ -150,10 +155,10 @@ fn decode(bytes: &[u8], room: u64) -> Result<Picture, Fault> {
     let (width, height) = decoder.dimensions();
     let texels = u64::from(width) * u64::from(height);
     if texels == 0 || texels > MAX_TEXELS.min(room) {
-        let limits = format!("1 to {MAX_TEXELS} texels are read, {MAX_TEXELS_OF_ALL} in all pictures of a scene");
+        let limits = format!("1 to {MAX_TEXELS} texels are supported, {MAX_TEXELS_OF_ALL} in all pictures of a scene");
         return Err(format!("{width} x {height} texels: {limits}; export it smaller"));
     }
-    // Asked for and given back, from the system: what follows could not name the picture.
+    // The system is asked for the memory first, because a failure of the decoder could not name the picture.
     let needed = decoder.total_bytes().saturating_add(8 * texels);
     let space = MmapMut::map_anon(needed as usize);
     space.map_err(|_| format!("not enough memory for {width} x {height} texels; export it smaller"))?;
@@ -164,7 +169,7 @@ fn decode(bytes: &[u8], room: u64) -> Result<Picture, Fault> {
     Ok(Picture { width: width as usize, texels: pixels.into_raw().as_chunks().0.to_vec() })
 }
 
-/// Which texture coordinates of a primitive a texture takes, and where it puts them (KHR_texture_transform).
+/// The set of texture coordinates that a texture uses, and their transform (KHR_texture_transform).
 pub(super) struct Coordinates {
     pub set: u32,
     linear: DMat2,
@@ -179,13 +184,13 @@ impl Coordinates {
         if !(offset.is_finite() && scale.is_finite() && rotation.is_finite()) {
             return Err("KHR_texture_transform: its numbers must be finite".into());
         }
-        // Scaled, then turned, then moved; `v` points down, so that it turns against an angle.
+        // Scale, then rotation, then offset. `v` points down, so that the rotation is clockwise.
         let linear = DMat2::from_angle(-rotation) * DMat2::from_diagonal(scale);
         Ok(Coordinates { set: transform.tex_coord.unwrap_or(info.tex_coord), linear, offset })
     }
 
-    /// Coordinates in the picture.
-    pub fn place(&self, [u, v]: [f32; 2]) -> [f32; 2] {
+    /// Transformed coordinates.
+    pub fn apply(&self, [u, v]: [f32; 2]) -> [f32; 2] {
         (self.linear * DVec2::new(f64::from(u), f64::from(v)) + self.offset).as_vec2().to_array()
     }
 }
@@ -196,22 +201,22 @@ mod tests {
 
     /// Seen to catch: lengths that are too short for the twelve bytes around the content.
     #[test]
-    fn packed_chunks_of_a_png_are_left_out() {
+    fn compressed_chunks_of_a_png_are_left_out() {
         let chunk = |name: &str, content: &[u8]| {
             [&(content.len() as u32).to_be_bytes(), name.as_bytes(), content, b"crc!"].concat()
         };
         let signature = b"\x89PNG\r\n\x1a\n".to_vec();
         let [header, data, end] = [chunk("IHDR", b"size"), chunk("IDAT", b"iCCP zTXt"), chunk("IEND", b"")];
         let plain = [&signature[..], &header, &data, &end].concat();
-        assert!(matches!(without_packed_chunks(&plain), Cow::Borrowed(bytes) if bytes == plain));
+        assert!(matches!(without_compressed_chunks(&plain), Cow::Borrowed(bytes) if bytes == plain));
         for packed in [chunk("iCCP", b"bomb"), chunk("zTXt", b""), chunk("iTXt", &[0; 99])] {
             let bytes = [&signature[..], &header, &packed, &data, &packed, &packed, &end].concat();
-            assert_eq!(&*without_packed_chunks(&bytes), plain);
+            assert_eq!(&*without_compressed_chunks(&bytes), plain);
             let cut = [&signature[..], &header, &packed, &data[..7]].concat();
-            assert_eq!(&*without_packed_chunks(&cut), [&signature[..], &header, &data[..7]].concat());
+            assert_eq!(&*without_compressed_chunks(&cut), [&signature[..], &header, &data[..7]].concat());
         }
         let endless = [&signature[..], &u32::MAX.to_be_bytes(), b"iCCP"].concat();
-        assert_eq!(&*without_packed_chunks(&endless), endless);
-        assert_eq!(&*without_packed_chunks(b"\xff\xd8\xff"), b"\xff\xd8\xff");
+        assert_eq!(&*without_compressed_chunks(&endless), endless);
+        assert_eq!(&*without_compressed_chunks(b"\xff\xd8\xff"), b"\xff\xd8\xff");
     }
 }

@@ -1,6 +1,6 @@
-//! Materials that bound a medium, and what the file says of it.
+//! Import of the media below materials.
 
-use super::Fault;
+use super::fault::Fault;
 use crate::volume::{Scatter, ScatterExtension, Volume};
 use glam::DVec3;
 use gltf::json::{
@@ -10,25 +10,25 @@ use gltf::json::{
 use serde::Deserialize;
 use serde_json::Value;
 
-/// Colors of attenuation below this are taken as this: their logarithm must be finite.
-const DARKEST: f64 = 1e-4;
+/// Smallest color of attenuation, whose logarithm is finite; smaller ones are raised to it.
+const MIN_ATTENUATION: f64 = 1e-4;
 
-/// The newer draft first: it replaces the other.
+/// The newer draft comes first, because it replaces the other.
 const DRAFTS: [ScatterExtension; 2] = [ScatterExtension::Scatter, ScatterExtension::VolumeScatter];
 
-/// Fields of both drafts. The older one had `multiscatterColor` until February 2026.
+/// Fields of both drafts. `multiscatterColor` is from a version of the older draft before February 2026.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct Fields {
     multiscatter_color_factor: Option<[f64; 3]>,
     multiscatter_color: Option<[f64; 3]>,
-    /// Of the newer draft only.
+    /// Only in the newer draft.
     scatter_strength_factor: Option<f64>,
     #[serde(default)]
     scatter_anisotropy: f64,
 }
 
-/// The file says that the surface bounds a medium.
+/// True if the file says that the surface bounds a medium.
 pub(super) fn is_marked(m: &json::Material) -> bool {
     m.extensions
         .as_ref()
@@ -39,7 +39,7 @@ fn drafts(e: &material::Material) -> impl Iterator<Item = (ScatterExtension, &Va
     DRAFTS.into_iter().filter_map(|draft| Some((draft, e.others.get(draft.extension())?)))
 }
 
-/// The medium's numbers, if the material has them; `note` is told what is missing or taken otherwise.
+/// The coefficients of the medium, if the material states them. Warnings about missing or changed values go to `note`.
 pub(super) fn read(
     m: &json::Material,
     metres_per_unit: f64,
@@ -52,7 +52,7 @@ pub(super) fn read(
     if let Some((older, _)) = drafts.next() {
         note(format!("{} is not used beside the draft that replaces it", older.extension()));
     }
-    // Nothing enters, or there is no inside.
+    // Light must enter, and there must be a volume.
     let enters = transmission > 0.0 || matches!(draft, Some((ScatterExtension::VolumeScatter, _)));
     let solid = e.volume.as_ref().filter(|v| draft.is_some() || v.thickness_factor.0 > 0.0);
     let (true, Some(volume)) = (enters, solid) else {
@@ -74,16 +74,16 @@ pub(super) fn read(
         None => None,
     };
     if draft.is_some() && volume.thickness_factor.0 <= 0.0 {
-        note("thicknessFactor is 0, yet it is a solid".into());
+        note("thicknessFactor is 0, yet the medium is taken as solid".into());
     }
     let ior = e.ior.as_ref().map_or(IndexOfRefraction::default().0, |i| i.ior.0);
-    // The decimal that the file has, not the float32 that was made of it.
+    // The decimal number of the file, and not its rounding to float32.
     let ior = ior.to_string().parse().unwrap_or(f64::from(ior));
     Ok(Some(Volume { extinction, ior, scatter }))
 }
 
-/// `σ_t = −ln(attenuationColor)/attenuationDistance`, 1/m; the distance is in the world's units, whatever the node's
-/// scale.
+/// `σ_t = −ln(attenuationColor)/attenuationDistance`, 1/m. The distance is in units of the world and independent of the scale of
+/// nodes.
 fn extinction(volume: &material::Volume, metres_per_unit: f64, note: &mut impl FnMut(String)) -> Result<DVec3, Fault> {
     let color = DVec3::from_array(volume.attenuation_color.0.map(f64::from));
     check_color("attenuationColor", color)?;
@@ -91,11 +91,11 @@ fn extinction(volume: &material::Volume, metres_per_unit: f64, note: &mut impl F
     if distance.is_nan() || distance <= 0.0 {
         return Err(format!("attenuationDistance {} must be above zero", volume.attenuation_distance.0));
     }
-    if color.min_element() < DARKEST && distance.is_finite() {
-        note(format!("attenuationColor is taken as no less than {DARKEST}: a darker one has no finite extinction"));
+    if color.min_element() < MIN_ATTENUATION && distance.is_finite() {
+        note(format!("attenuationColor is raised to {MIN_ATTENUATION}: a darker one has no finite extinction"));
     }
-    // No negative zero where the color is 1.
-    Ok(color.map(|c| (-c.max(DARKEST).ln()).max(0.0) / distance))
+    // The maximum avoids a negative zero where the color is 1.
+    Ok(color.map(|c| (-c.max(MIN_ATTENUATION).ln()).max(0.0) / distance))
 }
 
 fn scatter(draft: ScatterExtension, value: &Value, note: &mut impl FnMut(String)) -> Result<Option<Scatter>, Fault> {

@@ -1,4 +1,4 @@
-//! Geometry of glTF files: every layout that glTF allows gives the triangles that it means.
+//! Geometry of glTF files in every layout that glTF allows.
 
 use scene::{DVec3, ImportOptions, Mesh, NormalKind, Scene};
 use serde_json::{Value, json};
@@ -22,7 +22,7 @@ fn volume(mesh: &Mesh) -> f64 {
     (0..mesh.triangles.len()).map(signed).sum()
 }
 
-/// Every vertex normal points out of the triangle that it belongs to.
+/// Asserts that every vertex normal points out of its triangle.
 fn normals_point_outwards(mesh: &Mesh) -> bool {
     (0..mesh.triangles.len() as u32).all(|k| {
         let point = mesh.point(k, [1.0 / 3.0; 3], NormalKind::Shading);
@@ -77,7 +77,7 @@ fn indices_of_every_width() {
     }
 }
 
-/// Positions and normals in turn, in one view with a stride; the accessors start within it.
+/// Positions and normals are interleaved in one view with a stride, and the accessors start within it.
 #[test]
 fn interleaved_vertices() {
     let expected = corners(&import(&tetrahedron()));
@@ -99,11 +99,11 @@ fn interleaved_vertices() {
 #[test]
 fn sparse_accessors_replace_some_elements() {
     let mut asset = tetrahedron();
-    let places = asset.indices(&[3]);
+    let indices = asset.indices(&[3]);
     let values = asset.vectors(&[[0.0, 0.0, 5.0]]);
     let sparse = json!({
         "count": 1,
-        "indices": { "bufferView": places, "componentType": 5123 },
+        "indices": { "bufferView": indices, "componentType": 5123 },
         "values": { "bufferView": values },
     });
     asset.set("/accessors/0/sparse", sparse);
@@ -115,11 +115,11 @@ fn sparse_accessors_replace_some_elements() {
 #[test]
 fn sparse_accessors_of_zeros() {
     let mut asset = tetrahedron();
-    let places = asset.indices(&[1, 2, 3]);
+    let indices = asset.indices(&[1, 2, 3]);
     let values = asset.vectors(&TETRAHEDRON[1..]);
     let sparse = json!({
         "count": 3,
-        "indices": { "bufferView": places, "componentType": 5123 },
+        "indices": { "bufferView": indices, "componentType": 5123 },
         "values": { "bufferView": values },
     });
     asset.set("/accessors/0", json!({ "componentType": 5126, "type": "VEC3", "count": 4, "sparse": sparse }));
@@ -138,7 +138,7 @@ fn matrix_and_translation_rotation_scale_agree() {
     let trs = placed(json!({
         "mesh": 0, "translation": [1, 2, 3], "rotation": [0, 0, half, half], "scale": [2, 3, 4],
     }));
-    // A quarter turn about z takes x to y and y to -x.
+    // A rotation by 90 degrees about z takes x to y and y to -x.
     let matrix = placed(json!({ "mesh": 0, "matrix": [0, 2, 0, 0, -3, 0, 0, 0, 0, 0, 4, 0, 1, 2, 3, 1] }));
     for (a, b) in corners(&trs).iter().flatten().zip(corners(&matrix).iter().flatten()) {
         assert!(a.distance(*b) < 1e-6, "{a} {b}");
@@ -156,7 +156,7 @@ fn a_mirrored_copy_is_the_mirror_image_and_stays_outwards() {
     for (a, b) in corners(&plain).iter().zip(corners(&mirrored)) {
         assert_eq!([a[0], a[2], a[1]].map(|c| c * flip), b);
     }
-    // Mirrored twice on its way to the world, and all three axes at once.
+    // Two reflections on the way to the world, and one of all three axes.
     let nested = |inner: Value| {
         let mut asset = tetrahedron();
         asset.set("/nodes/0", json!({ "children": [3], "scale": [1, -1, 1] }));
@@ -167,7 +167,7 @@ fn a_mirrored_copy_is_the_mirror_image_and_stays_outwards() {
     assert!(nested(json!({ "mesh": 0, "scale": [-1, -1, -1] })) > 0.0);
 }
 
-/// Under uneven scale, a normal is not moved as a direction is.
+/// Under nonuniform scale, a normal does not transform like a direction.
 #[test]
 fn normals_stay_upright_on_a_stretched_slope() {
     let mut asset = Asset::new();
@@ -217,16 +217,16 @@ fn metres_per_unit_scales_everything_but_normals() {
     assert!(scene.mesh.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-6));
 }
 
-/// Ten thousand kilometres from the origin, a float32 has steps of a metre.
+/// Ten thousand kilometres from the origin, float32 has steps of a metre.
 #[test]
 fn an_object_far_from_the_origin_keeps_its_shape() {
     let scene = placed(json!({ "mesh": 0, "translation": [1e7, 0, -1e7] }));
     assert!((volume(&scene.mesh) - 1.0 / 6.0).abs() < 1e-7, "{}", volume(&scene.mesh));
 }
 
-/// Stray vertices far away make needles without area, exactly or in float32. None costs the mesh its place or its digits.
+/// Stray vertices far away make needles without area, exactly or in float32. None moves the mesh or costs it precision.
 ///
-/// Seen to fail: all triangles of the file in the box whose centre is the origin.
+/// Seen to fail: all triangles of the file counted in the box whose centre is the origin.
 #[test]
 fn what_has_no_area_costs_the_others_no_digits() {
     let strays: [[[f32; 3]; 3]; 2] =

@@ -1,4 +1,4 @@
-//! The files that a scene is made of: containers, buffers beside them, data URIs, names.
+//! The files of a scene: containers, buffers beside them, data URIs, names.
 
 use crate::import_textures::{encoded, textured, with_picture};
 use base64::{Engine, engine::general_purpose::STANDARD};
@@ -10,7 +10,7 @@ use test_support::{
     glb::{OPTIONS, container, import_bytes, tetrahedron},
 };
 
-/// The tetrahedron as a .gltf whose buffers are these.
+/// The tetrahedron as a .gltf with these buffers.
 fn gltf(buffers: Value) -> Vec<u8> {
     let mut document = tetrahedron().json;
     document["buffers"] = buffers;
@@ -92,7 +92,7 @@ fn odd_uris_are_faults() {
     }
 }
 
-/// A file that thousands of buffers name is still one file.
+/// A file that thousands of buffers name is read once.
 #[test]
 fn one_file_is_read_once() {
     let bench = Bench::new();
@@ -107,8 +107,9 @@ fn one_file_is_read_once() {
     assert!(start.elapsed().as_secs() < 5, "16 GiB would take longer");
 }
 
-/// A scene's folder may be made of links. What they lead to is read like a file that lies there, and shows in no message.
-/// Seen to catch: the decoder's words, with bytes of the file; a number out of range, or one beside one that is no number.
+/// The files of a scene's folder may be links. Their targets are read like files, and their content appears in no message.
+///
+/// Seen to catch: the decoder's message, with bytes of the file; the value of an index or number in a message.
 #[cfg(unix)]
 #[test]
 fn links_are_followed_and_messages_do_not_show_what_is_there() {
@@ -130,12 +131,12 @@ fn links_are_followed_and_messages_do_not_show_what_is_there() {
         let message = Scene::import(&path, &OPTIONS).err().expect("no picture").to_string();
         let (_, said) = message.split_once(&format!("`{name}`: ")).expect("the image's name");
         let known = [
-            "a damaged PNG or JPEG picture, or of a kind that is not read; export it as PNG or JPEG again",
+            "the PNG or JPEG picture is damaged or of a kind that is not supported; export it as PNG or JPEG again",
             "neither a PNG nor a JPEG picture; export it as PNG or JPEG",
         ];
         assert!(known.contains(&said), "{said}");
     }
-    // A link to where it lies gives a file any number of paths; it is read once.
+    // A link to its own folder gives a file any number of paths; it is read once.
     std::os::unix::fs::symlink(".", bench.path("d")).expect("a link");
     let uris = ["mesh.bin", "d/mesh.bin", "d/d/mesh.bin"];
     let buffers = uris.map(|uri| json!({ "uri": uri, "byteLength": tetrahedron().binary.len() }));
@@ -156,7 +157,7 @@ fn links_are_followed_and_messages_do_not_show_what_is_there() {
     }
 }
 
-/// Programs refuse to write over what they read: each file is there, once, by the path that it was opened by.
+/// Programs refuse to write over their inputs. The list has each file once, by the path at which it was opened.
 #[test]
 fn every_file_that_was_read_is_told() {
     let bench = Bench::new();
@@ -205,7 +206,7 @@ fn chunks_of_other_kinds_are_ignored() {
     assert!(message.contains("no binary chunk"), "{message}");
 }
 
-/// Each of the header's length fields at its extremes.
+/// Each length field of the header at its extremes.
 #[test]
 fn wrong_lengths_in_the_container_are_faults() {
     let good = tetrahedron().glb();
@@ -250,7 +251,7 @@ fn what_is_no_gltf_at_all() {
     let missing = bench.path("missing.glb");
     let message = Scene::import(&missing, &OPTIONS).err().expect("missing").to_string();
     assert!(message.contains("missing.glb"), "{message}");
-    // A device or a pipe might never end.
+    // A device or a pipe could be endless.
     for path in [bench.folder(), Path::new("/dev/zero")] {
         let message = Scene::import(path, &OPTIONS).err().expect("no file").to_string();
         assert!(!path.exists() || message.contains("not a regular file"), "{message}");

@@ -11,10 +11,10 @@ fn facing(scene: &Scene, position: DVec3, normal: DVec3) -> SurfacePoint {
     point
 }
 
-/// Irradiance there by the scene's only light, 0 if there is none.
+/// Irradiance at a point by the scene's only light; 0 if there is none.
 fn irradiance(scene: &Scene, position: DVec3, normal: DVec3) -> DVec3 {
-    assert_eq!(scene.lights.len(), 1);
-    let light = scene.lights[0].illuminate(&facing(scene, position, normal), [0.5; 2]);
+    assert_eq!(scene.file_lights.len(), 1);
+    let light = scene.file_lights[0].illuminate(&facing(scene, position, normal), [0.5; 2]);
     light.map_or(DVec3::ZERO, |l| l.irradiance)
 }
 
@@ -50,7 +50,7 @@ fn a_point_lights_intensity_ignores_scale_and_its_place_does_not() {
     asset.set("/scenes/0/nodes", json!([0, 4]));
     asset.push("nodes", json!({ "children": [3], "scale": [2, 2, 2] }));
     assert_eq!(irradiance(&import(&asset), DVec3::ZERO, DVec3::Z), DVec3::splat(2.0));
-    // It needs no direction: a node without extent can carry it.
+    // A point light needs no direction, so that its node may have scale 0.
     asset.set("/nodes/4/scale", json!([0, 0, 0]));
     assert_eq!(irradiance(&import(&asset), DVec3::new(0.0, 0.0, -2.0), DVec3::Z), DVec3::splat(2.0));
 }
@@ -103,8 +103,9 @@ fn photometric_numbers_are_divided_by_683() {
     }
 }
 
-/// Blender's lamps are in candela and its emission is in W: each has a unit of its own. Seen to catch: emission in the
-/// unit of the lights.
+/// Blender writes lights in candela and emission in W: each has a unit of its own.
+///
+/// Seen to catch: emission in the unit of the lights.
 #[test]
 fn emission_has_a_unit_of_its_own() {
     let mut asset = lit(json!({ "type": "point", "intensity": 683 }), json!({}));
@@ -112,7 +113,7 @@ fn emission_has_a_unit_of_its_own() {
     let (watts, lumens) = (LightUnit::Radiometric, LightUnit::Photometric);
     for (light_unit, emission_unit) in [(watts, watts), (watts, lumens), (lumens, watts), (lumens, lumens)] {
         let scene = asset.import_with(&ImportOptions { light_unit, emission_unit, ..OPTIONS }).expect("a good file");
-        let light = scene.lights[0].illuminate(&facing(&scene, DVec3::NEG_Z, DVec3::Z), [0.5; 2]).expect("lit");
+        let light = scene.file_lights[0].illuminate(&facing(&scene, DVec3::NEG_Z, DVec3::Z), [0.5; 2]).expect("lit");
         let factor = |unit| if unit == watts { 1.0 } else { 1.0 / 683.0 };
         assert!(light.irradiance.distance(DVec3::splat(683.0 * factor(light_unit))) < 1e-10);
         let emission = scene.materials[0].emission;
@@ -123,7 +124,7 @@ fn emission_has_a_unit_of_its_own() {
 #[test]
 fn a_light_without_intensity_is_left_out_with_a_warning() {
     let scene = import(&lit(json!({ "type": "point", "intensity": 0 }), json!({ "name": "dark" })));
-    assert!(scene.lights.is_empty());
+    assert!(scene.file_lights.is_empty());
     assert!(scene.warnings.iter().any(|w| w.contains("`dark`")), "{:?}", scene.warnings);
 }
 
@@ -134,14 +135,14 @@ fn emitting_materials_are_area_lights() {
     asset.set("/extensionsRequired", json!(["KHR_materials_emissive_strength"]));
     asset.set("/materials/0/emissiveFactor", json!([1, 1, 1]));
     asset.set("/materials/0/extensions", json!({ "KHR_materials_emissive_strength": { "emissiveStrength": 4 } }));
-    // A material that is on no triangle gives no light.
+    // A material without triangles gives no light.
     asset.push("materials", json!({ "emissiveFactor": [9, 9, 9] }));
     let scene = import(&asset);
-    assert_eq!((scene.lights.len(), scene.materials[0].emission), (1, DVec3::splat(4.0)));
+    assert_eq!((scene.file_lights.len(), scene.materials[0].emission), (1, DVec3::splat(4.0)));
     assert!(irradiance(&scene, DVec3::splat(-100.0), DVec3::ONE.normalize()).x > 0.0);
 }
 
-/// Emission is that of the factor; the file's texture would make it uneven, and is named as left out, once.
+/// Emission is that of the factor. One warning says that the texture, which would vary it, is not used.
 #[test]
 fn an_emissive_texture_is_left_out_with_a_warning() {
     let mut asset = tetrahedron();
@@ -154,10 +155,10 @@ fn an_emissive_texture_is_left_out_with_a_warning() {
     assert_eq!(about.count(), 1, "{:?}", scene.warnings);
 }
 
-/// Seen to catch: the cosines of a spot's angles, which are 1 for both of the narrow ones.
+/// Seen to catch: the cosines of the angles in the digest, which are 1 for both narrow spots.
 #[test]
 fn the_light_digest_tells_lights_apart() {
-    let digest = |light: Value| import(&lit(light, json!({}))).light_digest;
+    let digest = |light: Value| import(&lit(light, json!({}))).light_digest();
     let spot = |outer: f64| json!({ "type": "spot", "spot": { "outerConeAngle": outer }, "intensity": 1 });
     let all = [
         digest(json!({ "type": "point", "intensity": 1 })),

@@ -1,4 +1,4 @@
-//! KHR_mesh_quantization: positions and normals as integers mean what they stand for.
+//! KHR_mesh_quantization: positions and normals as integers.
 
 use scene::{DVec3, NormalKind, Scene};
 use serde_json::json;
@@ -36,8 +36,9 @@ fn world(scene: &Scene) -> Vec<DVec3> {
     (0..scene.mesh.triangles.len()).flat_map(|k| scene.mesh.corners(k).map(|c| c + scene.origin)).collect()
 }
 
-/// Each kind of integer, taken as it is and as a share of its largest, gives the tetrahedron back. Seen to catch: a
-/// signed byte read without its sign, and a `normalized` that is ignored.
+/// Each type of integer, normalized or not, gives the tetrahedron back.
+///
+/// Seen to catch: a signed byte read without its sign; `normalized` ignored.
 #[test]
 fn positions_of_every_kind_of_integer() {
     let expected = world(&tetrahedron().import().expect("a good file"));
@@ -52,7 +53,7 @@ fn positions_of_every_kind_of_integer() {
             }
         }
     }
-    // Negative ones; the least of a kind is -1 too.
+    // Negative ones. The smallest integer of a type is -1, too.
     let below = TETRAHEDRON.map(|p| p.map(|x| if x > 0.0 { -128 } else { 0 }));
     let (low, high) = quantised(0, &below, (BYTE, 1, true), 1.0).import().expect("a good file").mesh.bounds();
     assert_eq!(high - low, DVec3::ONE);

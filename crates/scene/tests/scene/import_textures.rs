@@ -1,4 +1,4 @@
-//! Base colors: factors, textures and vertex colors, at known places of a square.
+//! Base colors: factors, textures and vertex colors, at known points of a square.
 
 use base64::{Engine, engine::general_purpose::STANDARD};
 use image::{ImageFormat, Rgba, RgbaImage};
@@ -14,7 +14,7 @@ use test_support::{
 const LINEAR_64: f64 = 0.051_269_458;
 const LINEAR_188: f64 = 0.502_886_458;
 
-/// Two texels by two; alpha 255, 51, 102, 0.
+/// Two by two texels with alpha 255, 51, 102, 0.
 fn texels() -> RgbaImage {
     let colors = [[255, 0, 64, 255], [0, 255, 188, 51], [64, 188, 0, 102], [188, 64, 255, 0]];
     RgbaImage::from_fn(2, 2, |x, y| Rgba(colors[(x + 2 * y) as usize]))
@@ -39,7 +39,7 @@ pub fn encoded(image: &RgbaImage, format: ImageFormat) -> Vec<u8> {
     bytes.into_inner()
 }
 
-/// A square of material 0 over x and y from 0 to 1 whose texture coordinates are x and y, from above; it looks along +Z.
+/// A square of material 0 over x and y from 0 to 1, which faces +Z. Its texture coordinates are x, and y from the top.
 pub fn square(asset: &mut Asset, material: Value) -> Value {
     asset.push("materials", material);
     let positions = asset.vectors(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]]);
@@ -57,7 +57,7 @@ pub fn textured(extra: Value) -> Value {
     json!({ "name": "Cloth", "pbrMetallicRoughness": { "baseColorTexture": texture } })
 }
 
-/// The square under a picture inside the .glb.
+/// The square with a picture inside the .glb.
 pub fn with_picture(bytes: &[u8], material: Value, sampler: Value) -> Asset {
     let mut asset = Asset::new();
     let primitive = square(&mut asset, material);
@@ -103,7 +103,7 @@ fn texels_of_an_embedded_png() {
         assert_color(&scene, [0.25, 0.75], linear(0, 1));
         let mean = (linear(0, 0) + linear(1, 0) + linear(0, 1) + linear(1, 1)) * 0.25;
         assert_color(&scene, [0.5, 0.5], mean);
-        assert_color(&scene, [0.0, 0.5], mean); // the picture repeats
+        assert_color(&scene, [0.0, 0.5], mean); // The picture repeats.
     }
     let clamped = json!({ "wrapS": 33071, "wrapT": 33648 });
     let scene = with_picture(&png(), textured(json!({})), clamped).import().expect("imports");
@@ -121,7 +121,7 @@ fn a_jpeg_in_the_uri_times_the_factor() {
     asset.set("/images/0", json!({ "uri": uri }));
     let color = color_at(&asset.import().expect("imports"), 0.3, 0.6);
     let expected = DVec4::new(0.5, 0.25, 1.0, 0.0) * LINEAR_188 + DVec4::W * 0.5;
-    // One code of 255 is 0.006 of this grey's light.
+    // One code of 255 is 0.006 of the light of this gray.
     assert!(color.abs_diff_eq(expected, 0.013), "{color}");
 }
 
@@ -141,8 +141,8 @@ fn a_picture_beside_the_scene() {
     assert!(fault(&asset).contains("not a file in the scene's folder"));
 }
 
-/// Seen to catch: the angle with the other sign; scaled after it is turned; the set of coordinates without the
-/// transform's own.
+/// Seen to catch: the angle with the other sign; scale after rotation; the texture's set of coordinates where the transform states
+/// its own.
 #[test]
 fn coordinates_of_another_set_transformed() {
     let angle = 0.5_f64;
@@ -168,7 +168,7 @@ fn coordinates_of_another_set_transformed() {
     assert!(inside > 10, "{inside}");
 }
 
-/// Seen to catch: integers not normalised; vertices of another primitive.
+/// Seen to catch: integers not normalized; vertices of another primitive.
 #[test]
 fn vertex_colors_of_every_kind() {
     let corners = [[0.0, 0.2, 0.4, 1.0], [0.6, 0.8, 1.0, 0.4], [0.2, 0.0, 0.0, 0.8], [1.0, 1.0, 1.0, 0.0f32]];
@@ -193,7 +193,7 @@ fn vertex_colors_of_every_kind() {
         let mut asset = Asset::new();
         let factor = json!({ "baseColorFactor": [0.5, 1.0, 1.0, 1.0] });
         let mut primitive = square(&mut asset, json!({ "name": "Paint", "pbrMetallicRoughness": factor }));
-        // Of another material, or it would be a copy.
+        // Another material, since it would be a copy.
         let mut plain = primitive.clone();
         let other = asset.json["materials"][0].clone();
         plain["material"] = json!(asset.push("materials", other));
@@ -216,7 +216,7 @@ fn vertex_colors_of_every_kind() {
     }
 }
 
-/// Neither texture, mask nor vertex colors change a translucent surface: said in one line.
+/// Texture, mask and vertex colors do not change a translucent surface, and one line warns of them.
 #[test]
 fn what_is_not_used_is_said() {
     let mut material = textured(json!({}));
@@ -234,7 +234,7 @@ fn what_is_not_used_is_said() {
     assert!(bare.import().expect("imports").warnings[0].contains("no TEXCOORD_0"));
 }
 
-/// A PNG that claims to have so many texels.
+/// A PNG that states so many texels.
 fn claiming(width: u32, height: u32) -> Vec<u8> {
     let mut header = b"IHDR".to_vec();
     header.extend([width, height].iter().flat_map(|x| x.to_be_bytes()));
@@ -286,8 +286,9 @@ fn pictures_that_cannot_be_read() {
     }
 }
 
-/// The tree without this padded a JPEG picture that ends early with grey, and said nothing. Whatever the picture lacks, it
-/// is refused; of a PNG picture only the mark of its end may be missing.
+/// A picture that ends early is refused; only the end marker of a PNG picture may be missing.
+///
+/// Seen to catch: a JPEG picture padded with gray.
 #[test]
 fn pictures_that_end_early_are_refused() {
     let picture = RgbaImage::from_fn(40, 24, |x, y| Rgba([6 * x as u8, 10 * y as u8, (x * y) as u8, 255]));
@@ -305,7 +306,7 @@ fn pictures_that_end_early_are_refused() {
     }
 }
 
-/// Damage is refused or shows: nothing ends the program.
+/// Damage is refused or visible; nothing ends the program.
 #[test]
 fn damaged_pictures() {
     let small = RgbaImage::from_fn(9, 9, |x, y| Rgba([20 * x as u8, 20 * y as u8, 7, 255]));

@@ -1,4 +1,4 @@
-//! Work that a short file can ask for: time, like memory, grows with the file and not with what its parts name together.
+//! Work that a short file can cause: time and memory grow with the length of the file, and not with the number of references.
 
 use crate::import_textures::{encoded, textured, with_picture};
 use image::{ImageFormat, RgbaImage};
@@ -10,10 +10,10 @@ use std::{
 };
 use test_support::glb::{Asset, UNSIGNED_SHORT, fault, tetrahedron};
 
-/// What the files below take at most, on any machine; the errors named would take several times as long.
+/// Longest time of the files below, on any machine. With the errors named it is several times as long.
 const SOON: Duration = Duration::from_secs(15);
 
-/// Imports a file that must be good, and soon.
+/// Imports a good file within the time limit.
 fn import_soon(asset: &Asset) -> Scene {
     let start = Instant::now();
     let scene = asset.import().expect("a good file");
@@ -21,7 +21,7 @@ fn import_soon(asset: &Asset) -> Scene {
     scene
 }
 
-/// Materials of these images, each with a texture of its own.
+/// Materials with these images, each with a texture of its own.
 fn of_images(asset: &mut Asset, images: Vec<Value>) {
     let textures: Vec<Value> = (0..images.len()).map(|k| json!({ "source": k })).collect();
     let material = |k: usize| {
@@ -35,7 +35,7 @@ fn of_images(asset: &mut Asset, images: Vec<Value>) {
     asset.json["materials"] = json!(materials);
 }
 
-/// Each image was decoded by itself, be the bytes the same or not, and hashed once more for each material.
+/// Seen to catch: equal images that are each decoded, and hashed once more for each material.
 #[test]
 fn a_picture_that_many_images_name_is_decoded_once() {
     let png = encoded(&RgbaImage::new(9, 9), ImageFormat::Png);
@@ -46,7 +46,7 @@ fn a_picture_that_many_images_name_is_decoded_once() {
     let pictures: Vec<_> =
         asset.import().expect("a good file").materials.into_iter().filter_map(|m| m.base_texture).collect();
     assert!(pictures.len() == 5 && pictures.iter().all(|t| Arc::ptr_eq(&t.picture, &pictures[0].picture)));
-    // The identity of the scene knows a picture from another of the same size.
+    // The digest of the scene distinguishes pictures of the same size.
     let other = encoded(&RgbaImage::from_pixel(9, 9, image::Rgba([1; 4])), ImageFormat::Png);
     let more = json!({ "buffer": 0, "byteOffset": asset.binary.len(), "byteLength": other.len() });
     asset.binary.extend(other);
@@ -61,7 +61,7 @@ fn a_picture_that_many_images_name_is_decoded_once() {
     assert!((0..5).all(|k| !digests[..k].contains(&digests[k])));
 }
 
-/// The same bytes, each time one more after the picture's end, are as many pictures. Seen to catch: no limit.
+/// Views of the same bytes, each a byte longer than the last, are as many pictures. Seen to catch: no limit.
 #[test]
 fn pictures_do_not_overlap() {
     let pixels = RgbaImage::from_fn(64, 64, |x, y| image::Rgba([x as u8, y as u8, (x * y) as u8, 255]));
@@ -75,7 +75,7 @@ fn pictures_do_not_overlap() {
     let second = asset.push("bufferViews", view.clone());
     of_images(&mut asset, vec![json!({ "bufferView": first }), json!({ "bufferView": second })]);
     assert!(png.len() > 500 && fault(&asset).contains("images[1]: the bufferViews of the images overlap"));
-    // A copy of its own is another picture.
+    // A copy is another picture.
     let copy = asset.binary[start as usize..start as usize + png.len()].to_vec();
     asset.json["bufferViews"][second]["byteOffset"] = json!(asset.binary.len());
     asset.json["bufferViews"][second]["byteLength"] = json!(png.len());
@@ -83,13 +83,14 @@ fn pictures_do_not_overlap() {
     assert!(asset.import().is_ok());
 }
 
-/// Few elements with many changes, which many primitives share, take no time to hold and much to read. Seen to catch:
-/// changes that only their buffer view limits.
+/// A short accessor with many changes, which many primitives share, is quickly stored and slowly read.
+///
+/// Seen to catch: changes that only their buffer view limits.
 #[test]
 fn sparse_accessors_change_no_more_elements_than_they_have() {
     let mut asset = tetrahedron();
-    let (places, values) = (asset.indices(&[3; 5]), asset.vectors(&[[0.0, 0.0, 5.0]; 5]));
-    let indices = json!({ "bufferView": places, "componentType": UNSIGNED_SHORT });
+    let (indices, values) = (asset.indices(&[3; 5]), asset.vectors(&[[0.0, 0.0, 5.0]; 5]));
+    let indices = json!({ "bufferView": indices, "componentType": UNSIGNED_SHORT });
     let sparse = |count: usize| json!({ "count": count, "indices": indices, "values": { "bufferView": values } });
     asset.set("/accessors/0/sparse", sparse(4));
     assert!(asset.import().is_ok());
@@ -97,8 +98,8 @@ fn sparse_accessors_change_no_more_elements_than_they_have() {
     assert!(fault(&asset).contains("POSITION: sparse: count 5 exceeds the 4 elements"), "{}", fault(&asset));
 }
 
-/// Seen to catch: the name of a mesh whole in every message and column of its primitives; the name of a camera once
-/// more for each of its nodes, without a limit.
+/// Seen to catch: the full name of a mesh in every column of its primitives; the name of a camera for each of its nodes without a
+/// limit.
 #[test]
 fn long_names_are_not_multiplied() {
     let mut asset = tetrahedron();
@@ -118,7 +119,7 @@ fn long_names_are_not_multiplied() {
     assert!(fault(&asset).contains("`one more`: the names of cameras have more than 16777216 bytes"));
 }
 
-/// Seen to catch: the primitives of a mesh looked through for each node that carries it.
+/// Seen to catch: the primitives of a mesh searched for each node that carries it.
 #[test]
 fn many_nodes_of_a_mesh_of_many_primitives() {
     const COUNT: usize = 120_000;
@@ -131,13 +132,13 @@ fn many_nodes_of_a_mesh_of_many_primitives() {
     assert_eq!(import_soon(&asset).mesh.triangles.len(), 4);
 }
 
-/// Seen to catch: the longest of all buffers looked for at each accessor that starts from zeros.
+/// Seen to catch: the longest of all buffers searched at each accessor that starts from zeros.
 #[test]
 fn many_buffers_and_many_accessors_without() {
     const COUNT: usize = 60_000;
     let mut asset = tetrahedron();
-    let (places, values) = (asset.indices(&[3]), asset.vectors(&[[0.0, 0.0, 1.0]]));
-    let indices = json!({ "bufferView": places, "componentType": UNSIGNED_SHORT });
+    let (indices, values) = (asset.indices(&[3]), asset.vectors(&[[0.0, 0.0, 1.0]]));
+    let indices = json!({ "bufferView": indices, "componentType": UNSIGNED_SHORT });
     let sparse = json!({ "count": 1, "indices": indices, "values": { "bufferView": values } });
     let zeros = json!({ "componentType": 5126, "type": "VEC3", "count": 4, "sparse": sparse });
     let zeros = asset.push("accessors", zeros);

@@ -6,7 +6,7 @@ use super::{Image as Plain, ImageError};
 
 const SIZE: (usize, usize) = (37, 41);
 
-/// Smooth enough to be compressed, which is what makes damage dangerous.
+/// An image that compression makes smaller, so that damage reaches the decompressors.
 fn value(channel: usize, x: usize, y: usize) -> f32 {
     ((x / 4 + y / 8 + channel) % 9) as f32 * 0.25
 }
@@ -90,7 +90,7 @@ fn other_files_and_short_ones_are_named_as_such() {
     }
 }
 
-/// A changed byte may be a changed sample, which no reader can know; it must never be a panic.
+/// A changed byte may change a sample, which no reader can notice, but it must not cause a panic.
 #[test]
 fn damage_never_panics() {
     let mut state = 1_u64;
@@ -104,7 +104,7 @@ fn damage_never_panics() {
             for _ in 0..40 {
                 let mut damaged = bytes.clone();
                 for _ in 0..=random(3) {
-                    // Half of the damage to the header and the offsets, where sizes are.
+                    // Half of the damage goes to the header and the offsets, which hold the sizes.
                     let end = if random(2) == 0 { bytes.len() } else { bytes.len().min(700) };
                     damaged[random(end)] = [0, 1, 0x7f, 0x80, 0xff, random(256) as u8][random(6)];
                 }
@@ -114,16 +114,16 @@ fn damage_never_panics() {
     }
 }
 
-/// The data window claims what the file cannot hold: refused before memory is taken.
+/// A data window that the file cannot hold is refused before memory is allocated.
 #[test]
 fn absurd_sizes_are_refused() {
     let mut bytes = file(&[("only", encodings()[9])]);
     let find = |bytes: &[u8], words: &[u8]| bytes.windows(words.len()).position(|window| window == words).unwrap();
-    // Without the count of blocks, which would give the lie away.
+    // The count of blocks is left out, because it would contradict the data window.
     let count = find(&bytes, b"chunkCount\0");
     bytes[count] = b'C';
     let maximum = find(&bytes, b"dataWindow\0") + b"dataWindow\0box2i\0".len() + 4 + 8;
-    // The last is a long file, which may unpack to more; but not to more than any image.
+    // The last file is long and may unpack to more, but not to more than the limit of any image.
     for ([x, y], length) in
         [([30_000_i32, 20_000], 0), ([1_000_000_000, 1_000_000_000], 0), ([30_000, 25_000], 5 << 20)]
     {
@@ -135,7 +135,7 @@ fn absurd_sizes_are_refused() {
     }
 }
 
-/// The offsets name one block twice: without a check, another block stays black.
+/// Offsets that name one block twice are refused. Seen to catch: no check, where another block stays black.
 #[test]
 fn repeated_blocks_are_refused() {
     let mut bytes = file(&[("only", encodings()[9])]);
@@ -146,5 +146,5 @@ fn repeated_blocks_are_refused() {
         .unwrap();
     bytes.copy_within(table..table + 8, table + 8);
     let message = Plain::decode(&bytes).unwrap_err().to_string();
-    assert!(message.contains("out of place"), "{message}");
+    assert!(message.contains("position of another"), "{message}");
 }

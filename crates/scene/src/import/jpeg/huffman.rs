@@ -1,41 +1,42 @@
 //! Huffman codes of JPEG data, and its markers.
 
-use super::{DAMAGED, EARLY};
+pub(super) const EARLY: &str = "its JPEG data ends early";
+pub(super) const DAMAGED: &str = "its JPEG data is damaged";
 
-/// Codes of up to so many bits are looked up at once.
+/// Codes of up to this many bits are found by one lookup.
 const LOOKUP_BITS: u32 = 9;
 
-/// The next marker and what follows it.
+/// The next marker, and the bytes after it.
 pub(super) fn next_marker(bytes: &[u8]) -> Result<(u8, &[u8]), &'static str> {
     let is_marker = |pair: &[u8]| pair[0] == 0xff && !matches!(pair[1], 0 | 0xff);
     let at = bytes.windows(2).position(is_marker).ok_or(EARLY)?;
     Ok((bytes[at + 1], &bytes[at + 2..]))
 }
 
-/// Huffman codes.
+/// A table of Huffman codes.
 pub(super) struct Table {
-    /// Length and symbol by the next bits; length 0 for longer codes.
+    /// Length and symbol of a code by the next bits; length 0 for a longer code.
     short: Vec<(u8, u8)>,
-    /// By length: the first code that is longer, from the left of 16 bits, and what a code's place is off by.
+    /// By length: the first longer code, left-aligned to 16 bits, and the index of a symbol minus its code.
     limits: [(u32, i32); 17],
     symbols: Vec<u8>,
 }
 
 impl Table {
-    /// So many codes of each length from 1, in order (annex C).
+    /// Table of `counts` codes of each length from 1, in the order of their symbols (annex C).
     pub fn new(counts: &[u8; 16], symbols: &[u8]) -> Option<Table> {
         let mut table =
             Table { short: vec![(0, 0); 1 << LOOKUP_BITS], limits: [(0, 0); 17], symbols: symbols.to_vec() };
-        let (mut code, mut place) = (0_u32, 0_usize);
+        let (mut code, mut index) = (0_u32, 0_usize);
         for (length, count) in (1_u32..).zip(counts) {
-            table.limits[length as usize].1 = place as i32 - code as i32;
+            table.limits[length as usize].1 = index as i32 - code as i32;
             for _ in 0..*count {
                 if length <= LOOKUP_BITS {
                     let spare = LOOKUP_BITS - length;
                     let entries = table.short.get_mut((code << spare) as usize..((code + 1) << spare) as usize)?;
-                    entries.fill((length as u8, *symbols.get(place)?));
+                    entries.fill((length as u8, *symbols.get(index)?));
                 }
-                (code, place) = (code + 1, place + 1);
+                (code, index) = (code + 1, index + 1);
             }
             if code > 1 << length {
                 return None;
@@ -47,10 +48,10 @@ impl Table {
     }
 }
 
-/// The bits of a scan, up to the next marker.
+/// The bits of a scan up to the next marker.
 pub(super) struct Bits<'a> {
     rest: &'a [u8],
-    /// The next bits, from the left.
+    /// The next bits, left-aligned.
     buffer: u64,
     count: u32,
 }
@@ -60,7 +61,7 @@ impl<'a> Bits<'a> {
         Bits { rest, buffer: 0, count: 0 }
     }
 
-    /// As many bits as there are, at least 49.
+    /// Fills the buffer with at least 49 bits, or with all that are left.
     fn fill(&mut self) {
         while self.count <= 48 {
             let (byte, used) = match self.rest {
@@ -107,14 +108,14 @@ impl<'a> Bits<'a> {
         }
         let next = (self.buffer >> 48) as u32;
         let length = (1..=16).find(|length| next < table.limits[*length as usize].0);
-        // No code: what is missing reads as zeros, which may be one; ones are none.
+        // Missing bits read as zeros, which may be a code; all ones are no code.
         let length = length.ok_or(if self.count < 16 { EARLY } else { DAMAGED })?;
-        let place = (next >> (16 - length)) as i32 + table.limits[length as usize].1;
+        let index = (next >> (16 - length)) as i32 + table.limits[length as usize].1;
         self.skip(length)?;
-        usize::try_from(place).ok().and_then(|place| table.symbols.get(place)).copied().ok_or(DAMAGED)
+        usize::try_from(index).ok().and_then(|index| table.symbols.get(index)).copied().ok_or(DAMAGED)
     }
 
-    /// Goes to what follows a restart marker of this number, counted from 0.
+    /// Continues after the restart marker of this number, counted from 0.
     pub fn restart(&mut self, number: usize) -> Result<(), &'static str> {
         let rest = self.end()?;
         let (marker, after) = next_marker(rest)?;
@@ -125,7 +126,7 @@ impl<'a> Bits<'a> {
         Ok(())
     }
 
-    /// What follows the data: a marker, after the rest of a byte and what fills.
+    /// The bytes after the data, from a marker on. Only the rest of a byte and fill bytes may come before it.
     pub fn end(&mut self) -> Result<&'a [u8], &'static str> {
         let whole = self.count / 8;
         let filler = (0..whole).all(|k| matches!((self.buffer << (self.count % 8) >> (56 - 8 * k)) as u8, 0 | 0xff));
