@@ -4,8 +4,7 @@ use bssrdf::Model;
 use formats::cloud::Sample;
 use gather::{Input, Rendered, Settings, render};
 use glam::{DVec3, Vec3};
-use sample_surface::{Plan, SampleError};
-use scene::NormalKind;
+use sample_surface::{Plan, SampleError, Surfaces};
 use std::slice::from_ref;
 use test_support::{
     meshes::{Light, Part, World, quad, world},
@@ -79,18 +78,12 @@ fn flux_beyond_float32_makes_no_cloud() {
         world.scene.file_lights.clear();
         let light = scene::light::DirectionalLight { direction: DVec3::Z, irradiance };
         world.scene.file_lights.push(Box::new(light));
-        let settings = sample_surface::Settings {
-            samples: 100,
-            choice: sample_surface::Choice::Area,
-            pattern: sample_surface::Pattern::Stratified,
-            normals: NormalKind::Geometric,
-            translucent: Vec::new(),
-            shares: Vec::new(),
-            options: sampled(&under_a_sun(DVec3::ONE), &by_area(1, 0)).meta.options,
-        };
-        let plan = Plan::new(&world.scene, &settings).expect("the scene has light and a surface");
+        let options = sampled(&under_a_sun(DVec3::ONE), &by_area(1, 0)).meta.options;
+        let settings = sample_surface::Settings { samples: 100, options };
+        let (surfaces, _) = Surfaces::translucent(&world.scene).expect("the scene has a surface");
+        let plan = Plan::new(&world.scene, &settings, surfaces).expect("the scene has light");
         match sample_surface::sample(&world.scene, &world.rays, &settings, &plan, |_| ()) {
-            Err(SampleError::NotFinite { count }) => assert_eq!(count, 100),
+            Err(SampleError::NotFinite { samples }) => assert_eq!(samples, 100),
             _ => panic!("a cloud with infinite flux"),
         }
     }

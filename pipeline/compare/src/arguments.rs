@@ -106,7 +106,7 @@ impl Arguments {
 
     /// The number of threads for the reading and writing of images.
     pub(crate) fn threads(&self) -> NonZeroUsize {
-        NonZeroUsize::new(self.common.thread_count()).unwrap_or(NonZeroUsize::MIN)
+        self.common.thread_count()
     }
 
     /// The path of the log of `--accept`.

@@ -207,6 +207,13 @@ impl<'a> Passes<'a> {
     }
 }
 
+/// Renders an image of `settings.paths_per_pixel` paths; `progress` is called with numbers of pixels that are done.
+pub fn render(input: &Input, settings: &Settings, progress: impl Fn(u64) + Sync) -> Rendered {
+    let mut passes = Passes::new(input, settings);
+    passes.pass(settings.paths_per_pixel, progress);
+    passes.finish()
+}
+
 /// Width and height of the whole image, pixels.
 fn size(settings: &Settings) -> DVec2 {
     DVec2::new(settings.width as f64, settings.height as f64)

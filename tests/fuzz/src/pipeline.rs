@@ -6,7 +6,7 @@ use gather::{
     Filter, Input,
     estimator::{Estimator, Rule},
 };
-use sample_surface::{Choice, Pattern, Plan, SampleError, Sampled, sample};
+use sample_surface::{Choice, Pattern, Plan, SampleError, Sampled, Surfaces, sample};
 use scene::{NormalKind, Rays, Scene};
 use test_support::pipeline::{self, Sampling, by_area, sample_settings};
 
@@ -28,7 +28,8 @@ pub fn check_pipeline(scene: &Scene, rays: &Rays) {
     for (choice, pattern, normals, estimator) in ways {
         let sampling = Sampling { choice, pattern, ..by_area(SAMPLES, 0) };
         let settings = sample_settings(&sampling, normals, "");
-        let Ok(plan) = Plan::new(scene, &settings) else { return };
+        let Ok((surfaces, _)) = Surfaces::translucent(scene) else { return };
+        let Ok(plan) = Plan::new(scene, &settings, surfaces) else { return };
         match sample(scene, rays, &settings, &plan, |_| ()) {
             Ok(sampled) => render(scene, rays, &filed(&sampled), normals, estimator),
             Err(error) => assert!(matches!(error, SampleError::NotFinite { .. }), "{error}"),

@@ -11,7 +11,7 @@ use gather::{
     estimator::{Estimator, Rule},
 };
 use glam::DVec3;
-use sample_surface::{Choice, Pattern, Plan, Sampled, Settings};
+use sample_surface::{Choice, Pattern, Plan, Sampled, Settings, Surfaces};
 use scene::{Camera, NormalKind, Projection};
 use std::path::Path;
 
@@ -48,33 +48,27 @@ pub fn sampled(world: &World, sampling: &Sampling) -> Sampled {
 pub fn sampled_with(world: &World, sampling: &Sampling, normals: NormalKind) -> Sampled {
     let first = world.scene.materials[0].name.clone();
     let settings = sample_settings(sampling, normals, &first);
-    let plan = Plan::new(&world.scene, &settings).expect("the scene has light and a surface");
+    let (translucent, _) = Surfaces::translucent(&world.scene).expect("the scene has a surface");
+    let surfaces = Surfaces { shares: sampling.share.map(|share| (0, share)).into_iter().collect(), ..translucent };
+    let plan = Plan::new(&world.scene, &settings, surfaces).expect("the scene has light");
     sample_surface::sample(&world.scene, &world.rays, &settings, &plan, |_| ()).expect("every flux is finite")
 }
 
 /// Settings of `sample-surface` for a scene whose first material has this name.
 pub fn sample_settings(sampling: &Sampling, normals: NormalKind, first: &str) -> Settings {
-    let shares: Vec<(String, f64)> = sampling.share.map(|share| (first.into(), share)).into_iter().collect();
-    Settings {
-        samples: sampling.samples,
+    let options = Options {
+        seed: sampling.seed,
+        shard: sampling.shard,
         choice: sampling.choice,
         pattern: sampling.pattern,
-        normals,
-        translucent: Vec::new(),
-        shares: shares.clone(),
-        options: Options {
-            seed: sampling.seed,
-            shard: sampling.shard,
-            choice: sampling.choice,
-            pattern: sampling.pattern,
-            shares,
-            normals: if normals == NormalKind::Geometric { Normals::Geometric } else { Normals::Shading },
-            metres_per_unit: 1.0,
-            light_unit: LightUnit::Radiometric,
-            emission_unit: LightUnit::Radiometric,
-            environment: "0,0,0".into(),
-        },
-    }
+        shares: sampling.share.map(|share| (first.into(), share)).into_iter().collect(),
+        normals: if normals == NormalKind::Geometric { Normals::Geometric } else { Normals::Shading },
+        metres_per_unit: 1.0,
+        light_unit: LightUnit::Radiometric,
+        emission_unit: LightUnit::Radiometric,
+        environment: "0,0,0".into(),
+    };
+    Settings { samples: sampling.samples, options }
 }
 
 /// Writes a cloud.
