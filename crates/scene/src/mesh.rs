@@ -135,7 +135,8 @@ impl Mesh {
     }
 }
 
-/// note: [area] `A_j = ½ ‖(v₁−v₀) × (v₂−v₀)‖`.
+/// `A_j = ½ ‖(v₁−v₀) × (v₂−v₀)‖`.
+// note: [area]
 pub(crate) fn area([a, b, c]: [DVec3; 3]) -> f64 {
     0.5 * (b - a).cross(c - a).length()
 }

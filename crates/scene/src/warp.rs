@@ -8,8 +8,9 @@
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// note: [point] Barycentric weights of a uniform point on a triangle (method.md 6.2):
-/// `x = (1−√ξ₀) v₀ + (1−ξ₁)√ξ₀ v₁ + ξ₁√ξ₀ v₂`. Its density per area is `1/A`.
+/// Barycentric weights of a uniform point on a triangle (method.md 6.2): `x = (1−√ξ₀) v₀ + (1−ξ₁)√ξ₀ v₁ + ξ₁√ξ₀ v₂`. Its
+/// density per area is `1/A`.
+// note: [point]
 pub fn triangle(xi: [f64; 2]) -> [f64; 3] {
     let root = xi[0].sqrt();
     [1.0 - root, (1.0 - xi[1]) * root, xi[1] * root]

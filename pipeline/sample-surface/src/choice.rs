@@ -1,4 +1,5 @@
-//! note: [choice] The choice of a triangle, and its density.
+//! The choice of a triangle, and its density.
+// note: [choice]
 
 use crate::{
     hilbert,
@@ -10,8 +11,9 @@ use scene::{Mesh, random::BELOW_ONE, warp};
 /// A triangle that was chosen.
 pub struct Chosen {
     pub triangle: u32,
-    /// note: [pdf] Density `pdf(x)` of a uniform point on it per area of the whole surface, 1/m² (method.md 6.3):
+    /// Density `pdf(x)` of a uniform point on it per area of the whole surface, 1/m² (method.md 6.3):
     /// `1/(N A_j)` for the note's rule, `1/A` by area.
+    // note: [pdf]
     pub pdf_area: f64,
 }
 

@@ -11,7 +11,8 @@ pub struct Illumination {
     pub direction: DVec3,
     /// Distance to the light, m; infinite for distant light.
     pub distance: f64,
-    /// note: [irradiance] `E = L_i (n·ω)/pdf_solid_angle(ω)`, cosine included, visibility not, W/m².
+    /// `E = L_i (n·ω)/pdf_solid_angle(ω)`, cosine included, visibility not, W/m².
+    // note: [irradiance]
     pub irradiance: DVec3,
 }
 

@@ -39,8 +39,8 @@ pub fn light_at(choice: &LightChoice, rays: &Rays, at: &SurfacePoint, xi: [f64; 
 /// Number of nodes in the list from which the lights of a single point are picked.
 const NODES_PER_POINT: usize = 128;
 
-/// Irradiance for surfaces that are lit once a path. Up to [`MAX_FLAT`] lights are all sampled, one direction each, since
-/// the choice of one would be noise; of more, as many are picked. Each call of `xi` gives two uniform numbers.
+/// Irradiance for surfaces that are lit once a path. Up to `MAX_FLAT` lights are all sampled, one direction each, since the
+/// choice of one would be noise; of more, as many are picked. Each call of `xi` gives two uniform numbers.
 pub fn all_light_at(
     lights: &LightTree,
     rays: &Rays,

@@ -149,8 +149,9 @@ impl EnvironmentMap {
         self.cosine_importance.facing(self.in_map(at.normal)).total() * self.scale
     }
 
-    /// note: [irradiance] A tile is chosen by its light and cosine, a pixel in it by its light, and a uniform direction in
-    /// the pixel: `E = L (n·ω) Ω/P` with the pixel's solid angle and probability.
+    /// A tile is chosen by its light and cosine, a pixel in it by its light, and a uniform direction in the pixel:
+    /// `E = L (n·ω) Ω/P` with the pixel's solid angle and probability.
+    // note: [irradiance]
     pub fn illuminate(&self, at: &SurfacePoint, xi: [f64; 2]) -> Option<Illumination> {
         let tiles = self.cosine_importance.facing(self.in_map(at.normal));
         if tiles.total() == 0.0 {
