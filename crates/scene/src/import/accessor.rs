@@ -13,7 +13,7 @@ use gltf::json::{
 };
 
 /// An accessor whose type and range are checked. Its elements are still bytes.
-pub(super) struct Column<'a> {
+pub(super) struct CheckedAccessor<'a> {
     /// The field of the file that names it, for messages.
     field: String,
     /// The type of its numbers.
@@ -43,15 +43,15 @@ impl<'a> Elements<'a> {
     }
 }
 
-impl<'a> Column<'a> {
+impl<'a> CheckedAccessor<'a> {
     /// A list of vectors of float32 or quantized (KHR_mesh_quantization).
     pub fn vectors(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self, Fault> {
-        Column::of_vectors(document, index, (Type::Vec3, 3), field)
+        CheckedAccessor::of_vectors(document, index, (Type::Vec3, 3), field)
     }
 
     /// A list of texture coordinates of float32 or integers.
     pub fn coordinates(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self, Fault> {
-        Column::of_vectors(document, index, (Type::Vec2, 2), field)
+        CheckedAccessor::of_vectors(document, index, (Type::Vec2, 2), field)
     }
 
     fn of_vectors(
@@ -64,7 +64,7 @@ impl<'a> Column<'a> {
         let number = component(accessor).and_then(|c| Number::of_vector(c, accessor.normalized));
         match number {
             Some(number) if accessor.type_ == Checked::Valid(kind) => {
-                Column::new(document, accessor, number, width, field)
+                CheckedAccessor::new(document, accessor, number, width, field)
             }
             _ => Err(format!("{field}: the accessor must hold VEC{width} of 32-bit float, or of 8 or 16-bit integers")),
         }
@@ -75,8 +75,8 @@ impl<'a> Column<'a> {
         let accessor = get(&document.root.accessors, index, &field)?;
         let number = component(accessor).and_then(|c| Number::of_color(c, accessor.normalized));
         match (number, &accessor.type_) {
-            (Some(number), Checked::Valid(Type::Vec3)) => Column::new(document, accessor, number, 3, field),
-            (Some(number), Checked::Valid(Type::Vec4)) => Column::new(document, accessor, number, 4, field),
+            (Some(number), Checked::Valid(Type::Vec3)) => CheckedAccessor::new(document, accessor, number, 3, field),
+            (Some(number), Checked::Valid(Type::Vec4)) => CheckedAccessor::new(document, accessor, number, 4, field),
             _ => Err(format!(
                 "{field}: the accessor must hold VEC3 or VEC4 of 32-bit float, or of normalized 8 or 16-bit unsigned \
                  integers"
@@ -90,7 +90,7 @@ impl<'a> Column<'a> {
         let number = component(accessor).and_then(Number::of_index);
         match number {
             Some(number) if accessor.type_ == Checked::Valid(Type::Scalar) && !accessor.normalized => {
-                Column::new(document, accessor, number, 1, field)
+                CheckedAccessor::new(document, accessor, number, 1, field)
             }
             _ => Err(format!("{field}: the accessor must hold SCALAR unsigned integers, not normalized")),
         }
@@ -120,7 +120,7 @@ impl<'a> Column<'a> {
         let elements = elements.map_err(fault)?;
         let changes = accessor.sparse.as_ref().map(|s| Changes::new(document, s, count, size, unit)).transpose();
         let changes = changes.map_err(|e| fault(format!("sparse: {e}")))?;
-        Ok(Column { field, number, elements, changes })
+        Ok(CheckedAccessor { field, number, elements, changes })
     }
 
     pub fn len(&self) -> usize {

@@ -2,7 +2,7 @@
 
 use super::{
     fault::{Fault, get},
-    nodes::Placed,
+    nodes::SceneNode,
 };
 use crate::{Camera, Projection};
 use gltf::json::{self, camera::Type, validation::Checked};
@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 const MAX_NAME_BYTES: usize = 1 << 24;
 
 /// One camera for each node that carries one, in the order of the nodes.
-pub(super) fn read(root: &json::Root, nodes: &[Placed], metres_per_unit: f64) -> Result<Vec<Camera>, Fault> {
+pub(super) fn read(root: &json::Root, nodes: &[SceneNode], metres_per_unit: f64) -> Result<Vec<Camera>, Fault> {
     let mut cameras = Vec::new();
     let mut room = MAX_NAME_BYTES;
     for placed in nodes {
@@ -27,7 +27,7 @@ pub(super) fn read(root: &json::Root, nodes: &[Placed], metres_per_unit: f64) ->
     Ok(cameras)
 }
 
-fn of_node(placed: &Placed, camera: &json::Camera, metres_per_unit: f64) -> Result<Camera, Fault> {
+fn of_node(placed: &SceneNode, camera: &json::Camera, metres_per_unit: f64) -> Result<Camera, Fault> {
     let (projection, aspect) = match (&camera.type_, &camera.perspective, &camera.orthographic) {
         (Checked::Valid(Type::Perspective), Some(p), _) => {
             (perspective(f64::from(p.yfov))?, p.aspect_ratio.map(f64::from))

@@ -1,6 +1,6 @@
 //! Features that are not supported: an error where the image would be wrong, else a warning.
 
-use super::{container::Document, fault::Fault, honoured, nodes::Placed};
+use super::{container::Document, fault::Fault, honoured, nodes::SceneNode};
 use crate::unhonoured::{Holder, Unhonoured, quoted, rest};
 use gltf::json;
 use std::collections::BTreeSet;
@@ -65,7 +65,7 @@ pub(super) fn undeclared_effects(document: &Document) -> Vec<Unhonoured> {
 const NAMED: usize = 3;
 
 /// Refuses poses that are not baked into the mesh: skins, morph targets, and animations of a mesh or its ancestors.
-pub(super) fn check_nodes(root: &json::Root, nodes: &[Placed], warnings: &mut Vec<String>) -> Result<(), Fault> {
+pub(super) fn check_nodes(root: &json::Root, nodes: &[SceneNode], warnings: &mut Vec<String>) -> Result<(), Fault> {
     const BAKE: &str = "apply the pose to the mesh and export again";
     // Once for each mesh, for any number of nodes.
     let morphs = |p: &json::mesh::Primitive| p.targets.as_ref().is_some_and(|t| !t.is_empty());

@@ -1,10 +1,10 @@
 //! Joins all primitives to one mesh in float32, relative to its centre.
 
 use super::{
-    accessor::Column,
+    accessor::CheckedAccessor,
     fault::{Fault, Refusal},
-    nodes::Placed,
-    primitive::{MeshParts, Part},
+    nodes::SceneNode,
+    primitive::{CheckedMesh, CheckedPrimitive},
 };
 use crate::mesh::{Mesh, Triangle, area};
 use glam::{DMat3, DVec3, Vec3};
@@ -25,8 +25,8 @@ const MAX_DIAGONAL: f64 = 1e18;
 
 /// A mesh on a node.
 pub(super) struct Instance<'a> {
-    pub parts: &'a MeshParts<'a>,
-    pub placed: &'a Placed<'a>,
+    pub parts: &'a CheckedMesh<'a>,
+    pub placed: &'a SceneNode<'a>,
 }
 
 pub(super) struct Geometry {
@@ -65,7 +65,7 @@ struct Builder {
 impl Builder {
     /// Counts all vertices and triangles, checks the limits, and reserves the memory.
     fn reserve(&mut self, instances: &[Instance]) -> Result<(), Fault> {
-        let total = |of: fn(&MeshParts) -> u64| instances.iter().map(|i| of(i.parts)).fold(0, u64::saturating_add);
+        let total = |of: fn(&CheckedMesh) -> u64| instances.iter().map(|i| of(i.parts)).fold(0, u64::saturating_add);
         let counts = [
             (total(|p| p.triangles), MAX_TRIANGLES, "triangles"),
             (total(|p| p.vertices), MAX_VERTICES, "vertices"),
@@ -90,9 +90,9 @@ impl Builder {
     }
 
     /// Adds a primitive on a node.
-    fn add(&mut self, part: &Part, placed: &Placed) -> Result<(), Fault> {
+    fn add(&mut self, part: &CheckedPrimitive, placed: &SceneNode) -> Result<(), Fault> {
         let vectors =
-            |column: &Column| Ok::<_, Fault>(column.read_reals()?.into_iter().map(Vec3::from_array).collect());
+            |column: &CheckedAccessor| Ok::<_, Fault>(column.read_reals()?.into_iter().map(Vec3::from_array).collect());
         let positions: Vec<Vec3> = vectors(&part.positions)?;
         let normals = match &part.normals {
             Some(normals) => vectors(normals)?,
@@ -116,7 +116,7 @@ impl Builder {
     }
 
     /// Adds texture coordinates and colors of the next vertices.
-    fn add_colors(&mut self, part: &Part) -> Result<(), Fault> {
+    fn add_colors(&mut self, part: &CheckedPrimitive) -> Result<(), Fault> {
         if let Some((column, transform)) = &part.coordinates {
             self.coordinates.resize(self.positions.len(), [0.0; 2]);
             self.coordinates.extend(column.read_reals()?.into_iter().map(|uv| transform.apply(uv)));
@@ -130,7 +130,7 @@ impl Builder {
     }
 
     /// Adds vertices in world space. True if the transform is a reflection, which reverses the winding.
-    fn add_vertices(&mut self, positions: &[Vec3], normals: &[Vec3], placed: &Placed) -> Result<bool, Fault> {
+    fn add_vertices(&mut self, positions: &[Vec3], normals: &[Vec3], placed: &SceneNode) -> Result<bool, Fault> {
         let linear = DMat3::from_mat4(placed.transform);
         let determinant = linear.determinant();
         let normal_matrix = if determinant == 0.0 { DMat3::ZERO } else { linear.inverse().transpose() };

@@ -11,7 +11,7 @@ pub(super) enum Fate {
     /// It changes no image by itself.
     Neutral,
     /// An error or a warning of its own names it.
-    Told,
+    Reported,
     /// The image is made as if the first numbers of the property were these; other values are named.
     TakenAs(&'static [f64]),
     /// Not shown, and without effect if its first numbers are these.
@@ -60,19 +60,19 @@ const fn material(opaque: Fate, translucent: Fate, paths: &'static [&'static str
     Row { list: MATERIALS, paths, opaque, translucent }
 }
 
-use Fate::{Cuts, Neutral, No, Shown, TakenAs, Told, Unless};
+use Fate::{Cuts, Neutral, No, Reported, Shown, TakenAs, Unless};
 
 // rustfmt would break the rows.
 #[rustfmt::skip]
 pub(super) const TABLE: &[Row] = &[
     material(Shown, Shown, &["emissiveFactor", "extensions.KHR_materials_emissive_strength.emissiveStrength", "doubleSided"]),
     material(Shown, TakenAs(&[1.0, 1.0, 1.0]), &["pbrMetallicRoughness.baseColorFactor"]),
-    material(Shown, Told, &["pbrMetallicRoughness.baseColorTexture.index", "pbrMetallicRoughness.baseColorTexture.texCoord",
+    material(Shown, Reported, &["pbrMetallicRoughness.baseColorTexture.index", "pbrMetallicRoughness.baseColorTexture.texCoord",
         "pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform.offset",
         "pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform.rotation",
         "pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform.scale",
         "pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform.texCoord", "alphaCutoff"]),
-    material(Told, Told, &["alphaMode", "emissiveTexture"]),
+    material(Reported, Reported, &["alphaMode", "emissiveTexture"]),
     material(TakenAs(&[0.0]), TakenAs(&[0.0]), &["pbrMetallicRoughness.metallicFactor"]),
     material(Unless(&[1.0]), TakenAs(&[0.0]), &["pbrMetallicRoughness.roughnessFactor"]),
     material(No, No, &["pbrMetallicRoughness.metallicRoughnessTexture", "normalTexture", "occlusionTexture"]),
@@ -105,15 +105,15 @@ pub(super) const TABLE: &[Row] = &[
     row(SAMPLERS, Neutral, &["minFilter"]),
     row(IMAGES, Shown, &["uri", "bufferView"]),
     row(IMAGES, Neutral, &["mimeType"]),
-    Row { list: MESHES, paths: &["primitives[].attributes.COLOR_0"], opaque: Shown, translucent: Told },
+    Row { list: MESHES, paths: &["primitives[].attributes.COLOR_0"], opaque: Shown, translucent: Reported },
     row(MESHES, Shown, &["primitives[].attributes.POSITION", "primitives[].attributes.NORMAL", "primitives[].attributes.TEXCOORD_*",
         "primitives[].indices", "primitives[].material", "primitives[].mode"]),
-    row(MESHES, Told, &["primitives[].targets"]),
+    row(MESHES, Reported, &["primitives[].targets"]),
     // Tangents serve normal maps; the others serve skins, morph targets and applications.
     row(MESHES, Neutral, &["primitives[].attributes.TANGENT", "primitives[].attributes.COLOR_*", "primitives[].attributes.JOINTS_*",
         "primitives[].attributes.WEIGHTS_*", "primitives[].attributes._*", "weights"]),
     row(NODES, Shown, &["mesh", "camera", "children", "matrix", "translation", "rotation", "scale", "extensions.KHR_lights_punctual.light"]),
-    row(NODES, Told, &["skin"]),
+    row(NODES, Reported, &["skin"]),
     row(NODES, Neutral, &["weights"]),
     row(LIGHTS, Shown, &["type", "color", "intensity", "range", "spot.innerConeAngle", "spot.outerConeAngle"]),
     row(CAMERAS, Shown, &["type", "perspective.yfov", "perspective.aspectRatio", "orthographic.xmag", "orthographic.ymag"]),
@@ -128,7 +128,7 @@ pub(super) const TABLE: &[Row] = &[
     row(BUFFERS, Shown, &["uri", "byteLength"]),
     row(DOCUMENT, Shown, &["scene"]),
     row(DOCUMENT, Neutral, &["asset"]),
-    row(DOCUMENT, Told, &["animations", "skins", "extensionsUsed", "extensionsRequired"]),
+    row(DOCUMENT, Reported, &["animations", "skins", "extensionsUsed", "extensionsRequired"]),
 ];
 
 /// The result of looking a path up.
@@ -192,11 +192,11 @@ mod tests {
         let numbers = |v: &[f64]| if v.iter().all(|x| *x == v[0]) { v[0].to_string() } else { format!("{v:?}") };
         let cell = |fate: Fate| match fate {
             Shown => "yes".to_owned(),
-            Neutral => "means nothing here".into(),
-            Told => "told by itself".into(),
+            Neutral => "no effect".into(),
+            Reported => "own message".into(),
             TakenAs(v) => format!("taken as {}", numbers(v)),
             Unless(v) => format!("no, unless {}", numbers(v)),
-            Cuts => "no, where it cuts".into(),
+            Cuts => "no, named where it cuts".into(),
             No => "no".into(),
         };
         let mut text = String::from("| of | property | opaque surfaces | translucent surfaces |\n|---|---|---|---|\n");
@@ -227,7 +227,7 @@ mod tests {
         assert_eq!(look_up(MATERIALS, "extensions.KHR_materials_unlit"), Lookup::Unknown);
         assert_eq!(look_up(MATERIALS, "pbrMetallicRoughness.extensions"), Lookup::Inside);
         assert_eq!(look_up(MESHES, "primitives[].attributes.TEXCOORD_3"), Lookup::Property([Shown; 2]));
-        assert_eq!(look_up(MESHES, "primitives[].attributes.COLOR_0"), Lookup::Property([Shown, Told]));
+        assert_eq!(look_up(MESHES, "primitives[].attributes.COLOR_0"), Lookup::Property([Shown, Reported]));
         assert_eq!(look_up(MESHES, "primitives[].attributes.KHR_x:ROTATION"), Lookup::Unknown);
         assert_eq!(look_up(NODES, "surname"), Lookup::Unknown);
         assert_eq!(look_up(CAMERAS, "perspective.znear"), Lookup::Property([Cuts; 2]));

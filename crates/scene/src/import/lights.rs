@@ -2,7 +2,7 @@
 
 use super::{
     fault::{Fault, get},
-    nodes::Placed,
+    nodes::SceneNode,
     options::ImportOptions,
 };
 use crate::{
@@ -49,7 +49,7 @@ fn light_of(light: &Punctual, pose: &Pose, power: DVec3, metres_per_unit: f64) -
 
 /// Position and orientation of a light.
 struct Pose<'a> {
-    node: &'a Placed<'a>,
+    node: &'a SceneNode<'a>,
     /// m, relative to the scene's origin.
     position: DVec3,
 }
@@ -66,7 +66,7 @@ impl Pose<'_> {
 /// its node, whose scale does not matter.
 pub(super) fn punctual(
     root: &Root,
-    nodes: &[Placed],
+    nodes: &[SceneNode],
     options: &ImportOptions,
     origin: DVec3,
     warnings: &mut Vec<String>,

@@ -7,7 +7,6 @@
 mod accessor;
 mod cameras;
 mod clipping;
-mod concerns;
 mod container;
 mod duplicates;
 mod fault;
@@ -25,6 +24,7 @@ mod primitive;
 mod survey;
 mod textures;
 mod transform;
+mod unhonoured;
 mod volumes;
 
 use crate::{
@@ -33,18 +33,18 @@ use crate::{
     mesh::Mesh,
     unhonoured::{quoted, rest},
 };
-use concerns::RenderedParts;
 use container::Document;
 use fault::{Refusal, get};
 use geometry::{Geometry, Instance};
 use gltf::json::Root;
-use nodes::Placed;
+use nodes::SceneNode;
 pub use options::{ImportOptions, LightUnit};
-use primitive::MeshParts;
+use primitive::CheckedMesh;
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
 };
+use unhonoured::RenderedParts;
 
 impl Scene {
     /// Reads a .glb or .gltf file.
@@ -91,7 +91,7 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
     let metres_per_unit = options.metres_per_unit;
     let cameras = cameras::read(root, &nodes, metres_per_unit)?;
     let parts = RenderedParts { mesh: &mesh, nodes: &nodes, cameras: &cameras, origin, metres_per_unit };
-    let unhonoured = [features::undeclared_effects(document), concerns::of(document, &parts)].concat();
+    let unhonoured = [features::undeclared_effects(document), unhonoured::of(document, &parts)].concat();
     Ok(Scene {
         files: document.files.borrow().read().to_owned(),
         claimed: claimed(root, &nodes),
@@ -110,9 +110,9 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
 }
 
 /// The triangles of all nodes. A mesh is checked once, for any number of nodes.
-fn geometry(document: &Document, nodes: &[Placed], warnings: &mut Vec<String>) -> Result<Geometry, Refusal> {
+fn geometry(document: &Document, nodes: &[SceneNode], warnings: &mut Vec<String>) -> Result<Geometry, Refusal> {
     let meshes = &document.root.meshes;
-    let mut parts: Vec<Option<MeshParts>> = meshes.iter().map(|_| None).collect();
+    let mut parts: Vec<Option<CheckedMesh>> = meshes.iter().map(|_| None).collect();
     let mut instances = Vec::new();
     for placed in nodes {
         let Some(index) = &placed.node.mesh else { continue };
@@ -120,7 +120,7 @@ fn geometry(document: &Document, nodes: &[Placed], warnings: &mut Vec<String>) -
         instances.push((index.value(), placed));
         if parts[index.value()].is_none() {
             let name = mesh.name.as_deref().unwrap_or(&placed.name);
-            parts[index.value()] = Some(MeshParts::new(document, mesh, name, warnings)?);
+            parts[index.value()] = Some(CheckedMesh::new(document, mesh, name, warnings)?);
         }
     }
     let with_parts = |(k, placed): (usize, _)| Some(Instance { parts: parts[k].as_ref()?, placed });
@@ -148,7 +148,7 @@ fn warn_of_lost(mesh: &Mesh, materials: &[Material], degenerate: &BTreeMap<u16, 
 }
 
 /// Materials of all primitives in the scene, even of those whose triangles are left out.
-fn claimed(root: &Root, nodes: &[Placed]) -> BTreeSet<u16> {
+fn claimed(root: &Root, nodes: &[SceneNode]) -> BTreeSet<u16> {
     let meshes: BTreeSet<usize> = nodes.iter().filter_map(|placed| Some(placed.node.mesh.as_ref()?.value())).collect();
     let primitives = meshes.into_iter().filter_map(|k| root.meshes.get(k)).flat_map(|mesh| &mesh.primitives);
     primitives.filter_map(|p| u16::try_from(p.material.as_ref()?.value()).ok()).collect()

@@ -8,7 +8,7 @@ use glam::{DMat4, DVec3};
 use gltf::json;
 
 /// A node of the scene.
-pub(super) struct Placed<'a> {
+pub(super) struct SceneNode<'a> {
     pub node: &'a json::Node,
     /// Index in the file.
     pub index: usize,
@@ -18,7 +18,7 @@ pub(super) struct Placed<'a> {
 }
 
 /// The nodes of the default scene with their world transforms.
-pub(super) fn in_world(document: &Document, metres_per_unit: f64) -> Result<Vec<Placed<'_>>, Fault> {
+pub(super) fn in_world(document: &Document, metres_per_unit: f64) -> Result<Vec<SceneNode<'_>>, Fault> {
     let root = &document.root;
     let world = DMat4::from_scale(DVec3::splat(metres_per_unit));
     let mut stack: Vec<_> = root_nodes(root)?.into_iter().rev().map(|index| (index, world)).collect();
@@ -37,7 +37,7 @@ pub(super) fn in_world(document: &Document, metres_per_unit: f64) -> Result<Vec<
             return Err(format!("node `{name}`: its transform is not finite"));
         }
         stack.extend(node.children.iter().flatten().rev().map(|child| (child.value(), transform)));
-        placed.push(Placed { node, index, name, transform });
+        placed.push(SceneNode { node, index, name, transform });
     }
     Ok(placed)
 }

@@ -1,6 +1,6 @@
 //! The primitives of a mesh, checked and not read yet: a mesh may have many instances, or be too large to be read.
 
-use super::{accessor::Column, container::Document, fault::Fault, textures::Coordinates};
+use super::{accessor::CheckedAccessor, container::Document, fault::Fault, textures::Coordinates};
 use gltf::json::{
     self, Accessor, Index,
     mesh::{Mode, Primitive, Semantic},
@@ -9,26 +9,26 @@ use gltf::json::{
 
 /// The triangles of a mesh.
 #[derive(Default)]
-pub(super) struct MeshParts<'a> {
-    pub list: Vec<Part<'a>>,
+pub(super) struct CheckedMesh<'a> {
+    pub list: Vec<CheckedPrimitive<'a>>,
     pub triangles: u64,
     pub vertices: u64,
 }
 
 /// A primitive with the accessors of its vertices and triangles.
-pub(super) struct Part<'a> {
-    pub positions: Column<'a>,
-    pub normals: Option<Column<'a>>,
-    pub indices: Option<Column<'a>>,
+pub(super) struct CheckedPrimitive<'a> {
+    pub positions: CheckedAccessor<'a>,
+    pub normals: Option<CheckedAccessor<'a>>,
+    pub indices: Option<CheckedAccessor<'a>>,
     /// Texture coordinates, and their transform by the texture.
-    pub coordinates: Option<(Column<'a>, Coordinates)>,
-    pub colors: Option<Column<'a>>,
+    pub coordinates: Option<(CheckedAccessor<'a>, Coordinates)>,
+    pub colors: Option<CheckedAccessor<'a>>,
     /// Index of the material. Primitives without one have the number of materials.
     pub material: u16,
     mode: Mode,
 }
 
-impl<'a> MeshParts<'a> {
+impl<'a> CheckedMesh<'a> {
     /// Checks the primitives of a mesh, and warns of those without triangles. Each primitive keeps the name of the mesh for
     /// messages, so that a long name is cut.
     pub fn new(
@@ -37,7 +37,7 @@ impl<'a> MeshParts<'a> {
         name: &str,
         warnings: &mut Vec<String>,
     ) -> Result<Self, Fault> {
-        let mut parts = MeshParts::default();
+        let mut parts = CheckedMesh::default();
         let name = short(name);
         for (k, primitive) in mesh.primitives.iter().enumerate() {
             let name = format!("mesh `{name}`, primitive {k}");
@@ -48,7 +48,7 @@ impl<'a> MeshParts<'a> {
                 warnings.push(format!("{name}: points and lines are left out"));
                 continue;
             }
-            let part = Part::new(document, primitive, mode, &name, warnings)?;
+            let part = CheckedPrimitive::new(document, primitive, mode, &name, warnings)?;
             let triangles = part.triangle_count();
             if triangles == 0 {
                 warnings.push(format!("{name}: makes no triangle"));
@@ -71,9 +71,9 @@ fn short(name: &str) -> String {
 }
 
 /// The function that checks an attribute.
-type ColumnOf<'a> = fn(&'a Document, &Index<Accessor>, String) -> Result<Column<'a>, Fault>;
+type AttributeCheck<'a> = fn(&'a Document, &Index<Accessor>, String) -> Result<CheckedAccessor<'a>, Fault>;
 
-impl<'a> Part<'a> {
+impl<'a> CheckedPrimitive<'a> {
     fn new(
         document: &'a Document,
         primitive: &Primitive,
@@ -83,8 +83,8 @@ impl<'a> Part<'a> {
     ) -> Result<Self, Fault> {
         let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic));
         let position = attribute(Semantic::Positions).ok_or_else(|| format!("{name}: no POSITION"))?;
-        let positions = Column::vectors(document, position, format!("{name}: POSITION"))?;
-        let beside = |semantic: Semantic, column: ColumnOf<'a>| {
+        let positions = CheckedAccessor::vectors(document, position, format!("{name}: POSITION"))?;
+        let beside = |semantic: Semantic, column: AttributeCheck<'a>| {
             let field = format!("{name}: {}", semantic.to_string());
             let column = attribute(semantic).map(|a| column(document, a, field.clone())).transpose()?;
             match column {
@@ -94,10 +94,10 @@ impl<'a> Part<'a> {
                 column => Ok(column),
             }
         };
-        let normals = beside(Semantic::Normals, Column::vectors)?;
-        let colors = beside(Semantic::Colors(0), Column::colors)?;
+        let normals = beside(Semantic::Normals, CheckedAccessor::vectors)?;
+        let colors = beside(Semantic::Colors(0), CheckedAccessor::colors)?;
         let indices = primitive.indices.as_ref();
-        let indices = indices.map(|i| Column::indices(document, i, format!("{name}: indices"))).transpose()?;
+        let indices = indices.map(|i| CheckedAccessor::indices(document, i, format!("{name}: indices"))).transpose()?;
         let materials = document.root.materials.len();
         let material = primitive.material.as_ref().map_or(materials, |m| m.value());
         if primitive.material.is_some() && material >= materials {
@@ -109,7 +109,7 @@ impl<'a> Part<'a> {
         let transform = texture.map(Coordinates::new).transpose().map_err(|e| format!("{name}: {e}"))?;
         let coordinates = match transform {
             None => None,
-            Some(transform) => match beside(Semantic::TexCoords(transform.set), Column::coordinates)? {
+            Some(transform) => match beside(Semantic::TexCoords(transform.set), CheckedAccessor::coordinates)? {
                 Some(column) => Some((column, transform)),
                 None => {
                     let set = transform.set;
@@ -118,11 +118,11 @@ impl<'a> Part<'a> {
                 }
             },
         };
-        Ok(Part { positions, normals, indices, coordinates, colors, material, mode })
+        Ok(CheckedPrimitive { positions, normals, indices, coordinates, colors, material, mode })
     }
 
     fn triangle_count(&self) -> u64 {
-        let corners = self.indices.as_ref().map_or(self.positions.len(), Column::len) as u64;
+        let corners = self.indices.as_ref().map_or(self.positions.len(), CheckedAccessor::len) as u64;
         match self.mode {
             Mode::TriangleStrip | Mode::TriangleFan => corners.saturating_sub(2),
             _ => corners / 3,

@@ -17,13 +17,13 @@ const MAX_KEY_BYTES: usize = 60;
 /// Properties that are not honoured, for each element of each list of the file.
 #[derive(Default)]
 pub(super) struct Survey {
-    lists: BTreeMap<&'static str, Vec<Vec<Find>>>,
+    lists: BTreeMap<&'static str, Vec<Vec<Finding>>>,
     /// Names of all extensions that have an object.
     pub extensions: BTreeSet<String>,
 }
 
 /// A property that is not honoured.
-pub(super) struct Find {
+pub(super) struct Finding {
     /// Path from the element.
     pub path: String,
     /// Fates on opaque and on translucent surfaces; none where the image shows the property.
@@ -32,7 +32,7 @@ pub(super) struct Find {
 
 impl Survey {
     /// The findings about an element of a list.
-    pub fn of(&self, list: &str, index: usize) -> &[Find] {
+    pub fn of(&self, list: &str, index: usize) -> &[Finding] {
         self.lists.get(list).and_then(|elements| elements.get(index)).map_or(&[], Vec::as_slice)
     }
 
@@ -60,9 +60,9 @@ struct Walk<'a> {
 
 impl Walk<'_> {
     /// Records a property that is not honoured.
-    fn find(&mut self, path: String, on: [Option<Fate>; 2]) {
+    fn record(&mut self, path: String, on: [Option<Fate>; 2]) {
         if let Some(finds) = self.survey.lists.get_mut(self.list).and_then(|elements| elements.last_mut()) {
-            finds.push(Find { path, on });
+            finds.push(Finding { path, on });
         }
     }
 
@@ -77,13 +77,13 @@ impl Walk<'_> {
         };
         let differs = |expected: &[f64]| !numbers.starts_with(expected);
         let named = |fate: Fate| match fate {
-            Fate::Shown | Fate::Neutral | Fate::Told => None,
+            Fate::Shown | Fate::Neutral | Fate::Reported => None,
             Fate::TakenAs(expected) | Fate::Unless(expected) => differs(expected).then_some(fate),
             Fate::Cuts | Fate::No => Some(fate),
         };
         let on = on.map(named);
         if is_there && on.iter().any(Option::is_some) {
-            self.find(path, on);
+            self.record(path, on);
         }
         Ok(())
     }
@@ -123,7 +123,7 @@ impl<'de> Visitor<'de> for Walk<'_> {
                 Lookup::Property(on) => self.property(&mut map, path, on)?,
                 Lookup::Unknown => {
                     map.next_value::<IgnoredAny>()?;
-                    self.find(cut(&path, self.path.len() + MAX_KEY_BYTES), [Some(Fate::No); 2]);
+                    self.record(cut(&path, self.path.len() + MAX_KEY_BYTES), [Some(Fate::No); 2]);
                 }
             }
         }

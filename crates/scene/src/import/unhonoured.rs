@@ -4,8 +4,8 @@ use super::{
     clipping,
     container::Document,
     honoured::{self, Fate},
-    nodes::Placed,
-    survey::{Find, Survey},
+    nodes::SceneNode,
+    survey::{Finding, Survey},
 };
 use crate::{
     Camera,
@@ -19,7 +19,7 @@ use std::collections::BTreeSet;
 /// The parts of the scene.
 pub(super) struct RenderedParts<'a> {
     pub mesh: &'a Mesh,
-    pub nodes: &'a [Placed<'a>],
+    pub nodes: &'a [SceneNode<'a>],
     /// One camera for each node that carries one, in the order of the nodes.
     pub cameras: &'a [Camera],
     pub origin: DVec3,
@@ -62,7 +62,7 @@ impl Collected<'_> {
         self.add_if(list, index, holder, |_| true);
     }
 
-    fn add_if(&mut self, list: &'static str, index: usize, holder: Option<Holder>, accept: impl Fn(&Find) -> bool) {
+    fn add_if(&mut self, list: &'static str, index: usize, holder: Option<Holder>, accept: impl Fn(&Finding) -> bool) {
         for find in self.survey.of(list, index).iter().filter(|find| accept(find)) {
             let start = if list == honoured::DOCUMENT { String::new() } else { format!("{list}[].") };
             let taken = |fate: Fate| if let Fate::TakenAs(numbers) = fate { numbers } else { &[][..] };
@@ -93,7 +93,7 @@ impl Collected<'_> {
     }
 
     /// Adds the nodes of the scene with their meshes and lights.
-    fn add_nodes(&mut self, root: &Root, nodes: &[Placed]) {
+    fn add_nodes(&mut self, root: &Root, nodes: &[SceneNode]) {
         let (mut meshes, mut lights) = (BTreeSet::new(), BTreeSet::new());
         for placed in nodes {
             self.add(honoured::NODES, placed.index, Some(Holder::Named(placed.name.clone())));
