@@ -95,6 +95,7 @@ impl Model {
 
 /// A model in float32 that is chosen when the program runs.
 #[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "an object has one, and a box would be another pointer in each sum")]
 pub enum AnyLanes {
     Directional(DirectionalLanes),
     Better(BetterLanes),
