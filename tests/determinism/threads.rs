@@ -78,7 +78,6 @@ fn render(world: &World, cloud: &Cloud, estimator: Estimator) -> Rendered {
         filter: Filter::Box,
         estimator,
         normals: NormalKind::Shading,
-        environment: DVec3::splat(0.2).into(),
         ..settings(Model::DirectionalDipole, 40, 30)
     };
     let input = Input {

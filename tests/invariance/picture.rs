@@ -32,7 +32,6 @@ pub struct Shot {
     pub model: Model,
     pub estimator: Estimator,
     pub normals: NormalKind,
-    pub environment: DVec3,
 }
 
 impl Shot {
@@ -44,7 +43,6 @@ impl Shot {
             model: Model::DirectionalDipole,
             estimator: Estimator::Exhaustive,
             normals: NormalKind::Shading,
-            environment: DVec3::ZERO,
         }
     }
 
@@ -83,12 +81,8 @@ impl Shot {
         let camera = &world.scene.cameras[0];
         let input =
             Input { scene: &world.scene, rays: &world.rays, clouds: std::slice::from_ref(cloud), media, camera };
-        let settings = Settings {
-            estimator: self.estimator,
-            normals: self.normals,
-            environment: self.environment.into(),
-            ..settings(self.model, SIZE, SIZE)
-        };
+        let settings =
+            Settings { estimator: self.estimator, normals: self.normals, ..settings(self.model, SIZE, SIZE) };
         let rendered = gather::render(&input, &settings, |_| ());
         assert_eq!(rendered.non_finite_count, 0);
         assert!(rendered.counts.gathers > 100, "{:?}", rendered.counts);

@@ -53,12 +53,12 @@ fn placed_as(original: &World, world: &World, shot: &Shot) -> Cloud {
     let facts = sampled_with(world, sampling, shot.normals).meta;
     let choice = TriangleChoice::new(mesh, sampling.choice, |m| m == facts.materials[0].index);
     let numbers = Numbers::new(sampling.pattern, sampling.seed, sampling.samples);
-    let lights = LightTree::new(&world.scene.lights);
+    let lights = LightTree::new(world.scene.lights());
     let bounce = Bounce::new(&world.scene, |m| m == facts.materials[0].index);
-    let surface = LitSurface { mesh: &world.scene.mesh, rays: &world.rays, lights, normals: shot.normals, bounce };
+    let surface = LitSurface { mesh: &world.scene.mesh, rays: &world.rays, lights, normals: shot.normals };
     let mut halves = Halves::default();
-    for (half, place) in numbers.places(&choice, 0..sampling.samples) {
-        draw(&surface, &[(half, place)], &mut 0, |half, drawn| {
+    for (half, point) in numbers.points(&choice, 0..sampling.samples) {
+        draw(&surface, bounce.as_ref(), &[(half, point)], &mut 0, |half, drawn| {
             if let SampleOutcome::Lit { sample, .. } = drawn {
                 halves[half].push(sample);
             }

@@ -52,7 +52,7 @@ fn a_box_out_of_view() {
 fn a_light_behind_a_wall() {
     let without = Figure::read().world();
     let lamp = Figure::read().with_lamp(DVec3::new(0.0, -0.1, 0.05), 0.02).world();
-    assert_eq!(lamp.scene.lights.len(), without.scene.lights.len() + 1);
+    assert_eq!(lamp.scene.lights().count(), without.scene.lights().count() + 1);
     assert_paired("hidden lamp", 500, 1e-2, |seed| {
         [&without, &lamp].map(|world| sum(&Shot::smooth(seed).of(world), SUBSURFACE))
     });

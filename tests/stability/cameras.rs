@@ -1,7 +1,7 @@
 //! Cameras in odd places, and rays that meet edges and vertices. The body is clear and the sky the same all around: every
 //! path must show exactly the sky, or it was lost at an interface.
 
-use crate::scenes::{Clear, SKY, aimed_at, assert_invisible, channel, render};
+use crate::scenes::{Clear, aimed_at, assert_invisible, channel, render};
 use bssrdf::{Model, fresnel};
 use gather::{Filter, Settings};
 use glam::DVec3;
@@ -41,7 +41,7 @@ fn camera_inside_a_clear_medium() {
 #[test]
 fn camera_inside_an_absorbing_medium() {
     let body = body(sphere(1.0, 4));
-    let settings = Settings { paths_per_pixel: 256, environment: SKY.into(), ..settings(Model::BetterDipole, 8, 8) };
+    let settings = Settings { paths_per_pixel: 256, ..settings(Model::BetterDipole, 8, 8) };
     let projection = scene::Projection::Perspective { tangent: 1.0 };
     let camera = Camera { position: DVec3::ZERO, projection, ..aimed_at(DVec3::ZERO, DVec3::X, 1.0) };
     let cloud = cloud(&body.world, &by_area(16, 0));
@@ -97,7 +97,7 @@ fn camera_ray_through_a_vertex() {
 #[test]
 fn grazing_view() {
     let body = body(quad(0.5, 0.0, 4));
-    let settings = Settings { environment: SKY.into(), ..settings(Model::DirectionalDipole, 1, 1) };
+    let settings = settings(Model::DirectionalDipole, 1, 1);
     for cosine in [1e-7, 1e-6, 1e-3] {
         let camera = aimed_at(DVec3::ZERO, DVec3::new(1.0, 0.0, cosine), 1.0);
         assert_invisible("grazing", &body, &[1.3], &camera, &settings);
@@ -127,7 +127,7 @@ fn camera_on_the_surface_and_far_away() {
 #[test]
 fn depth_of_one() {
     let body = body(sphere(1.0, 3));
-    let settings = Settings { environment: SKY.into(), max_depth: 1, ..settings(Model::DirectionalDipole, 8, 8) };
+    let settings = Settings { max_depth: 1, ..settings(Model::DirectionalDipole, 8, 8) };
     let camera = aimed_at(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0), 0.5);
     let rendered = body.render(&[1.5], &camera, &settings);
     assert_eq!((rendered.counts.cut_by_depth, rendered.counts.rays), (128, 64));

@@ -23,7 +23,7 @@ use test_support::{
 /// What the program renders with if it is told nothing.
 fn default_settings(model: Model) -> Settings {
     let estimator = Estimator::Cut { accuracy: 0.01 };
-    Settings { estimator, paths_per_pixel: 16, filter: Filter::Box, environment: SKY.into(), ..settings(model, 8, 8) }
+    Settings { estimator, paths_per_pixel: 16, filter: Filter::Box, ..settings(model, 8, 8) }
 }
 
 fn milky() -> Medium {
@@ -32,7 +32,7 @@ fn milky() -> Medium {
 
 fn sunny_slab() -> World {
     let sun = Light::Directional { towards: DVec3::new(0.36, 0.48, 0.8), irradiance: DVec3::ONE };
-    world(&[Part::translucent(slab(DVec3::new(5e-3, 5e-3, 2e-3), 2))], &[sun], DVec3::ZERO)
+    world(&[Part::translucent(slab(DVec3::new(5e-3, 5e-3, 2e-3), 2))], &[sun], SKY)
 }
 
 /// K = 1, 2, 3 by the defaults of both programs: every image is fit for a file, lit where a sample is, and says how little

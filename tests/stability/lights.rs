@@ -39,7 +39,7 @@ fn render_all(world: &World, cloud: &Cloud) {
 fn light_a_millionth_above_the_surface() {
     for height in [1e-6, 1e-7] {
         let world = under(height);
-        let tree = LightTree::new(&world.scene.lights);
+        let tree = LightTree::new(world.scene.lights());
         let choice = LightChoice::new(&tree, &ReceiverBounds::point(&middle()), 1);
         let Lighting::Light { direction, irradiance } = light_at(&choice, &world.rays, &middle(), [0.5; 3], &mut 0)
         else {
@@ -57,8 +57,8 @@ fn light_a_millionth_above_the_surface() {
 #[test]
 fn light_in_the_surface() {
     let world = under(0.0);
-    assert!(world.scene.lights[0].illuminate(&middle(), [0.5; 2]).is_none());
-    assert_eq!(world.scene.lights[0].importance(&middle()), 0.0);
+    assert!(world.scene.file_lights[0].illuminate(&middle(), [0.5; 2]).is_none());
+    assert_eq!(world.scene.file_lights[0].importance(&middle()), 0.0);
     let cloud = cloud(&world, &by_area(1000, 1));
     assert_eq!(cloud.meta().samples_dropped["facing_away"], 1000);
     render_all(&world, &cloud);

@@ -2,7 +2,7 @@
 
 use crate::{
     evaluate::assert_is,
-    scenes::{Clear, SKY, aimed_at, assert_invisible, channel, render},
+    scenes::{Clear, aimed_at, assert_invisible, channel, render},
 };
 use bssrdf::{Exitant, Incident, Model, evaluate};
 use formats::cloud::{Cloud, Sample};
@@ -28,8 +28,8 @@ fn list(cloud: &Cloud) -> Vec<Sample> {
     cloud.samples(&cloud.meta().materials[0]).collect()
 }
 
-fn spread(model: Model, environment: DVec3) -> Settings {
-    Settings { paths_per_pixel: 16, filter: Filter::Box, environment: environment.into(), ..settings(model, 8, 8) }
+fn spread(model: Model) -> Settings {
+    Settings { paths_per_pixel: 16, filter: Filter::Box, ..settings(model, 8, 8) }
 }
 
 /// They have no normal and no density: the importer leaves them out and counts them, and N with either rule of choice
@@ -71,7 +71,7 @@ fn slivers_of_a_millionth() {
         let cloud = cloud(&world, &Sampling { choice, ..by_area(1000, 1) });
         assert!((cloud.meta().surface_area_m2 - 4.0).abs() < 1e-6);
         assert_eq!(cloud.len(), 1000, "a flat mesh has no shadow");
-        let settings = spread(Model::DirectionalDipole, DVec3::ZERO);
+        let settings = spread(Model::DirectionalDipole);
         let camera = aimed_at(DVec3::new(1e-5, 0.0, 0.0), DVec3::new(0.3, 0.0, 1.0), 2e-5);
         let rendered = render(&world, &cloud, &[grey(1.0, 10.0, 0.0, 1.3)], &camera, &settings);
         assert!(channel(&rendered, &settings, "Z").iter().all(|z| *z > 0.0), "a ray slipped through");
@@ -94,7 +94,7 @@ fn duplicate_triangles_are_one_surface() {
         assert_eq!((one.len(), two.len()), (1000, 1000));
         assert_eq!(two.meta().surface_area_m2, one.meta().surface_area_m2);
         assert_is("flux", DVec3::from_array(two.meta().mean_flux_w), DVec3::splat(0.8), 1e-6);
-        let settings = spread(Model::StandardDipole, DVec3::ZERO);
+        let settings = spread(Model::StandardDipole);
         let camera = aimed_at(DVec3::ZERO, DVec3::new(0.3, 0.2, 1.0), 0.2);
         let counts = render(&twice, &two, &[grey(1.0, 10.0, 0.0, 1.3)], &camera, &settings).counts;
         assert_eq!((counts.nested, counts.rays), (0, 3 * counts.paths));
@@ -111,7 +111,7 @@ fn open_mesh() {
     let above = aimed_at(DVec3::ZERO, DVec3::new(0.3, 0.2, 1.0), 0.2);
     let below = aimed_at(DVec3::ZERO, DVec3::new(0.3, 0.2, -1.0), 0.2);
     for model in MODELS {
-        let settings = spread(model, DVec3::ZERO);
+        let settings = spread(model);
         let counts = render(&world, &cloud, &[grey(1.0, 10.0, 0.0, 1.5)], &above, &settings).counts;
         assert_eq!((counts.gathers, counts.escaped_inside), (counts.paths, 0), "{counts:?}");
         assert_eq!((counts.rays, counts.cut_by_depth, counts.nested), (3 * counts.paths, 0, 0));
@@ -135,7 +135,7 @@ fn inside_out_mesh() {
     let cloud = cloud(&world, &by_area(1000, 1));
     assert!(cloud.is_empty());
     assert_eq!(cloud.meta().samples_dropped.values().sum::<u64>(), 1000);
-    let settings = spread(Model::DirectionalDipole, SKY);
+    let settings = spread(Model::DirectionalDipole);
     let rendered = render(&world, &cloud, &[grey(1.0, 10.0, 0.0, 1.3)], &camera, &settings);
     assert!(channel(&rendered, &settings, "subsurface.R").iter().all(|x| *x == 0.0));
     assert_invisible("inside out", &Clear::new(world), &[1.0], &camera, &settings);
@@ -149,7 +149,7 @@ fn two_coincident_shells() {
     let sampled = cloud(&world, &by_area(4000, 1));
     assert_eq!(sampled.meta().samples_dropped["shadowed"], 0);
     let camera = aimed_at(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0), 1.2);
-    let settings = spread(Model::BetterDipole, SKY);
+    let settings = spread(Model::BetterDipole);
     let milky = [grey(1.0, 10.0, 0.0, 1.3), grey(1.0, 5.0, 0.0, 1.5)];
     let counts = render(&world, &sampled, &milky, &camera, &settings).counts;
     assert_eq!((counts.escaped_inside, counts.nested), (0, 0));
@@ -168,7 +168,7 @@ fn one_triangle() {
     let cloud = cloud(&world, &by_area(100, 1));
     assert_eq!((cloud.len(), cloud.meta().surface_area_m2), (100, 0.5));
     for model in MODELS {
-        let settings = spread(model, DVec3::ZERO);
+        let settings = spread(model);
         let camera = aimed_at(DVec3::new(0.25, 0.25, 0.0), DVec3::new(0.1, 0.2, 1.0), 0.1);
         let rendered = render(&world, &cloud, &[grey(1.0, 10.0, 0.0, 1.3)], &camera, &settings);
         assert!(rendered.counts.gathers > 0);
@@ -198,7 +198,7 @@ fn one_sample() {
             let lit = Lit::new(&cloud, &medium, model).radiance(Estimator::Exhaustive, point, 0);
             assert_is(&format!("{} {seed}", model.name()), lit, DVec3::splat(expected), 2e-5);
         }
-        let settings = spread(Model::StandardDipole, DVec3::ZERO);
+        let settings = spread(Model::StandardDipole);
         let camera = aimed_at(point.position, DVec3::new(0.1, 0.2, 1.0), 0.1);
         let rendered = render(&world, &cloud, std::slice::from_ref(&medium), &camera, &settings);
         assert_eq!(rendered.counts.gathers > 0, !cloud.is_empty());
@@ -217,7 +217,7 @@ fn ten_million_triangles() {
         let cloud = cloud(&world, &Sampling { choice, ..by_area(100_000, 1) });
         assert_eq!(cloud.len(), 100_000);
         assert_is("flux", DVec3::from_array(cloud.meta().mean_flux_w), DVec3::splat(0.8), 1e-3);
-        let settings = spread(Model::DirectionalDipole, SKY);
+        let settings = spread(Model::DirectionalDipole);
         let camera = aimed_at(DVec3::ZERO, DVec3::new(0.3, 0.2, 1.0), 0.4);
         let rendered = render(&world, &cloud, &[grey(1.0, 10.0, 0.0, 1.3)], &camera, &settings);
         assert_eq!((rendered.counts.gathers, rendered.counts.escaped_inside), (rendered.counts.paths, 0));

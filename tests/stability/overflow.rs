@@ -76,9 +76,9 @@ fn variance_beyond_float32_is_the_largest_number_of_the_file() {
 fn flux_beyond_float32_makes_no_cloud() {
     for irradiance in [DVec3::splat(1e41), DVec3::new(0.0, 0.0, 9e76)] {
         let mut world = under_a_sun(DVec3::ONE);
-        world.scene.lights.clear();
+        world.scene.file_lights.clear();
         let light = scene::light::DirectionalLight { direction: DVec3::Z, irradiance };
-        world.scene.lights.push(Box::new(light));
+        world.scene.file_lights.push(Box::new(light));
         let settings = sample_surface::Settings {
             samples: 100,
             choice: sample_surface::Choice::Area,
@@ -100,9 +100,9 @@ fn flux_beyond_float32_makes_no_cloud() {
 #[test]
 fn flux_below_float32_is_dropped_and_counted() {
     let mut world = under_a_sun(DVec3::ONE);
-    world.scene.lights.clear();
+    world.scene.file_lights.clear();
     let light = scene::light::DirectionalLight { direction: DVec3::Z, irradiance: DVec3::splat(1e-60) };
-    world.scene.lights.push(Box::new(light));
+    world.scene.file_lights.push(Box::new(light));
     let cloud = cloud(&world, &by_area(100, 0));
     assert_eq!((cloud.len(), cloud.meta().samples_dropped["underflow"]), (0, 100));
 }

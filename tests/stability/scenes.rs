@@ -32,14 +32,15 @@ pub fn channel(rendered: &Rendered, settings: &Settings, name: &str) -> Vec<f32>
     image.channel(name).expect("the film has this channel").to_vec()
 }
 
-/// A scene with any cloud of it: none of its light comes out of a clear medium.
+/// A scene under [`SKY`] with any cloud of it: none of the cloud's light comes out of a clear medium.
 pub struct Clear {
     pub world: World,
     cloud: Cloud,
 }
 
 impl Clear {
-    pub fn new(world: World) -> Clear {
+    pub fn new(mut world: World) -> Clear {
+        world.scene.environment = SKY.into();
         let cloud = cloud(&world, &by_area(16, 0));
         Clear { world, cloud }
     }
@@ -51,10 +52,10 @@ impl Clear {
     }
 }
 
-/// Renders bodies of clear media under [`SKY`] from all around: every pixel must show that, to the rounding of the two
+/// Renders bodies of clear media: every pixel must show [`SKY`], to the rounding of the two
 /// shares that its first interfaces split it in, and no path may be lost.
 pub fn assert_invisible(what: &str, clear: &Clear, etas: &[f64], camera: &Camera, settings: &Settings) -> Counts {
-    let settings = Settings { environment: SKY.into(), max_depth: 256, ..settings.clone() };
+    let settings = Settings { max_depth: 256, ..settings.clone() };
     let rendered = clear.render(etas, camera, &settings);
     let counts = rendered.counts;
     let shows_sky = |p: &film::Pixel| (p.beauty() / SKY - 1.0).abs().max_element() < 1e-14;

@@ -28,7 +28,7 @@ const POINTS: usize = 10;
 /// scene has both.
 fn lit_and_unlit(world: &World, wanted: usize) -> [Vec<Point>; 2] {
     let (mut random, mut points) = (Random(31), [Vec::new(), Vec::new()]);
-    let lights = LightTree::new(&world.scene.lights);
+    let lights = LightTree::new(world.scene.lights());
     for _ in 0..100 * wanted {
         let (a, b) = (random.uniform().sqrt(), random.uniform());
         let triangle = (random.uniform() * world.scene.mesh.triangles.len() as f64) as u32;

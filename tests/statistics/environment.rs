@@ -26,19 +26,19 @@ fn even(color: DVec3) -> Environment {
 
 fn ball(environment: Environment) -> World {
     let mut world = world(&[Part::translucent(sphere(1e-2, 3))], &[], DVec3::ZERO);
-    world.scene.add_environment(environment);
+    world.scene.environment = environment;
     world
 }
 
 /// The ball with an albedo of `sigma_s` over its sum with 20/m, seen under its light.
 fn render(environment: Environment, sigma_s: f64, seed: u64) -> Rendered {
-    let world = ball(environment.clone());
+    let world = ball(environment);
     let (cloud, media) = (cloud(&world, &stratified(1 << 12, seed)), [grey(20.0, sigma_s, 0.0, 1.3)]);
     let camera = orthographic(DVec3::new(1.0, 2.0, 3.0), 1.1e-2);
     let input =
         Input { scene: &world.scene, rays: &world.rays, clouds: from_ref(&cloud), media: &media, camera: &camera };
     let settings = settings(Model::StandardDipole, 8, 8);
-    gather::render(&input, &Settings { environment, filter: Filter::Box, paths_per_pixel: 2, ..settings }, |_| ())
+    gather::render(&input, &Settings { filter: Filter::Box, paths_per_pixel: 2, ..settings }, |_| ())
 }
 
 /// A picture of one color is that color: what rays see is the same to the last bit, and the light on the body is on

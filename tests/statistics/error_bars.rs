@@ -23,7 +23,6 @@ const CUT: Estimator = Estimator::Cut { accuracy: 0.1 };
 pub struct Scene {
     pub world: World,
     pub medium: Medium,
-    environment: DVec3,
     /// Half of what the image shows, m.
     pub half_height: f64,
     pub sampling: fn(u64, u64) -> Sampling,
@@ -31,12 +30,20 @@ pub struct Scene {
     shards: u32,
 }
 
-/// A body that fills a part of the image, before a sky that its edge pixels and its inside show.
+/// A body that fills a part of the image, before black.
 pub fn edge(medium: Medium) -> Scene {
+    edge_under(medium, DVec3::ZERO)
+}
+
+/// The same before a sky that its edge pixels and its inside show.
+fn edge_under_sky(medium: Medium) -> Scene {
+    edge_under(medium, DVec3::splat(0.02))
+}
+
+fn edge_under(medium: Medium, environment: DVec3) -> Scene {
     let body = Part::translucent(slab(DVec3::new(3e-3, 2e-3, 1e-3), 4));
-    let environment = DVec3::splat(0.02);
     let world = world(&[body], &[sun(DVec3::ONE), lamp()], environment);
-    Scene { world, medium, environment, half_height: 3.5e-3, sampling: stratified, shards: 1 }
+    Scene { world, medium, half_height: 3.5e-3, sampling: stratified, shards: 1 }
 }
 
 fn image(scene: &Scene, settings: &Settings, seed: u64) -> Vec<Pixel> {
@@ -78,9 +85,9 @@ pub fn of_paths(estimator: Estimator, paths_per_pixel: u32) -> Settings {
 /// spread by one sequence; all paths gathering from the first half.
 #[test]
 fn of_the_cut() {
-    let scene = edge(built_in("marble").expect("a built-in medium"));
+    let scene = edge_under_sky(built_in("marble").expect("a built-in medium"));
     for (k, paths) in [2, 4, 5].into_iter().enumerate() {
-        let settings = Settings { environment: scene.environment.into(), ..of_paths(CUT, paths) };
+        let settings = of_paths(CUT, paths);
         assert_error_bars(&format!("cut, {paths} paths"), &scene, &settings, 50_000 + 1000 * k as u64);
     }
 }
@@ -90,9 +97,9 @@ fn of_the_cut() {
 /// Seen to catch: all paths gathering from the first halves.
 #[test]
 fn of_shards() {
-    let scene = Scene { shards: 3, ..edge(built_in("marble").expect("a built-in medium")) };
+    let scene = Scene { shards: 3, ..edge_under_sky(built_in("marble").expect("a built-in medium")) };
     for (k, paths) in [2, 6].into_iter().enumerate() {
-        let settings = Settings { environment: scene.environment.into(), ..of_paths(CUT, paths) };
+        let settings = of_paths(CUT, paths);
         assert_error_bars(&format!("shards, {paths} paths"), &scene, &settings, 90_000 + 1000 * k as u64);
     }
 }
@@ -105,9 +112,9 @@ fn of_shards() {
 #[test]
 fn of_the_whole_sum() {
     // In so thin a medium independent samples, and a view without the body's edge, let the cloud's part be seen.
-    let scene = Scene { half_height: 6e-4, sampling: by_area, ..edge(grey(30.0, 300.0, 0.0, 1.3)) };
+    let scene = Scene { half_height: 6e-4, sampling: by_area, ..edge_under_sky(grey(30.0, 300.0, 0.0, 1.3)) };
     for (k, paths) in [2, 4].into_iter().enumerate() {
-        let settings = Settings { environment: scene.environment.into(), ..of_paths(Estimator::Exhaustive, paths) };
+        let settings = of_paths(Estimator::Exhaustive, paths);
         assert_error_bars(&format!("whole sum, {paths} paths"), &scene, &settings, 60_000 + 1000 * k as u64);
     }
 }
@@ -117,7 +124,7 @@ fn of_the_whole_sum() {
 /// Seen to catch: halves taken for independent that take their factors from each other.
 #[test]
 fn of_edges() {
-    let scene = Scene { environment: DVec3::ZERO, ..edge(grey(30.0, 300.0, 0.0, 1.3)) };
+    let scene = edge(grey(30.0, 300.0, 0.0, 1.3));
     for (k, paths) in [2, 4, 8].into_iter().enumerate() {
         let settings = of_paths(Estimator::Exhaustive, paths);
         assert_error_bars(&format!("edges, {paths} paths"), &scene, &settings, 80_000 + 1000 * k as u64);
@@ -130,7 +137,7 @@ fn of_edges() {
 /// Seen to catch: the mean of both halves taken for each.
 #[test]
 fn of_one_path_a_pixel() {
-    let scene = Scene { environment: DVec3::ZERO, ..edge(jelly()) };
+    let scene = edge(jelly());
     for (k, estimator) in [CUT, Estimator::Exhaustive].into_iter().enumerate() {
         let settings = Settings { filter: Filter::Point, ..of_paths(estimator, 1) };
         assert_error_bars(&format!("{estimator:?}, one path"), &scene, &settings, 70_000 + 1000 * k as u64);

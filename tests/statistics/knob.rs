@@ -90,7 +90,7 @@ fn looking(world: &World, material: u16, towards: DVec3) -> Camera {
 /// interface takes much of their light are left out: the cut may be that much worse there.
 fn sides(world: &World, material: u16, camera: &Camera) -> [Vec<usize>; 2] {
     let (scene, rays) = (&world.scene, &world.rays);
-    let lights = LightTree::new(&scene.lights);
+    let lights = LightTree::new(scene.lights());
     let mut sides = [Vec::new(), Vec::new()];
     for pixel in 0..SIZE * SIZE {
         let at = DVec2::new((pixel % SIZE) as f64 + 0.5, (pixel / SIZE) as f64 + 0.5);

@@ -19,9 +19,9 @@ fn render(world: &World, camera: &Camera, sigma_a: f64, settings: &Settings) -> 
     gather::render(&input, settings, |_| ())
 }
 
-fn with_sky(environment: DVec3, paths_per_pixel: u32, max_depth: u32) -> Settings {
+fn of_paths(paths_per_pixel: u32, max_depth: u32) -> Settings {
     let settings = settings(Model::DirectionalDipole, 16, 16);
-    Settings { environment: environment.into(), paths_per_pixel, max_depth, filter: Filter::Box, ..settings }
+    Settings { paths_per_pixel, max_depth, filter: Filter::Box, ..settings }
 }
 
 /// The means of all pixels against what is expected, each channel.
@@ -43,7 +43,7 @@ fn a_clear_body_under_a_constant_sky_is_invisible() {
     let world = world(&[Part::translucent(sphere(1.0, 3))], &[], DVec3::ONE);
     let paths = 16 * EFFORT as u32;
     let camera = orthographic(DVec3::new(1.0, 2.0, 3.0), 1.2);
-    let rendered = render(&world, &camera, 0.0, &with_sky(DVec3::ONE, paths, 64));
+    let rendered = render(&world, &camera, 0.0, &of_paths(paths, 64));
     // R and T21 of a path add up to 1 but for its rounding.
     let rounding = 1e-14 * f64::from(paths);
     let mut missing = 0.0;
@@ -75,12 +75,12 @@ fn a_clear_body_under_a_constant_sky_is_invisible() {
 fn emission_is_seen_through_the_interface() {
     let (emission, sky) = (DVec3::new(3.0, 1.0, 0.25), DVec3::new(0.5, 0.5, 2.0));
     let body = Part { emission, ..Part::translucent(slab(DVec3::new(10.0, 10.0, 1.0), 1)) };
-    let world = world(&[body], &[], DVec3::ZERO);
+    let world = world(&[body], &[], sky);
     for degrees in [0.0, 60.0, 80.0] {
         let (sine, cosine) = f64::to_radians(degrees).sin_cos();
         // A window small enough that all of it lies on one face.
         let camera = orthographic(DVec3::new(sine, 0.0, cosine), 0.01);
-        let rendered = render(&world, &camera, 0.0, &with_sky(sky, 100 * EFFORT as u32, 1000));
+        let rendered = render(&world, &camera, 0.0, &of_paths(100 * EFFORT as u32, 1000));
         let expected = fresnel::transmittance(cosine, 1.5) * emission + sky;
         let worst =
             rendered.pixels.iter().map(|p| (p.beauty() / expected - 1.0).abs().max_element()).fold(0.0, f64::max);
@@ -102,7 +102,7 @@ fn a_lamp_is_seen_in_a_mirror() {
         lamp.mesh.positions.iter_mut().for_each(|p| *p += middle.as_vec3());
         let world = world(&[Part::translucent(slab(DVec3::new(20.0, 20.0, 0.25), 1)), lamp], &[], DVec3::ZERO);
         let camera = orthographic(DVec3::new(sine, 0.0, cosine), 0.01);
-        let rendered = render(&world, &camera, 1e4, &with_sky(DVec3::ZERO, 4, 16));
+        let rendered = render(&world, &camera, 1e4, &of_paths(4, 16));
         let expected = (1.0 - fresnel::transmittance(cosine, 1.5)) * emission;
         for pixel in &rendered.pixels {
             let worst = (pixel.beauty() / expected - 1.0).abs().max_element();
@@ -126,7 +126,7 @@ fn a_pane_transmits_what_its_faces_and_its_medium_let_through() {
     for degrees in [0.0, 60.0, 75.0] {
         let (sine, cosine) = f64::to_radians(degrees).sin_cos();
         let camera = orthographic(DVec3::new(sine, 0.0, cosine), 0.01);
-        let rendered = render(&world, &camera, SIGMA_A, &with_sky(DVec3::ZERO, 100 * EFFORT as u32, 1000));
+        let rendered = render(&world, &camera, SIGMA_A, &of_paths(100 * EFFORT as u32, 1000));
         let through = (-SIGMA_A * 0.5 / (1.0 - (sine / 1.5).powi(2)).sqrt()).exp();
         let enters = fresnel::transmittance(cosine, 1.5);
         let reflected = (1.0 - enters) * through;

@@ -114,9 +114,9 @@ fn lit_by_five() -> World {
 #[test]
 fn lights_are_picked_with_the_probability_returned() {
     let world = lit_by_five();
-    let count = world.scene.lights.len();
+    let count = world.scene.lights().count();
     assert_eq!(count, 5);
-    let lights = LightTree::new(&world.scene.lights);
+    let lights = LightTree::new(world.scene.lights());
     for triangle in [0, 12, 26, 34, 42] {
         let point: SurfacePoint = world.scene.mesh.point(triangle, [0.2, 0.5, 0.3], NormalKind::Geometric);
         let (mut observed, mut probability) = (vec![0; count], vec![0.0; count]);

@@ -3,7 +3,7 @@
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
-use sample_surface::{Choice, Numbers, Pattern, Place, TriangleChoice};
+use sample_surface::{Choice, Numbers, Pattern, SamplePoint, TriangleChoice};
 use scene::NormalKind;
 use test_support::{
     EFFORT,
@@ -18,12 +18,12 @@ use test_support::{
 const SEEDS: u64 = 60_000 * EFFORT;
 
 /// The place of the sample of each seed's cloud that `index` says.
-fn places(world: &World, rule: Choice, samples: u64, index: impl Fn(u64) -> u64 + Sync) -> Vec<Place> {
+fn places(world: &World, rule: Choice, samples: u64, index: impl Fn(u64) -> u64 + Sync) -> Vec<SamplePoint> {
     let mesh = &world.scene.mesh;
     let choice = TriangleChoice::new(mesh, rule, |_| true);
     let place = |seed: u64| {
         let numbers = Numbers::new(Pattern::Stratified, seed, samples);
-        let (half, place) = numbers.places(&choice, index(seed)..index(seed) + 1).next().expect("one place");
+        let (half, place) = numbers.points(&choice, index(seed)..index(seed) + 1).next().expect("one place");
         assert_eq!(half as u64, index(seed) % 2);
         place
     };
@@ -77,7 +77,7 @@ fn samples_stand_for_the_area_they_are_drawn_from() {
         let mut shares = vec![vec![0.0; seeds as usize]; mesh.triangles.len()];
         for seed in 0..seeds {
             let numbers = Numbers::new(Pattern::Stratified, seed, samples);
-            for (_, place) in numbers.places(&choice, 0..samples) {
+            for (_, place) in numbers.points(&choice, 0..samples) {
                 let triangle = place.triangle as usize;
                 shares[triangle][seed as usize] += 1.0 / (samples as f64 * place.pdf_area * mesh.area(triangle));
             }
@@ -132,7 +132,7 @@ fn samples_cover_a_triangle_evenly() {
     for (turn, samples) in [(0, 1), (1, 4), (2, 5000)] {
         let positions = (0..3).map(|k| corners[(k + turn) % 3]).collect();
         let world = world(&[Part::translucent(Mesh { positions, triangles: vec![[0, 1, 2]] })], &[], DVec3::ONE);
-        let cell = |place: Place| {
+        let cell = |place: SamplePoint| {
             let [_, b, c] = place.weights.map(|w| w * SIDE as f64);
             let (i, j) = (b as usize, c as usize);
             let upper = usize::from(b.fract() + c.fract() > 1.0);
@@ -153,7 +153,7 @@ fn samples_have_uniform_numbers_for_their_light() {
     for index in [0, 1, 37, 4999] {
         let places = places(&world, Choice::Area, 5000, |_| index);
         for (a, b) in [(0, 1), (1, 2), (2, 0)] {
-            let cell = |p: &Place| [a, b].map(|d| (p.light[d] * SIDE as f64) as usize);
+            let cell = |p: &SamplePoint| [a, b].map(|d| (p.light[d] * SIDE as f64) as usize);
             let cells = places.iter().map(cell).map(|[x, y]| SIDE * x + y);
             assert_even(&format!("light {a} and {b} of sample {index}"), SIDE * SIDE, cells);
         }
@@ -179,7 +179,7 @@ fn the_halves_are_independent() {
     let cells = pairs().map(|(a, b)| SIDE * a.triangle as usize + b.triangle as usize);
     assert_even("triangles of both halves", SIDE * SIDE, cells);
     for d in 0..3 {
-        let cell = |p: &Place| (p.light[d] * SIDE as f64) as usize;
+        let cell = |p: &SamplePoint| (p.light[d] * SIDE as f64) as usize;
         let cells = pairs().map(|(a, b)| SIDE * cell(a) + cell(b));
         assert_even(&format!("light {d} of both halves"), SIDE * SIDE, cells);
         let cells =

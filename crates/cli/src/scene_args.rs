@@ -6,7 +6,7 @@ use crate::{
 };
 use clap::Args;
 use formats::cloud::{LightUnit, Normals};
-use scene::{DVec3, ImportOptions, MeshDefects, NormalKind, Scene, SceneError, light::Environment};
+use scene::{DVec3, ImportOptions, MeshDefects, NormalKind, Scene, SceneError};
 use std::path::Path;
 
 /// Arguments about the scene.
@@ -52,8 +52,8 @@ impl SceneArgs {
         }
     }
 
-    /// Reads the scene and the environment that it is given; prints the import's warnings.
-    pub fn import(&self, path: &Path, common: &Common) -> Result<(Scene, Environment), Failure> {
+    /// Reads the scene and its environment; prints the import's warnings.
+    pub fn import(&self, path: &Path, common: &Common) -> Result<Scene, Failure> {
         let options = ImportOptions {
             metres_per_unit: self.metres_per_unit,
             light_unit: scene_unit(self.light_unit),
@@ -62,9 +62,8 @@ impl SceneArgs {
         let mut scene = Scene::import(path, &options).map_err(with_option)?;
         scene.warnings.iter().for_each(|w| common.warn(format_args!("{}: {w}", path.display())));
         let source = self.environment.as_ref().unwrap_or(&EnvironmentSource::Constant(DVec3::ZERO));
-        let environment = source.read(self.environment_scale, self.environment_rotation, common)?;
-        scene.add_environment(environment.clone());
-        Ok((scene, environment))
+        scene.environment = source.read(self.environment_scale, self.environment_rotation, common)?;
+        Ok(scene)
     }
 
     /// Warns of what is not honoured of the scene, of what is not used on the surfaces of the translucent materials, and of

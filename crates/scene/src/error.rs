@@ -1,10 +1,7 @@
 //! What can be wrong with a scene or a view.
 
-use crate::{
-    Scene,
-    unhonoured::{quoted, rest},
-};
-use std::{collections::BTreeMap, path::PathBuf};
+use crate::unhonoured::{quoted, rest};
+use std::path::PathBuf;
 
 /// A scene or view that cannot be used. The message names the file and the field and, where the file can be mended, how.
 #[derive(Debug, thiserror::Error)]
@@ -26,14 +23,13 @@ pub struct LostVolumes {
 }
 
 impl LostVolumes {
-    /// Of these materials, one at least.
-    pub(crate) fn new(scene: &Scene, lost: &[u16]) -> LostVolumes {
-        const NAMED: usize = 3;
-        let names: Vec<String> =
-            lost.iter().take(NAMED).map(|k| quoted(&scene.materials[usize::from(*k)].name)).collect();
-        let names = format!("{}{}", names.join(", "), rest(lost.len() - names.len()));
-        let sum = |counts: &BTreeMap<u16, u64>| lost.iter().filter_map(|k| counts.get(k)).sum::<u64>();
-        let (count, rounded) = (sum(&scene.degenerate_triangles), sum(&scene.rounded_triangles));
+    /// The number of names that the message has.
+    const NAMED: usize = 3;
+
+    /// The materials of these names, at least one, lost `count` triangles without area, `rounded` of them by rounding.
+    pub(crate) fn new(names: &[&str], count: u64, rounded: u64) -> LostVolumes {
+        let first: Vec<String> = names.iter().take(Self::NAMED).map(|name| quoted(name)).collect();
+        let names = format!("{}{}", first.join(", "), rest(names.len() - first.len()));
         let why = match (count, rounded) {
             (0, _) => "it has no triangles; give it some".into(),
             (_, 0) => format!("all {count} triangles have no area (scale 0?); repair the mesh and export again"),

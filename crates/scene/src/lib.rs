@@ -1,9 +1,39 @@
-//! What is lit and seen: a triangle mesh, its lights and cameras, and ray queries.
+//! What is lit and seen: a triangle mesh, its lights and cameras, and rays through it.
 //!
-//! Knows neither a medium nor how an image is made. Lengths are metres once imported. Positions are float32 relative
-//! to [`Scene::origin`], the centre of the mesh in float64: an object far from the origin loses no digits.
+//! [`Scene::import`] reads a glTF file and checks it. [`Rays`] finds what a ray meets, and [`light`] chooses lights for a
+//! point of the surface and tells what arrives there. Random numbers are pure functions of their index ([`random`]), some
+//! of them well spread ([`sequence`]), and [`warp`] turns them into points and directions.
+//!
+//! The crate knows neither a medium nor how an image is made. After import, lengths are in metres. Positions are float32
+//! relative to [`Scene::origin`], the center of the mesh in float64: an object far from the origin loses no digits.
+//!
+//! A triangle in the sun:
+//!
+//! ```
+//! use scene::light::{DirectionalLight, Light, LightChoice, LightTree, Lit, ReceiverBounds, light_at};
+//! use scene::{DVec3, Mesh, NormalKind, Rays, Triangle, Vec3};
+//!
+//! let mesh = Mesh {
+//!     positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+//!     normals: vec![Vec3::ZERO; 3],
+//!     triangles: vec![Triangle { vertices: [0, 1, 2], material: 0 }],
+//!     ..Mesh::default()
+//! };
+//! let rays = Rays::new(&mesh);
+//! let at = mesh.point(0, [0.25, 0.25, 0.5], NormalKind::Geometric);
+//! let hit = rays.closest(at.position + DVec3::Z, DVec3::NEG_Z, None).expect("the ray meets the triangle");
+//! assert!((hit.triangle, hit.distance) == (0, 1.0));
+//!
+//! let sun = DirectionalLight { direction: DVec3::new(0.0, 0.6, 0.8), irradiance: DVec3::splat(5.0) };
+//! let lights = LightTree::new([&sun as &dyn Light]);
+//! let choice = LightChoice::new(&lights, &ReceiverBounds::point(&at), 1);
+//! let mut shadow_rays = 0;
+//! let Lit::Light { irradiance, .. } = light_at(&choice, &rays, &at, [0.5; 3], &mut shadow_rays) else { panic!("lit") };
+//! assert!((irradiance - DVec3::splat(4.0)).length() < 1e-12);
+//! ```
 
 mod cutouts;
+mod digest;
 mod error;
 pub mod import;
 pub mod light;
@@ -12,11 +42,14 @@ mod mesh;
 mod mesh_defects;
 pub mod random;
 mod rays;
+mod scene;
 pub mod sequence;
+mod surface_color;
 pub mod texture;
 mod unhonoured;
 mod view;
 mod volume;
+mod warnings;
 pub mod warp;
 
 pub use error::{LostVolumes, SceneError};
@@ -26,93 +59,6 @@ pub use material::Material;
 pub use mesh::{Mesh, NormalKind, SurfacePoint, Triangle};
 pub use mesh_defects::MeshDefects;
 pub use rays::{Hit, Rays};
+pub use scene::Scene;
 pub use view::{Camera, Projection, View, ViewFile};
 pub use volume::{Scatter, ScatterExtension, Volume};
-
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    path::PathBuf,
-};
-
-/// An imported scene, checked: indices in range, every number finite, no triangle without area.
-pub struct Scene {
-    /// Every file that was read to make it, each once: its own, then buffers and pictures in the order of reading.
-    pub files: Vec<PathBuf>,
-    pub mesh: Mesh,
-    pub materials: Vec<Material>,
-    pub lights: Vec<Box<dyn light::Light>>,
-    pub cameras: Vec<Camera>,
-    /// World position of the mesh's centre, m.
-    pub origin: DVec3,
-    /// What was left out or looks wrong, one line each.
-    pub warnings: Vec<String>,
-    /// Triangles without area, left out: how many of which material.
-    pub degenerate_triangles: BTreeMap<u16, u64>,
-    /// Those of them that have area until positions are rounded to float32.
-    pub rounded_triangles: BTreeMap<u16, u64>,
-    /// Triangles at the place of another of their material, left out: how many of which material.
-    pub duplicate_triangles: BTreeMap<u16, u64>,
-    /// Materials that a primitive in the scene names, though it may have no triangle left.
-    claimed: BTreeSet<u16>,
-    /// What the file asks for and the picture does not show.
-    unhonoured: Vec<unhonoured::Unhonoured>,
-    /// Identity of the lights as the file gives them.
-    pub light_digest: [u8; 32],
-}
-
-impl Scene {
-    /// Materials whose surfaces bound media if nobody says which: those the file marks as volumes, or else all that do
-    /// not emit; those only that cover a triangle, by index. True with them if the file marks none. A file whose marked
-    /// surfaces are lost marks some nonetheless: that is a fault.
-    pub fn translucent(&self) -> Result<(Vec<u16>, bool), LostVolumes> {
-        let mut used = vec![false; self.materials.len()];
-        self.mesh.triangles.iter().for_each(|t| used[t.material as usize] = true);
-        let select = |accept: fn(&Material) -> bool| -> Vec<u16> {
-            (0..used.len()).filter(|k| used[*k] && accept(&self.materials[*k])).map(|k| k as u16).collect()
-        };
-        let marked = select(|m| m.volume);
-        if !marked.is_empty() {
-            return Ok((marked, false));
-        }
-        let lost = self.lost_volumes();
-        if lost.is_empty() { Ok((select(|m| !m.emits()), true)) } else { Err(LostVolumes::new(self, &lost)) }
-    }
-
-    /// Materials that the file marks as volumes and places, and that cover no triangle, by index.
-    pub fn lost_volumes(&self) -> Vec<u16> {
-        let mut lost = self.claimed.clone();
-        lost.retain(|k| self.materials.get(usize::from(*k)).is_some_and(|m| m.volume));
-        self.mesh.triangles.iter().for_each(|t| _ = lost.remove(&t.material));
-        lost.into_iter().collect()
-    }
-
-    /// Adds light from all around; a mere color is a constant radiance, W/(m² sr).
-    pub fn add_environment(&mut self, environment: impl Into<light::Environment>) {
-        let environment = environment.into();
-        if !environment.is_black() {
-            self.lights.push(Box::new(environment));
-        }
-    }
-
-    /// Identity of the geometry, of which material covers which triangle, and of its colors and holes, as a BLAKE3 digest.
-    pub fn geometry_digest(&self) -> [u8; 32] {
-        let mut hasher = blake3::Hasher::new();
-        let mut put = |bytes: &[u8]| {
-            hasher.update(bytes);
-        };
-        self.origin.to_array().iter().for_each(|x| put(&x.to_le_bytes()));
-        for v in self.mesh.positions.iter().chain(&self.mesh.normals) {
-            v.to_array().iter().for_each(|x| put(&x.to_le_bytes()));
-        }
-        for t in &self.mesh.triangles {
-            t.vertices.iter().for_each(|i| put(&i.to_le_bytes()));
-            put(&t.material.to_le_bytes());
-        }
-        for m in &self.materials {
-            put(&(m.name.len() as u64).to_le_bytes());
-            put(m.name.as_bytes());
-        }
-        self.note_colors(&mut put);
-        *hasher.finalize().as_bytes()
-    }
-}

@@ -15,16 +15,16 @@ pub struct Triangle {
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     pub positions: Vec<Vec3>,
-    /// Unit normals, or zero where the file has none: the triangle's own normal is meant then.
+    /// Unit normals, or zero where the file has none and the triangle's own normal is used.
     pub normals: Vec<Vec3>,
     pub triangles: Vec<Triangle>,
-    /// Texture coordinates of the base color, as its picture has them; none if no vertex has any.
+    /// Texture coordinates of the base color, in its picture; empty if no vertex has any.
     pub coordinates: Vec<[f32; 2]>,
-    /// Linear red, green and blue, and alpha; none if no vertex has any.
+    /// Linear red, green and blue, and alpha; empty if no vertex has any.
     pub colors: Vec<[f32; 4]>,
 }
 
-/// Which normal shading uses.
+/// The normal that cosines are taken with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NormalKind {
     /// Interpolated from the vertices.
@@ -47,7 +47,7 @@ pub struct SurfacePoint {
 }
 
 impl SurfacePoint {
-    /// The point as it is seen along `view`, a direction away from it: with its normals on that side of the triangle.
+    /// The point with its normals on the side of the triangle that `view` leads to, a direction away from it.
     pub fn facing(self, view: DVec3) -> SurfacePoint {
         let sign = if self.geometric_normal.dot(view) > 0.0 { 1.0 } else { -1.0 };
         SurfacePoint { normal: self.normal * sign, geometric_normal: self.geometric_normal * sign, ..self }
@@ -105,7 +105,7 @@ impl Mesh {
         self.interpolated(triangle, weights, |i| DVec4::from_array(self.vertex_color(i).map(f64::from)))
     }
 
-    /// 1 where the file has none.
+    /// The color of a vertex; 1 where the file has none.
     pub(crate) fn vertex_color(&self, vertex: u32) -> [f32; 4] {
         self.colors.get(vertex as usize).copied().unwrap_or([1.0; 4])
     }
@@ -140,7 +140,7 @@ pub(crate) fn area([a, b, c]: [DVec3; 3]) -> f64 {
     0.5 * (b - a).cross(c - a).length()
 }
 
-/// `v/‖v‖` without the underflow that squaring a tiny triangle's cross product brings.
+/// `v/‖v‖`; division by the largest component first avoids underflow where the cross product of a tiny triangle is squared.
 pub(crate) fn unit(v: DVec3) -> DVec3 {
     let largest = v.abs().max_element();
     (v / largest).normalize()

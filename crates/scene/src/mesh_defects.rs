@@ -1,20 +1,20 @@
-//! What is wrong with a mesh that is to hold a medium: it should be closed, wound outwards, and there once.
+//! Defects of a mesh that is to hold a medium: it should be closed, wound outwards, and without duplicates.
 
-use crate::{Scene, mesh::Mesh};
+use crate::{mesh::Mesh, scene::Scene};
 use glam::{DVec3, Vec3};
 use std::{collections::BTreeMap, fmt};
 
-/// Faults of the surfaces that bound media. Vertices at the same place are one, whatever their normals.
+/// Defects of the surfaces that bound media. Vertices at the same position are one, whatever their normals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MeshDefects {
     /// Edges where the surface ends.
     pub open_edges: u64,
     /// Edges whose two triangles are wound against each other.
     pub flipped_edges: u64,
-    /// Closed parts that are wound inwards; cavities are meant to be.
+    /// Closed parts that are wound inwards, other than cavities.
     pub inward_parts: u64,
-    /// Triangles that are there already, wound either way. Those of one material were left out; of two, each is one more
-    /// surface, and lets in light of its own.
+    /// Triangles with the same corners as another, wound either way. Those of one material were left out; those of two
+    /// materials are two surfaces, and each lets in light.
     pub duplicate_triangles: u64,
     /// Triangles without area; they were left out.
     pub degenerate_triangles: u64,
@@ -25,14 +25,14 @@ impl MeshDefects {
         *self == MeshDefects::default()
     }
 
-    /// From counts by name as [`MeshDefects::counts`] has them; what is not named is 0.
+    /// From counts by the names of [`MeshDefects::counts`]; a count without a name is 0.
     pub fn from_counts(count: impl Fn(&str) -> Option<u64>) -> MeshDefects {
         let [open_edges, flipped_edges, inward_parts, duplicate_triangles, degenerate_triangles] =
             MeshDefects::default().counts().map(|(name, _)| count(name).unwrap_or(0));
         MeshDefects { open_edges, flipped_edges, inward_parts, duplicate_triangles, degenerate_triangles }
     }
 
-    /// Names as statistics have them, in order.
+    /// The counts in order, with their names in statistics.
     pub fn counts(&self) -> [(&'static str, u64); 5] {
         [
             ("open_edges", self.open_edges),
@@ -44,7 +44,7 @@ impl MeshDefects {
     }
 }
 
-/// What there is to complain of, as one line.
+/// The defects as one line.
 impl fmt::Display for MeshDefects {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let found = self.counts().into_iter().filter(|(_, count)| *count > 0);
@@ -54,7 +54,8 @@ impl fmt::Display for MeshDefects {
 }
 
 impl Scene {
-    /// Examines the surfaces of the materials that `belong`, as [`Mesh::defects`] does, and counts what was left out.
+    /// Examines the surfaces of the materials that `belong`, as [`Mesh::defects`] does, and counts triangles that were left
+    /// out on import.
     pub fn defects(&self, belong: impl Fn(u16) -> bool) -> MeshDefects {
         let left_out = |counts: &BTreeMap<u16, u64>| -> u64 {
             counts.iter().filter(|(material, _)| belong(**material)).map(|(_, count)| count).sum()
@@ -67,18 +68,18 @@ impl Scene {
 }
 
 impl Mesh {
-    /// Examines the triangles whose material `belongs`, all together: a body may have several materials. Sorts, so
-    /// takes n log n of n triangles.
+    /// Examines the triangles whose material `belongs`, all together, since a body may have several materials. For `n`
+    /// triangles it takes `n log n` steps.
     pub fn defects(&self, belongs: impl Fn(u16) -> bool) -> MeshDefects {
-        let (places, points) = self.weld();
+        let (welded, points) = self.weld();
         let own = self.triangles.iter().filter(|t| belongs(t.material));
-        let mut triangles: Vec<[u32; 3]> = own.map(|t| t.vertices.map(|i| places[i as usize])).collect();
+        let mut triangles: Vec<[u32; 3]> = own.map(|t| t.vertices.map(|i| welded[i as usize])).collect();
         let count = triangles.len();
-        // Of triangles at one place the first of the mesh is kept.
+        // Of triangles with the same corners, the first of the mesh is kept.
         triangles.sort_by_key(sorted);
         triangles.dedup_by_key(|t| sorted(t));
         let mut parts = Parts::new(&points, &triangles);
-        let [open_edges, flipped_edges] = unmatched_edges(&triangles, |place| parts.open(place));
+        let [open_edges, flipped_edges] = unmatched_edges(&triangles, |corner| parts.open(corner));
         MeshDefects {
             open_edges,
             flipped_edges,
@@ -88,31 +89,31 @@ impl Mesh {
         }
     }
 
-    /// The place of every vertex, and where the places are.
+    /// For each vertex the index of the point that it lies at, and the different points.
     fn weld(&self) -> (Vec<u32>, Vec<DVec3>) {
-        // Zero has two signs.
+        // Adding 0 makes -0 and 0 equal.
         let key = |p: &Vec3| p.to_array().map(|x| (x + 0.0).to_bits());
         let mut order: Vec<([u32; 3], u32)> = self.positions.iter().map(key).zip(0..).collect();
         order.sort_unstable();
-        let (mut places, mut points) = (vec![0; order.len()], Vec::new());
+        let (mut welded, mut points) = (vec![0; order.len()], Vec::new());
         for group in order.chunk_by(|a, b| a.0 == b.0) {
-            group.iter().for_each(|(_, vertex)| places[*vertex as usize] = points.len() as u32);
+            group.iter().for_each(|(_, vertex)| welded[*vertex as usize] = points.len() as u32);
             points.push(self.positions[group[0].1 as usize].as_dvec3());
         }
-        (places, points)
+        (welded, points)
     }
 }
 
 fn sorted(triangle: &[u32; 3]) -> [u32; 3] {
-    let mut places = *triangle;
-    places.sort_unstable();
-    places
+    let mut corners = *triangle;
+    corners.sort_unstable();
+    corners
 }
 
-/// Edges where the surface ends, and edges whose triangles are wound against each other: those of an odd number of
-/// triangles, and those that are passed more often in one direction than in the other. `tell` hears of a corner of each.
+/// The number of open edges, of an odd number of triangles, and of flipped ones, which triangles pass more often in one
+/// direction than in the other. `tell` is given an end point of each.
 fn unmatched_edges(triangles: &[[u32; 3]], mut tell: impl FnMut(u32)) -> [u64; 2] {
-    // The edge's two places, the lower one first, and in the last bit the direction.
+    // The two end points, the lower one first, and in the last bit the direction.
     let edge = |a: u32, b: u32| u64::from(a.min(b)) << 33 | u64::from(a.max(b)) << 1 | u64::from(a > b);
     let mut edges: Vec<u64> =
         triangles.iter().flat_map(|[a, b, c]| [edge(*a, *b), edge(*b, *c), edge(*c, *a)]).collect();
@@ -130,11 +131,11 @@ fn unmatched_edges(triangles: &[[u32; 3]], mut tell: impl FnMut(u32)) -> [u64; 2
     [open, flipped]
 }
 
-/// A part of the surface that hangs together.
+/// A connected part of the surface.
 #[derive(Clone, Copy)]
 struct Part {
     closed: bool,
-    /// Of what it encloses, m³; negative if it is wound inwards.
+    /// The volume that it encloses, m³; negative if it is wound inwards.
     volume: f64,
     /// m².
     area: f64,
@@ -143,9 +144,9 @@ struct Part {
 }
 
 struct Parts {
-    /// Where each place's way to the one that stands for its part goes.
+    /// For each point, the next one on its path to the root of its part (union-find).
     parents: Vec<u32>,
-    /// The part of each place that stands for one.
+    /// For each root, the index of its part.
     of_root: Vec<u32>,
     list: Vec<Part>,
 }
@@ -177,17 +178,17 @@ impl Parts {
         Parts { parents, of_root, list }
     }
 
-    /// The part of this place is not closed.
-    fn open(&mut self, place: u32) {
-        let root = root(&mut self.parents, place);
+    /// Marks the part of this point as not closed.
+    fn open(&mut self, point: u32) {
+        let root = root(&mut self.parents, point);
         self.list[self.of_root[root as usize] as usize].closed = false;
     }
 
-    /// Closed parts wound inwards that are no cavities. A cavity is one whose box lies in that of a body wound outwards;
-    /// only the largest bodies are asked, so that many parts take no longer.
+    /// The number of closed parts that are wound inwards and are not cavities. A part is a cavity if its box lies in that of
+    /// a body wound outwards; only the largest bodies are tested, so that the time is linear in the number of parts.
     fn inward(&self) -> u64 {
         const BODIES: usize = 256;
-        // A sheet of two sides encloses nothing, on either side of rounding.
+        // A sheet of two sides encloses nothing: its volume is rounding error of either sign.
         let inside_out = |p: &&Part| p.closed && p.volume < -1e-6 * p.area.powf(1.5);
         let mut bodies: Vec<&Part> = self.list.iter().filter(|p| p.volume > 0.0).collect();
         bodies.sort_by(|a, b| b.volume.total_cmp(&a.volume));
@@ -198,12 +199,12 @@ impl Parts {
     }
 }
 
-/// The place that stands for a part; ways are halved as they are gone.
-fn root(parents: &mut [u32], mut place: u32) -> u32 {
-    while parents[place as usize] != place {
-        let above = parents[parents[place as usize] as usize];
-        parents[place as usize] = above;
-        place = above;
+/// The root of a point's part; the path to it is halved on the way.
+fn root(parents: &mut [u32], mut point: u32) -> u32 {
+    while parents[point as usize] != point {
+        let above = parents[parents[point as usize] as usize];
+        parents[point as usize] = above;
+        point = above;
     }
-    place
+    point
 }

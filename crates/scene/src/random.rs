@@ -1,9 +1,9 @@
 //! Counter-based random numbers: a pure function of (seed, purpose, index, dimension).
 //!
-//! No state, so any thread may compute any number, and nothing depends on order. The first values are pinned in a
-//! test: changing them changes every cloud and image.
+//! There is no state, so any thread may compute any number, and nothing depends on order. The first values are pinned in
+//! a test: changing them changes every cloud and image.
 
-/// What a stream is for: streams of different purposes are independent.
+/// The purpose of a stream: streams of different purposes are independent.
 #[derive(Clone, Copy, Debug)]
 pub enum Purpose {
     /// Surface samples of phase one.
@@ -12,19 +12,19 @@ pub enum Purpose {
     CameraPath,
     /// Acceptance and choice of samples in the sums of phase two.
     Gather,
-    /// Where paths pass through their pixel.
+    /// Where paths cross their pixel.
     Pixel,
-    /// Rays that tell how much gets through to an edge's pixel.
+    /// Transmittance rays of edge pixels.
     Edge,
-    /// Points that phase two measures its own error at.
+    /// Points at which phase two calibrates its error estimate.
     Calibration,
     /// Scrambles of the sequences of phase one.
     Scramble,
-    /// Light of surfaces that light the samples of phase one.
+    /// Light that opaque surfaces reflect to the samples of phase one.
     Bounce,
-    /// Which of several clouds the paths of a pixel gather from.
+    /// Which shard the paths of a pixel gather from.
     ShardPick,
-    /// What one of those sequences leaves open.
+    /// The bits below those of one of these sequences.
     Remainder(u64),
 }
 
@@ -45,8 +45,7 @@ impl Purpose {
     }
 }
 
-/// The seed of shard `index` of `count` under a seed: that seed itself if there is one shard, else one of its own for each
-/// index and count.
+/// The seed of shard `index` of `count`: `seed` itself if there is only one shard, else another for each index and count.
 pub fn shard_seed(seed: u64, index: u32, count: u32) -> u64 {
     if count == 1 { seed } else { mix(mix(!seed) ^ (u64::from(index) << 32 | u64::from(count))) }
 }
@@ -89,13 +88,13 @@ impl Item {
 /// The largest number below 1.
 pub const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
 
-/// The number in [0, 1) that 64 bits stand for, to 53 of them.
+/// The number in [0, 1) that the upper 53 of 64 bits stand for.
 pub fn unit(bits: u64) -> f64 {
     (bits >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
 }
 
 /// A bijection of 64 bits that leaves no visible structure: two rounds of multiply and xor-shift (the SplitMix64
-/// finaliser of Steele, Lea and Flood 2014, with the constants of Stafford's variant 13).
+/// finalizer of Steele, Lea and Flood 2014, with the constants of Stafford's variant 13).
 pub fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);

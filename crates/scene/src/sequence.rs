@@ -1,19 +1,19 @@
 //! Well-spread numbers: Sobol's sequence in four dimensions under Owen's scrambling.
 //!
 //! Every prefix of the sequence is spread evenly, and each coordinate of each point is uniform over the scrambles: means
-//! are unbiased whatever the number of points. The scrambling is a hash in which a bit is changed by the bits above it
-//! alone (Laine and Karras 2011, with Vegdahl's multipliers; Burley 2020), followed by a random digital shift.
+//! are unbiased whatever the number of points. The scrambling is a hash that changes each bit by the bits above it only
+//! (Laine and Karras 2011, with Vegdahl's multipliers; Burley 2020), followed by a random digital shift.
 
 use crate::random::{Item, Stream};
 
-/// Numbers of each point.
+/// The number of coordinates of a point.
 pub const DIMENSIONS: usize = 4;
 
-/// Points that a sequence has.
+/// The number of points of a sequence.
 pub const LENGTH: u64 = 1 << 32;
 
-/// Columns of Sobol's matrices with their bits reversed, of dimensions 2 to 4 (Joe and Kuo 2008); the first dimension
-/// reverses the bits of the index.
+/// Columns of Sobol's matrices for dimensions 2 to 4, with their bits reversed (Joe and Kuo 2008); the first dimension is
+/// the index with its bits reversed.
 const COLUMNS: [[u32; 32]; DIMENSIONS - 1] =
     [columns(1, 0, [1, 0, 0]), columns(2, 1, [1, 3, 0]), columns(3, 1, [1, 3, 1])];
 
@@ -54,14 +54,14 @@ pub struct Sequence {
 }
 
 impl Sequence {
-    /// The sequence whose scramble `key` gives, and whose bits beyond the thirty-second `rest` does.
+    /// The sequence that `key` scrambles; `rest` gives the bits of its numbers after the first 32.
     pub fn new(key: Item, rest: Stream) -> Sequence {
         let word = |d: usize, k: u64| key.bits(3 * d as u64 + k) as u32;
         let dimensions: [usize; DIMENSIONS] = std::array::from_fn(|d| d);
         Sequence { seeds: dimensions.map(|d| [word(d, 0), word(d, 1)]), shifts: dimensions.map(|d| word(d, 2)), rest }
     }
 
-    /// Point `index`, in [0, 1)⁴. Bits that distinguish no two points are independent ones.
+    /// Point `index`, in [0, 1)⁴. The bits after the first 32, which distinguish no two points, are independent random bits.
     pub fn point(&self, index: u32) -> [f64; DIMENSIONS] {
         let rest = self.rest.item(u64::from(index));
         std::array::from_fn(|d| {

@@ -15,10 +15,10 @@ pub enum Projection {
     Orthographic { half_height: f64 },
 }
 
-/// A camera in world space (m, not yet relative to the scene's origin).
+/// A camera in world space, m, not relative to the scene's origin.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
-    /// The camera's own name, or else its node's: exporters number the nodes when names collide.
+    /// The name of the camera, or else of its node: exporters number the nodes when names collide.
     pub name: String,
     /// Name of the node that carries it.
     pub node: String,
@@ -27,7 +27,7 @@ pub struct Camera {
     pub up: DVec3,
     pub forward: DVec3,
     pub projection: Projection,
-    /// Width over height that the file asks for.
+    /// Width over height, if the file asks for one.
     pub aspect: Option<f64>,
 }
 
@@ -70,7 +70,7 @@ impl Camera {
         m
     }
 
-    /// The camera of a node: its scale does not matter.
+    /// The camera of a node, whatever its scale.
     pub(crate) fn of_node(
         names: (String, String),
         transform: &DMat4,
@@ -94,11 +94,11 @@ impl Camera {
     }
 }
 
-/// A camera in a file of its own: metres, degrees.
+/// A camera in a file of its own, in metres and degrees.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct View {
-    /// In a list: what its image is called.
+    /// The name of its image, for a view of a list.
     pub name: Option<String>,
     pub eye: [f64; 3],
     pub target: [f64; 3],
@@ -160,16 +160,15 @@ impl View {
 #[derive(Clone, Debug)]
 pub enum ViewFile {
     One(Box<(View, Camera)>),
-    /// At least one. Names, or numbers for those without, are there once, whatever their case, and can be parts of file
-    /// names.
+    /// At least one view. Names, or numbers for views without, differ by more than case and can be parts of file names.
     List(Vec<(View, Camera)>),
 }
 
-/// Most views of a list.
+/// The largest number of views of a list.
 const MAX_VIEWS: usize = 10_000;
 
-/// Longest name of a view, bytes.
-const LONGEST_NAME: usize = 100;
+/// The largest length of a view's name, bytes.
+const MAX_NAME_BYTES: usize = 100;
 
 const EXPECTED: &str = "expected {\"eye\": [x,y,z], \"target\": [x,y,z], \"up\", \"yfov\" (degrees), \"width\", \"height\"}, or a list of them";
 
@@ -202,7 +201,7 @@ impl ViewFile {
         let mut names = HashSet::new();
         let mut read = |index: usize, view: View| {
             view.name.as_deref().map_or(Ok(()), check_name)?;
-            // A view without a name takes its number's.
+            // A view without a name is called by its number.
             let name = view.name.clone().unwrap_or_else(|| format!("{index:04}"));
             if !names.insert(name.to_ascii_lowercase()) {
                 return Err(format!("field `name`: there are two `{name}`"));
@@ -214,8 +213,8 @@ impl ViewFile {
     }
 }
 
-/// Says which view is none. Structures are read from lists of their fields, too, which nobody means; fields that are there
-/// twice are seen in the text alone.
+/// Checks each view and names the first that is invalid. An array is refused, though serde reads structures from lists of
+/// their fields. Fields that occur twice are found later, in the text.
 fn check_views(list: &[Value]) -> Result<(), String> {
     list.iter().enumerate().try_for_each(|(k, value)| match View::deserialize(value) {
         Err(e) => Err(format!("view {k}: {e}; {EXPECTED}")),
@@ -224,13 +223,13 @@ fn check_views(list: &[Value]) -> Result<(), String> {
     })
 }
 
-/// A name that any file may have in the middle of its own.
+/// Checks that a name can be the middle of any file name.
 fn check_name(name: &str) -> Result<(), String> {
     let good = |c: char| c.is_ascii_alphanumeric() || "-_".contains(c);
-    if (1..=LONGEST_NAME).contains(&name.len()) && name.chars().all(good) {
+    if (1..=MAX_NAME_BYTES).contains(&name.len()) && name.chars().all(good) {
         return Ok(());
     }
-    Err(format!("field `name`: {name:?} is not of 1 to {LONGEST_NAME} letters, digits, `-` and `_`"))
+    Err(format!("field `name`: {name:?} is not of 1 to {MAX_NAME_BYTES} letters, digits, `-` and `_`"))
 }
 
 #[cfg(test)]

@@ -1,4 +1,9 @@
-//! Uniform numbers to points and directions: each routine takes its `xi` and has its density beside it.
+//! Maps of uniform numbers `xi` to points and directions, each with its density.
+//!
+//! ```
+//! let weights = scene::warp::triangle([0.25, 0.5]);
+//! assert_eq!(weights, [0.5, 0.25, 0.25]);
+//! ```
 
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -10,10 +15,9 @@ pub fn triangle(xi: [f64; 2]) -> [f64; 3] {
     [1.0 - root, (1.0 - xi[1]) * root, xi[1] * root]
 }
 
-/// A point of the unit square that is cut from (1, 0) to (0, 1) into two triangles, which stand for these `shares` of
-/// what is to be covered: `[x, y]`, and whether it lies in the second one. Each is covered evenly, and both in proportion
-/// to their shares; `x` grows with the first number, and at each `x`, `y` grows with the second. With a share of 0 the
-/// second triangle is empty.
+/// A point `[x, y]` of the unit square, which is cut from (1, 0) to (0, 1) into two triangles, and whether it lies in the
+/// second one. Points are uniform in each triangle, and each gets its share of them; `x` grows with the first number, and
+/// at each `x`, `y` grows with the second. With a share of 0 the second triangle is empty.
 pub fn halved_square(xi: [f64; 2], shares: [f64; 2]) -> ([f64; 2], bool) {
     // The column at x holds 2 s₀ (1−x) + 2 s₁ x, so with q = (s₁−s₀)/(s₀+s₁) its integral q x² + (1−q) x is ξ₀.
     let total = shares[0] + shares[1];

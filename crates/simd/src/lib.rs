@@ -1,13 +1,34 @@
-//! One body, compiled for several instruction sets, chosen when the program runs.
+//! One body of code, compiled for several instruction sets, of which the program chooses one when it runs.
 //!
-//! Fused multiply-adds are not used, and lanes and sums have a fixed order, so all versions give the same bits. On
-//! other processors, and where a feature is missing, the plain body runs: it is the same code. (Fused, the models would
-//! gain a tenth to a quarter; processors without the instruction would have to call a function for each.)
+//! All versions give the same bits: fused multiply-adds are not used, and lanes and sums have a fixed order. The plain
+//! version runs on other processors, and where a feature is missing. (With fused multiply-adds, the models would be a tenth
+//! to a quarter faster; a processor without the instruction would have to call a function for each.)
 //!
-//! What a body calls must be inlined into it, or it is compiled for the plainest processor: so no `map` of an array, whose
-//! closures are not, and loops over lanes instead. `perf` shows what escaped.
+//! Whatever a kernel calls must be inlined into it: a function that is not is compiled for the plain instruction set. So
+//! kernels have loops over lanes and no `map` of an array, whose closures are not inlined. `perf` shows what was not.
+//!
+//! ```
+//! struct Dot<'a>(&'a [f32; 16], &'a [f32; 16]);
+//!
+//! impl simd::Kernel for Dot<'_> {
+//!     type Output = f32;
+//!
+//!     #[inline(always)]
+//!     fn run(self) -> f32 {
+//!         let mut sum = 0.0;
+//!         for lane in 0..16 {
+//!             sum += self.0[lane] * self.1[lane];
+//!         }
+//!         sum
+//!     }
+//! }
+//!
+//! let (a, b) = ([0.5; 16], [2.0; 16]);
+//! assert_eq!(simd::dispatch(Dot(&a, &b)), 16.0);
+//! assert!(simd::Level::ALL.iter().all(|level| simd::run_as(*level, Dot(&a, &b)) == 16.0));
+//! ```
 
-/// Work that wants vector instructions. `run` must be `#[inline(always)]`, and so must all it calls.
+/// Work for vector instructions. `run` must be `#[inline(always)]`, and so must all that it calls.
 pub trait Kernel {
     type Output;
     fn run(self) -> Self::Output;
@@ -71,19 +92,19 @@ pub fn run_as<K: Kernel>(level: Level, kernel: K) -> K::Output {
     }
 }
 
-/// Asks for the cache line at a place that will be read soon. A list of sums over scattered samples waits for memory a
-/// quarter of its time without it.
+/// Requests the cache line of a value that will be read soon. Without it, sums over scattered samples wait for memory a
+/// quarter of their time.
 #[inline(always)]
 #[allow(unsafe_code)]
-pub fn prefetch<T>(place: &T) {
+pub fn prefetch<T>(value: &T) {
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
         // SAFETY: a prefetch reads nothing and never faults; the reference is valid besides.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(place).cast()) };
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(value).cast()) };
     }
     #[cfg(not(target_arch = "x86_64"))]
-    let _ = place;
+    let _ = value;
 }
 
 #[cfg(target_arch = "x86_64")]

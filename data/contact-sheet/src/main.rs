@@ -1,4 +1,4 @@
-//! `contact-sheet -o SHEET.png TITLE=FILE.png ...`: pictures side by side, made smaller, each with its title.
+//! `contact-sheet -o SHEET.png TITLE=FILE.png ...` puts pictures side by side on one sheet, reduced and with their titles.
 
 mod sheet;
 
@@ -27,8 +27,8 @@ struct Arguments {
     side: u16,
 }
 
-/// Most pictures of a sheet.
-const MOST: usize = 256;
+/// The largest number of pictures on a sheet.
+const MAX_PICTURES: usize = 256;
 
 fn main() {
     let arguments = Arguments::parse();
@@ -36,8 +36,9 @@ fn main() {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if arguments.pictures.len() > MOST {
-        return Err(Failure::usage(format!("{} pictures; a sheet takes {MOST}", arguments.pictures.len())));
+    if arguments.pictures.len() > MAX_PICTURES {
+        let count = arguments.pictures.len();
+        return Err(Failure::usage(format!("there are {count} pictures, but a sheet takes at most {MAX_PICTURES}")));
     }
     let pictures: Vec<_> = arguments.pictures.iter().map(|text| titled(text)).collect::<Result<_, _>>()?;
     let mut files = Files::default();
@@ -50,10 +51,11 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
+/// The title and the file of an argument.
 fn titled(text: &str) -> Result<(&str, &Path), Failure> {
     let (title, file) = text
         .split_once('=')
-        .ok_or_else(|| Failure::usage(format!("`{text}`: give TITLE=FILE.png; a title may be empty")))?;
+        .ok_or_else(|| Failure::usage(format!("`{text}`: it is not TITLE=FILE.png; a title may be empty")))?;
     Ok((title, Path::new(file)))
 }
 

@@ -1,14 +1,14 @@
-//! Cells in columns: a picture, its title below.
+//! The sheet: columns of cells, each of which is a picture with its title below.
 
 use picture::{Picture, font};
 
-/// Pixels between cells and around them.
+/// The space between cells and around them, in pixels.
 const GUTTER: usize = 10;
 const PAPER: [u8; 3] = [24, 24, 26];
 const INK: [[u8; 3]; 2] = [[235, 232, 225], [150, 148, 142]];
 
 pub struct Cell {
-    /// Lines; the first is the brightest.
+    /// The lines of the title, of which the first is the brightest.
     pub title: Vec<String>,
     pub picture: Picture,
 }
@@ -16,7 +16,7 @@ pub struct Cell {
 pub struct Sheet(Picture);
 
 impl Sheet {
-    /// Fills the columns one after another.
+    /// Puts the cells into columns of `rows` cells, one column after the other.
     pub fn new(cells: &[Cell], rows: usize, side: usize) -> Sheet {
         let lines = cells.iter().map(|cell| cell.title.len()).max().unwrap_or(0);
         let (step_x, step_y) = (side + GUTTER, side + lines * font::LINE + 2 * GUTTER);
@@ -44,7 +44,7 @@ impl Sheet {
 mod tests {
     use super::*;
 
-    /// Five pictures of one color each in columns of two. Seen to catch: cells along the rows.
+    /// The sheet has five pictures of one color each in columns of two. Seen to catch: cells along the rows.
     #[test]
     fn cells_go_down_the_columns() {
         let cell = |k: u8| Cell { title: vec!["a".into()], picture: Picture::new(20, 20, [k, 0, 0]) };

@@ -1,4 +1,4 @@
-//! A candle that has burned down into itself: the flame is the only light, and most of it comes through the wax.
+//! A candle with a hollow around its flame, which is the only light: most of it comes through the wax.
 
 use glam::DVec3;
 
@@ -61,7 +61,7 @@ fn field_mm(p: DVec3) -> f64 {
     smooth_max(with_drips, -sculpt(HOLLOW, p), 3.0).max(-Shape::Below { height: 0.0 }.distance(p))
 }
 
-/// Wax that ran down, and the rest at its foot.
+/// The wax that ran down, and the pool at the foot of the candle.
 const DRIPS: &[Stroke] = &[
     join(limb([7.0, 50.5, 20.0], [7.6, 24.0, 21.0], [2.0, 2.6]), 1.0),
     join(limb([-9.0, 49.5, 18.6], [-9.2, 38.0, 19.2], [1.8, 2.3]), 1.0),
@@ -70,10 +70,10 @@ const DRIPS: &[Stroke] = &[
     join(blob([-19.8, 1.0, 9.6], [6.0, 2.4, 5.4]), 3.0),
 ];
 
-/// What has burned.
+/// The hollow that the flame has left.
 const HOLLOW: &[Stroke] = &[join(blob([0.0, 60.0, 0.0], [16.8, 24.0, 16.8]), 1.0)];
 
-/// Profiles: radius and height, mm.
+/// Profiles as pairs of radius and height, mm.
 const WICK: &[[f64; 2]] = &[[0.0, 34.5], [0.7, 34.5], [0.7, 35.5], [0.6, 44.0], [0.5, 45.6], [0.0, 45.6]];
 const FLAME: &[[f64; 2]] =
     &[[0.0, 46.0], [1.6, 46.0], [3.4, 49.0], [4.0, 53.0], [3.0, 59.0], [1.4, 65.0], [0.5, 70.0], [0.0, 71.0]];

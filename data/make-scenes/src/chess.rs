@@ -9,7 +9,7 @@ use crate::turned::turn;
 
 const METRES_PER_MM: f64 = 1e-3;
 const SQUARE_MM: f64 = 20.0;
-/// Squares to each side of the middle.
+/// Number of squares to each side of the middle of the board.
 const SQUARES: i32 = 10;
 
 pub fn scene() -> Scene {
@@ -35,7 +35,7 @@ pub fn scene() -> Scene {
     }
 }
 
-/// A piece on the square of that column and row, counted from the middle of the board.
+/// A piece on the square of this column and row, counted from the middle of the board.
 fn piece(profile: &[[f64; 2]], column: f64, row: f64) -> Mesh {
     let metres: Vec<[f64; 2]> = profile.iter().map(|p| p.map(|x| METRES_PER_MM * x)).collect();
     turn(&metres).moved(METRES_PER_MM * SQUARE_MM * DVec3::new(column, 0.0, row))
@@ -50,7 +50,7 @@ fn squares(color: i32) -> Mesh {
     })
 }
 
-/// Profiles: radius and height, mm.
+/// Profiles as pairs of radius and height, mm.
 const PAWN: &[[f64; 2]] = &[
     [0.0, 0.0],
     [6.4, 0.0],

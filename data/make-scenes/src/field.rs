@@ -1,8 +1,9 @@
-//! Smooth shapes as fields: a function of position, negative inside, about the distance to the surface near it.
+//! Smooth shapes as implicit functions of position, negative inside, which approximate the signed distance near the
+//! surface.
 
 use glam::DVec3;
 
-/// Lengths in the unit of the caller.
+/// A shape. Lengths are in the unit of the caller.
 #[derive(Clone, Copy)]
 pub enum Shape {
     Ellipsoid {
@@ -14,7 +15,7 @@ pub enum Shape {
         ends: [DVec3; 2],
         radii: [f64; 2],
     },
-    /// All that lies below this height.
+    /// The half-space below this height.
     Below {
         height: f64,
     },
@@ -34,15 +35,15 @@ impl Shape {
     }
 }
 
-/// The implicit function over the length of its gradient: exact to first order at the surface.
+/// The implicit function divided by the length of its gradient: the distance to first order at the surface.
 fn ellipsoid(p: DVec3, radii: DVec3) -> f64 {
     let unit = (p / radii).length();
     let slope = (p / (radii * radii)).length();
-    // At the very centre both are zero; the depth there is the smallest radius.
+    // At the center both are zero; the depth there is the smallest radius.
     if slope == 0.0 { -radii.min_element() } else { unit * (unit - 1.0) / slope }
 }
 
-/// The smaller of both, with a fillet where they are within `blend` of each other.
+/// The minimum of both, with a fillet where they differ by less than `blend`.
 pub fn smooth_min(a: f64, b: f64, blend: f64) -> f64 {
     let overlap = (blend - (a - b).abs()).max(0.0) / blend;
     a.min(b) - overlap * overlap * overlap * blend / 6.0
@@ -52,7 +53,7 @@ pub fn smooth_max(a: f64, b: f64, blend: f64) -> f64 {
     -smooth_min(-a, -b, blend)
 }
 
-/// Central differences; `step` is in the unit of `p`.
+/// The gradient by central differences; `step` is in the unit of `p`.
 pub fn gradient(field: &impl Fn(DVec3) -> f64, p: DVec3, step: f64) -> DVec3 {
     let slope = |axis: DVec3| (field(p + step * axis) - field(p - step * axis)) / (2.0 * step);
     DVec3::new(slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z))

@@ -12,7 +12,7 @@ use crate::surface_nets::{Grid, polygonise};
 const METRES_PER_MM: f64 = 1e-3;
 /// Grid of the mesh: finer than the eyes, coarse enough for a small file.
 const CELL_MM: f64 = 0.72;
-/// Between figure and floor: surfaces that coincide would leave to chance which one a ray meets.
+/// Gap between figure and floor: of surfaces that coincide, rounding would decide which one a ray meets.
 const FLOOR_GAP_M: f64 = 2e-4;
 const FLOOR_HALF_WIDTH_M: f64 = 2.0;
 const FLOOR_COLOR: [f64; 3] = [0.55, 0.5, 0.45];
@@ -119,7 +119,7 @@ fn into_head(p: DVec3) -> DVec3 {
     NECK_MM + DVec3::new(cos * q.x - sin * q.y, sin * q.x + cos * q.y, q.z)
 }
 
-/// Right half, the left is its mirror image.
+/// The right half of the body; the left one is its mirror image.
 const TORSO: &[Stroke] = &[
     join(blob([0.0, 16.5, 0.0], [13.0, 16.5, 11.5]), 1.0),
     // Belly and tail.
@@ -132,12 +132,12 @@ const TORSO: &[Stroke] = &[
 ];
 
 const ARMS: &[Stroke] = &[
-    // One waves, one rests on the knee.
+    // One arm waves, the other rests on the knee.
     join(limb([10.0, 26.0, 0.5], [22.5, 35.5, 4.0], [4.6, 4.6]), 1.0),
     join(limb([-10.0, 26.0, 1.0], [-16.0, 15.0, 8.5], [4.6, 4.7]), 1.0),
 ];
 
-/// Right half before it leans.
+/// The right half of the head, before it leans.
 const HEAD: &[Stroke] = &[
     join(blob([0.0, 42.0, 1.0], [13.5, 12.0, 12.0]), 1.0),
     // Ears: thin cups, about 1.5 mm thick.

@@ -1,4 +1,4 @@
-//! A scene as binary glTF 2.0: one JSON chunk, one binary chunk.
+//! Writes a scene as binary glTF 2.0: one JSON chunk, one binary chunk.
 
 use glam::{DQuat, DVec3, Vec3};
 use serde_json::{Value, json};
@@ -35,7 +35,8 @@ pub fn encode(scene: &Scene) -> Vec<u8> {
         "bufferViews": buffer.views,
         "buffers": [{ "byteLength": buffer.bytes.len() }],
     });
-    // Whether serde_json keeps insertion order depends on who else is built; sorted, the bytes do not.
+    // Whether serde_json keeps the order of insertion depends on the features that other crates enable. Sorted keys make
+    // the bytes independent of that.
     document.sort_all_objects();
     container(document.to_string().into_bytes(), buffer.bytes)
 }
@@ -83,7 +84,7 @@ fn light(light: &Light) -> Value {
     value
 }
 
-/// Square, as every view here is.
+/// The aspect of a square image, which every view here has.
 fn camera(shot: &Shot) -> Value {
     let yfov = shot.yfov_degrees.to_radians();
     json!({
@@ -122,7 +123,7 @@ fn material(part: &Part) -> Value {
     }
 }
 
-/// Those that every scene has, and the one of scenes with a surface that shines.
+/// The extensions of every scene, and the one of scenes with an emitting surface.
 fn extensions(scene: &Scene) -> Vec<&'static str> {
     let shines = scene.parts.iter().any(|part| matches!(part.surface, Surface::Emitting { .. }));
     let mut names =
@@ -205,7 +206,7 @@ fn container(mut json: Vec<u8>, mut binary: Vec<u8>) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    /// The limits of what the repository carries.
+    /// The limits on the size of files in the repository.
     const FILE_LIMIT_BYTES: usize = 1_200_000;
     const TOTAL_LIMIT_BYTES: usize = 6_000_000;
 

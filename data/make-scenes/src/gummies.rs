@@ -1,4 +1,4 @@
-//! Three gummy bears with the light behind them: a medium each, and light that comes through all of them.
+//! Three gummy bears in front of the light, each of its own medium, and all of them translucent throughout.
 
 use glam::DVec3;
 
@@ -8,7 +8,7 @@ use crate::scene::{Part, Scene, Surface};
 use crate::studio::{backdrop, lamp, view};
 use crate::surface_nets::{Grid, polygonise};
 
-/// A millimetre of the figure becomes this much: bears of 24 mm.
+/// Scale of the figure, which makes bears of 24 mm.
 const METRES_PER_UNIT: f64 = 0.42e-3;
 const CELL: f64 = 1.3;
 

@@ -1,5 +1,5 @@
 //! Boxes whose faces are cut by planes at given coordinates: watertight without T-junctions, however uneven the cuts,
-//! because neighbouring faces share the cuts of their common edge.
+//! because neighboring faces share the cuts of their common edge.
 
 use std::collections::BTreeMap;
 

@@ -1,8 +1,14 @@
-//! The scenes of `data/`, built from a few numbers each.
+//! The scenes of `data/`, each built from a few numbers.
 //!
 //! Every file has the same bytes on every run and machine: the shapes use only sums, products, quotients and square
-//! roots, which IEEE 754 rounds alike everywhere, and no order depends on a hash. Hence the files can be committed
-//! and a change of one byte is a change of the scene.
+//! roots, which IEEE 754 rounds alike everywhere, and no order depends on a hash. The files can therefore be committed,
+//! and a byte that changes means that the scene has changed.
+//!
+//! ```
+//! let slab = make_scenes::slab::scene();
+//! let bytes = make_scenes::glb::encode(&slab);
+//! assert!(bytes.starts_with(b"glTF"));
+//! ```
 
 pub mod candle;
 pub mod chess;
@@ -26,7 +32,7 @@ pub mod turned;
 
 use scene::Scene;
 
-/// Every scene, in the order in which a newcomer should look at them.
+/// Every scene: first those for tests, then those of the gallery.
 pub fn all() -> Vec<Scene> {
     vec![
         slab::scene(),
@@ -41,6 +47,6 @@ pub fn all() -> Vec<Scene> {
     ]
 }
 
-/// Built once for all tests, which only read them.
+/// The scenes, built once for all tests, which only read them.
 #[cfg(test)]
 static SCENES: std::sync::LazyLock<Vec<Scene>> = std::sync::LazyLock::new(all);

@@ -1,4 +1,4 @@
-//! Triangle meshes as the files hold them: f32, shared vertices, counter-clockwise seen from outside.
+//! Triangle meshes as the files hold them: float32 positions, shared vertices, wound counterclockwise seen from outside.
 
 use glam::{DVec3, Vec3};
 
@@ -48,7 +48,7 @@ impl Mesh {
         triangle.map(|vertex| self.positions[vertex as usize].as_dvec3())
     }
 
-    /// m², in f64: the areas of one mesh may span eight decades.
+    /// Area of each triangle, m², in float64 since the areas of one mesh may span eight decades.
     pub fn triangle_area(&self, triangle: [u32; 3]) -> f64 {
         let [a, b, c] = self.corners(triangle);
         0.5 * (b - a).cross(c - a).length()
@@ -68,7 +68,7 @@ mod tests {
     use super::*;
     use crate::scene::Surface;
 
-    /// m³; positive when triangles face outward. Sum of tetrahedra with the origin.
+    /// Enclosed volume, m³, as the sum of tetrahedra with the origin; positive when triangles face outward.
     fn volume(mesh: &Mesh) -> f64 {
         let tetrahedron = |[a, b, c]: [DVec3; 3]| a.dot(b.cross(c)) / 6.0;
         mesh.triangles.iter().map(|&t| tetrahedron(mesh.corners(t))).sum()

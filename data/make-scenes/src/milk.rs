@@ -1,4 +1,4 @@
-//! A drop has fallen into a bowl of milk: a crown as thin as light reaches, under a sky.
+//! The crown of a drop that has fallen into a bowl of milk, as thin as light travels in milk, under a sky.
 
 use glam::{DVec2, DVec3};
 
@@ -12,7 +12,7 @@ use crate::turned::{circle, turn};
 
 const METRES_PER_MM: f64 = 1e-3;
 const CELL_MM: f64 = 0.78;
-/// Where the surface of the milk lies above the table, its radius there, and how deep it is modelled.
+/// Where the surface of the milk lies above the table, its radius there, and how deep it is modeled.
 const LEVEL_MM: f64 = 20.0;
 const RADIUS_MM: f64 = 27.0;
 const DEPTH_MM: f64 = 6.0;
@@ -85,7 +85,7 @@ fn field_mm(p: DVec3) -> f64 {
     })
 }
 
-/// Height over the pool at a distance from its axis: rings that die away, and a swelling in the middle.
+/// Height above the pool at a distance from its axis: decaying rings, and a bulge in the middle.
 fn ripples(flat: DVec2) -> f64 {
     let ring = |radius: f64, height: f64, width: f64| {
         let x = (flat.x - radius) / width;
@@ -100,12 +100,12 @@ fn segment(p: DVec2, from: DVec2, to: DVec2, from_radius: f64, to_radius: f64) -
     p.distance(from.lerp(to, along)) - (from_radius + along * (to_radius - from_radius))
 }
 
-/// A jet of the crown: which of the directions around, how far it rises over the wall, and the bead at its end; mm.
+/// A jet of the crown: its place around the crown, its height above the wall, and the radius of its bead, mm.
 struct Spike {
     place: usize,
     height: f64,
     bead: f64,
-    /// A drop has left it.
+    /// Whether a drop has separated from it.
     sheds: bool,
 }
 

@@ -64,7 +64,7 @@ fn field_mm(p: DVec3) -> f64 {
     smooth_max(all, -Shape::Below { height: SEAT_MM }.distance(p), 2.0)
 }
 
-/// A cup whose edge is as round as it is thick.
+/// A cup with an edge rounded by half its thickness.
 fn ear(p: DVec3) -> f64 {
     let [thickness, depth] = EAR_MM;
     let [along, across, front] = EAR_AXES.map(|axis| axis.dot(p - EAR_ROOT_MM));
@@ -75,7 +75,7 @@ fn ear(p: DVec3) -> f64 {
     (beyond * beyond + sheet * sheet).sqrt() - thickness
 }
 
-/// Right half, the left is its mirror image.
+/// The right half of the body; the left one is its mirror image.
 const HEAD: &[Stroke] = &[
     join(blob([0.0, 0.0, 0.0], [24.0, 22.0, 22.0]), 1.0),
     // Body, front leg and hind foot.

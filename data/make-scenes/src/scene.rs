@@ -29,7 +29,7 @@ pub enum Surface {
     Translucent { index_of_refraction: f64 },
     /// Lambertian with this reflectance.
     Opaque { base_color: [f64; 3] },
-    /// Shines with this radiance, W/(m² sr), to the side that it faces.
+    /// Emits this radiance, W/(m² sr), to the side that it faces.
     Emitting { radiance: [f64; 3] },
 }
 
@@ -44,7 +44,7 @@ pub struct Light {
     pub intensity: f64,
     pub color: [f64; 3],
     pub position: DVec3,
-    /// Where the light goes; a point light ignores it.
+    /// The direction in which the light shines; a point light ignores it.
     pub direction: DVec3,
 }
 
@@ -55,7 +55,7 @@ pub enum LightKind {
     Spot { inner_cone_radians: f64, outer_cone_radians: f64 },
 }
 
-/// Where a camera stands and how wide it sees.
+/// Position and field of view of a camera.
 #[derive(Clone, Copy)]
 pub struct Shot {
     pub name: &'static str,
@@ -80,14 +80,14 @@ impl Shot {
 
 impl Light {
     pub fn rotation(&self) -> DQuat {
-        // Lights are round: any up direction that is not along the beam gives the same light.
+        // Lights are symmetric about their axis: any up direction that is not along the beam gives the same light.
         let up = if self.direction.normalize().y.abs() < 0.9 { DVec3::Y } else { DVec3::Z };
         facing(self.direction, up)
     }
 }
 
 impl View {
-    /// Written by hand because a reader wants the fields in this order.
+    /// The text is formatted by hand to keep the order of the fields.
     pub fn to_json(&self) -> String {
         let Shot { eye, target, up, yfov_degrees, .. } = self.shot;
         let triple = |v: DVec3| format!("[{}, {}, {}]", v.x, v.y, v.z);

@@ -1,10 +1,10 @@
-//! Figures from smooth shapes, one stroke after another.
+//! Figures that are built of smooth shapes, one operation after another.
 
 use glam::DVec3;
 
 use crate::field::{Shape, smooth_max, smooth_min};
 
-/// One step of modelling: a shape joined to, or cut out of, what is there already.
+/// One operation: a shape is joined to the figure so far, or cut out of it.
 pub struct Stroke {
     effect: Effect,
     shape: Shape,
@@ -18,7 +18,7 @@ enum Effect {
     Carve,
 }
 
-/// The field of all strokes.
+/// The implicit function of all operations.
 pub fn sculpt(strokes: &[Stroke], p: DVec3) -> f64 {
     strokes.iter().fold(f64::INFINITY, |field, stroke| {
         let shape = stroke.shape.distance(p);
@@ -29,7 +29,7 @@ pub fn sculpt(strokes: &[Stroke], p: DVec3) -> f64 {
     })
 }
 
-/// Makes a right half whole.
+/// Adds the mirror image of the right half.
 pub fn mirrored(p: DVec3) -> DVec3 {
     DVec3::new(p.x.abs(), p.y, p.z)
 }

@@ -1,4 +1,4 @@
-//! Light from all around for the milk: a sky that pales to the horizon, with a low warm sun behind haze.
+//! The environment of the milk: a sky that grows brighter to the horizon, with a low warm sun behind haze.
 
 use glam::DVec3;
 
@@ -21,7 +21,7 @@ pub fn encode() -> Vec<u8> {
     bytes
 }
 
-/// Towards the middle of a pixel. Both angles are taken from the same table of a circle.
+/// Unit direction through the middle of a pixel. Both angles are taken from the same table of a circle.
 fn direction(column: usize, row: usize) -> DVec3 {
     let fine = fine_circle();
     // The table has four steps for a column: a column's middle is two on, and a row is as wide as a column.
@@ -39,11 +39,11 @@ fn fine_circle() -> Vec<glam::DVec2> {
     around
 }
 
-/// W/(m² sr).
+/// Radiance from a unit direction, W/(m² sr).
 fn radiance(towards: DVec3) -> DVec3 {
     let height = towards.y;
     if height < 0.0 {
-        return DVec3::ZERO; // the table hides it
+        return DVec3::ZERO; // below the horizon is the table
     }
     let zenith = DVec3::new(0.16, 0.3, 0.62);
     let horizon = DVec3::new(0.9, 0.82, 0.72);
@@ -57,7 +57,7 @@ fn radiance(towards: DVec3) -> DVec3 {
     sky + 14.0 * lobe(0.03) * DVec3::new(1.0, 0.86, 0.66) + 1.8 * lobe(0.2) * DVec3::new(1.0, 0.8, 0.6)
 }
 
-/// Three mantissas of eight bits and their exponent.
+/// A pixel in RGBE: three mantissas of eight bits and their common exponent.
 fn rgbe(color: DVec3) -> [u8; 4] {
     let (mut scale, mut exponent) = (1.0, 0i32);
     while color.max_element() * scale >= 1.0 {

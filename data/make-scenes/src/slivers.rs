@@ -1,6 +1,6 @@
 //! A rounded cube whose triangles span eight decades of area and whose slivers are ten thousand times as long as
 //! wide. Each of its faces is cut into one huge cell, thousands of tiny ones and the strips between. The shape itself
-//! is smooth and plain, so that whatever the image shows of the cuts is an error of the method.
+//! is smooth, so that any trace of the cuts in an image is an error of the method.
 
 use glam::DVec3;
 
@@ -57,7 +57,7 @@ fn lights() -> Vec<Light> {
 }
 
 fn mesh() -> Mesh {
-    // The cluster of tiny cells lies elsewhere on each axis, so that no symmetry hides a mistake.
+    // The cluster of tiny cells lies elsewhere on each axis, so that no symmetry hides an error.
     let cuts_m = [0.009, 0.011, 0.007].map(cuts);
     let surface = Lattice { cuts_m }.surface();
     let core = DVec3::splat(HALF_WIDTH_M - ROUNDING_M);

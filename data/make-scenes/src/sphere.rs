@@ -1,4 +1,4 @@
-//! The plainest curved object: its area and normals are known, and the light leaves a terminator in view.
+//! A sphere, whose area and normals are known, with the terminator in view.
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;

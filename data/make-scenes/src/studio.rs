@@ -1,4 +1,4 @@
-//! What stands around the objects of the gallery: floors, backgrounds, lamps.
+//! The surroundings of the objects of the gallery: floors, backgrounds and lamps.
 
 use glam::{DVec2, DVec3, Vec3};
 
@@ -6,11 +6,11 @@ use crate::mesh::Mesh;
 use crate::scene::{Part, Shot, Surface, View};
 use crate::turned;
 
-/// Between an object and what it stands on: surfaces that coincide would leave to chance which one a ray meets.
+/// Gap between an object and the surface below it: of surfaces that coincide, rounding would decide which one a ray meets.
 pub const GAP_M: f64 = 1e-4;
 const SIDE_PIXELS: u32 = 512;
 
-/// A rectangle that shines from `center` towards `target`, m, with a radiance in W/(m² sr).
+/// An emitting rectangle at `center` that faces `target`, m, with a radiance in W/(m² sr).
 pub fn lamp(name: &'static str, center: [f64; 3], target: [f64; 3], half_size: [f64; 2], radiance: [f64; 3]) -> Part {
     let [center, target] = [center, target].map(DVec3::from_array);
     let mesh = Mesh::lamp(center, target, half_size[0], half_size[1]);

@@ -1,5 +1,5 @@
 //! The zero surface of a field as a mesh, by surface nets: one vertex in each grid cell the surface crosses, one quad
-//! across each grid edge it crosses. Neighbouring quads share vertices, so the mesh is closed by construction.
+//! across each grid edge it crosses. Neighboring quads share vertices, so the mesh is closed by construction.
 //! Vertices are then spread evenly and put back on the surface, which the plain method only meets approximately.
 
 use glam::DVec3;
@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::field::gradient;
 use crate::mesh::Mesh;
 
-/// Where to look for the surface. It must stay inside the grid.
+/// The grid in which the surface is found. The surface must lie inside it.
 pub struct Grid {
     pub low: DVec3,
     pub cell: f64,
@@ -22,13 +22,13 @@ pub struct Net {
 }
 
 impl Net {
-    /// As a mesh in metres, its lowest point at the height 0.
+    /// The mesh in meters, with its lowest point at height 0.
     pub fn seated(self, metres_per_unit: f64) -> Mesh {
         let lowest = self.positions.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
         self.lowered(lowest, metres_per_unit)
     }
 
-    /// As a mesh in metres, with what was at `height` at 0.
+    /// The mesh in meters, moved so that `height` becomes 0.
     pub fn lowered(self, height: f64, metres_per_unit: f64) -> Mesh {
         let place = |&p: &DVec3| (metres_per_unit * (p - height * DVec3::Y)).as_vec3();
         Mesh {
@@ -39,7 +39,7 @@ impl Net {
     }
 }
 
-/// Rounds of averaging with the neighbours: enough to remove the slivers that the grid leaves.
+/// Rounds of averaging with the neighbors: enough to remove the slivers that the grid leaves.
 const SMOOTHING_ROUNDS: usize = 4;
 const NEWTON_STEPS: usize = 4;
 const SETTLING_ROUNDS: usize = 16;
@@ -55,7 +55,7 @@ pub fn polygonise(field: &impl Fn(DVec3) -> f64, grid: &Grid) -> Net {
     let step = 1e-4 * grid.cell;
     for round in 0..=SMOOTHING_ROUNDS {
         if round > 0 {
-            positions = average_with_neighbours(&positions, &quads);
+            positions = average_with_neighbors(&positions, &quads);
         }
         for p in &mut positions {
             *p = onto_surface(field, *p, step);
@@ -178,7 +178,7 @@ impl Grid {
     }
 }
 
-fn average_with_neighbours(positions: &[DVec3], quads: &[[u32; 4]]) -> Vec<DVec3> {
+fn average_with_neighbors(positions: &[DVec3], quads: &[[u32; 4]]) -> Vec<DVec3> {
     let mut sums = vec![(DVec3::ZERO, 0.0); positions.len()];
     for quad in quads {
         for corner in 0..4 {
@@ -192,7 +192,7 @@ fn average_with_neighbours(positions: &[DVec3], quads: &[[u32; 4]]) -> Vec<DVec3
     positions.iter().zip(&sums).map(halfway).collect()
 }
 
-/// Newton's method along the gradient.
+/// Moves a point onto the surface by Newton's method along the gradient.
 fn onto_surface(field: &impl Fn(DVec3) -> f64, start: DVec3, step: f64) -> DVec3 {
     (0..NEWTON_STEPS).fold(start, |p, _| {
         let slope = gradient(field, p, step);
@@ -200,7 +200,7 @@ fn onto_surface(field: &impl Fn(DVec3) -> f64, start: DVec3, step: f64) -> DVec3
     })
 }
 
-/// Along the shorter diagonal, which follows creases better.
+/// Splits a quad along its shorter diagonal, which follows creases better.
 fn split(&[a, b, c, d]: &[u32; 4], positions: &[DVec3]) -> [[u32; 3]; 2] {
     let length = |from: u32, to: u32| positions[from as usize].distance(positions[to as usize]);
     if length(a, c) <= length(b, d) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }

@@ -1,4 +1,4 @@
-//! Bodies of revolution about the Y axis, as from a lathe.
+//! Surfaces of revolution about the Y axis.
 
 use glam::{DVec2, DVec3};
 
@@ -56,7 +56,7 @@ fn spline(control: &[DVec2]) -> Vec<(DVec2, DVec2)> {
     points
 }
 
-/// Unit vectors all around, by halving angles: square roots are the same on every machine, sines are not.
+/// Unit vectors around the circle, by halving angles: square roots are the same on every machine, sines are not.
 pub fn circle() -> Vec<DVec2> {
     let mut around = vec![DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y];
     for _ in 0..DOUBLINGS {

@@ -1,13 +1,13 @@
-//! What `compare` is asked on the command line.
+//! The arguments of `compare`, and the settings that follow from them.
 
-use std::num::NonZeroUsize;
+use std::num::{NonZeroU16, NonZeroUsize};
 use std::path::PathBuf;
 
-use clap::Parser;
+use clap::{Args, Parser};
 use compare::heatmap::DEFAULT_MAX;
-use compare::{Choice, Gate, LimitsError, Settings, read_limits};
+use compare::{Choice, LimitsError, Settings, read_limits};
 
-use crate::noise_mode::NoiseArguments;
+use crate::gate_options::{self, GateOptions};
 
 /// Compare two OpenEXR images.
 ///
@@ -22,27 +22,8 @@ pub(crate) struct Arguments {
     /// Image to judge, or a folder of them
     #[arg(value_parser = cli::file_name())]
     pub(crate) test: PathBuf,
-    /// Largest relative difference of the means, of every channel (0.01 is one per cent)
-    #[arg(long, value_name = "R", value_parser = limit)]
-    pub(crate) max_bias: Option<f64>,
-    /// Largest mean of (test - reference)^2 / (reference^2 + 0.01), of every channel
-    #[arg(long, value_name = "R", value_parser = limit)]
-    pub(crate) max_relmse: Option<f64>,
-    /// Largest root of the mean squared error, of every channel, in units of the channel
-    #[arg(long, value_name = "R", value_parser = limit)]
-    pub(crate) max_rmse: Option<f64>,
-    /// Largest absolute error of any sample, in units of the channel
-    #[arg(long, value_name = "R", value_parser = limit)]
-    pub(crate) max_abs: Option<f64>,
-    /// At most N pixels may differ by more than T, in units of the channel
-    #[arg(long, value_name = "N@T", value_parser = outliers)]
-    pub(crate) max_outliers: Option<Gate>,
-    /// Largest mean of HDR-FLIP of R, G and B, 0 to 1; never the only limit
-    #[arg(long, value_name = "R", value_parser = limit)]
-    pub(crate) max_flip: Option<f64>,
-    /// Every bit must be equal; looks at all layers unless --layer says otherwise
-    #[arg(long)]
-    pub(crate) exact: bool,
+    #[command(flatten)]
+    pub(crate) gates: GateOptions,
     /// JSON file of gates, each with its reason, that hold besides those of the command line (docs/compare.md)
     #[arg(long, value_name = "FILE", value_parser = cli::file_name())]
     pub(crate) limits: Option<PathBuf>,
@@ -87,20 +68,33 @@ pub(crate) struct Arguments {
     pub(crate) common: cli::Common,
 }
 
+/// The arguments that ask for folders instead of two images.
+#[derive(Args, Debug)]
+pub(crate) struct NoiseArguments {
+    /// Both are folders of images, each from a cloud with a seed of its own (or what --summarise wrote): t-tests of
+    /// few large means, which know that all pixels share the error of their cloud (docs/check.md)
+    #[arg(long, conflicts_with_all = options_of_two_images())]
+    pub(crate) replicates: bool,
+    /// How many folders this run judges: their chance of a false alarm is 1e-3 together
+    #[arg(long, value_name = "N", default_value = "1", requires = "replicates")]
+    pub(crate) family: NonZeroU16,
+    /// Write what --replicates needs of the folder REFERENCE, and its mean image, into the folder TEST, which holds no
+    /// images
+    #[arg(long, conflicts_with_all = options_of_two_images(), conflicts_with_all = ["replicates", "json"])]
+    pub(crate) summarise: bool,
+}
+
+/// The options that are about two images.
+fn options_of_two_images() -> impl Iterator<Item = &'static str> {
+    let others = ["limits", "layer", "allow_nonfinite", "flip", "ignore_meta", "diff_exr", "heatmap", "html", "accept"];
+    gate_options::names().chain(others)
+}
+
 impl Arguments {
-    /// What is asked of the comparison; reads the limits file.
+    /// The settings of the comparison. The limits file is read.
     pub(crate) fn settings(&self) -> Result<Settings, LimitsError> {
-        let gates = [
-            self.max_bias.map(Gate::Bias),
-            self.max_relmse.map(Gate::RelMse),
-            self.max_rmse.map(Gate::Rmse),
-            self.max_abs.map(Gate::Abs),
-            self.max_outliers,
-            self.max_flip.map(Gate::Flip),
-            self.exact.then_some(Gate::Exact),
-        ];
         Ok(Settings {
-            gates: gates.into_iter().flatten().collect(),
+            gates: self.gates.0.clone(),
             limits: self.limits.as_deref().map(read_limits).transpose()?.unwrap_or_default(),
             choice: Choice::new(self.layer.as_deref()),
             allow_nonfinite: self.allow_nonfinite,
@@ -109,12 +103,12 @@ impl Arguments {
         })
     }
 
-    /// Threads for the reading and writing of images.
+    /// The number of threads for the reading and writing of images.
     pub(crate) fn threads(&self) -> NonZeroUsize {
         NonZeroUsize::new(self.common.thread_count()).unwrap_or(NonZeroUsize::MIN)
     }
 
-    /// Where `--accept` tells what it did.
+    /// The path of the log of `--accept`.
     pub(crate) fn log(&self) -> PathBuf {
         let mut name = self.reference.clone().into_os_string();
         name.push(".log");
@@ -123,25 +117,10 @@ impl Arguments {
 }
 
 fn end_of_scale(text: &str) -> Result<f64, String> {
-    limit(text).ok().filter(|max| *max > 0.0).ok_or_else(|| "not a finite number above 0".to_owned())
+    let max = text.parse::<f64>().ok().filter(|max| max.is_finite() && *max > 0.0);
+    max.ok_or_else(|| "it must be a finite number above 0".to_owned())
 }
 
 fn reason(text: &str) -> Result<String, String> {
-    if text.trim().is_empty() { Err("it is empty; say why".to_owned()) } else { Ok(text.to_owned()) }
-}
-
-fn limit(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(limit) if limit.is_finite() && limit >= 0.0 => Ok(limit),
-        _ => Err("not a finite number of at least 0".to_owned()),
-    }
-}
-
-fn outliers(text: &str) -> Result<Gate, String> {
-    let parse = || {
-        let (count, threshold) = text.split_once('@')?;
-        Some(Gate::Outliers { count: count.parse().ok()?, threshold: limit(threshold).ok()? })
-    };
-    parse()
-        .ok_or_else(|| "not N@T with a whole number of pixels N and an error T of at least 0, as in 3@0.5".to_owned())
+    if text.trim().is_empty() { Err("it is empty; give a reason".to_owned()) } else { Ok(text.to_owned()) }
 }

@@ -1,27 +1,27 @@
-//! The signed difference as an image, for viewers.
+//! The signed difference of two images as an image.
 
 use formats::image::{Attribute, Channel, Image};
 
 use crate::meaning;
 
-/// Two finite samples are further apart than float32 reaches.
+/// The difference of two finite samples is beyond float32.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "channel {channel} at pixel {},{} differs by {difference:.3e}, which float32 does not hold; leave out --diff-exr", pixel[0], pixel[1]
+    "channel {channel} at pixel {},{} differs by {difference:.3e}, which float32 does not hold", pixel[0], pixel[1]
 )]
 pub struct TooFar {
-    /// Its name with its layer.
+    /// The name of the channel with that of its layer.
     pub channel: String,
-    /// Column and row in the coordinates of the data window.
+    /// The column and row in the coordinates of the data window.
     pub pixel: [i64; 2],
-    /// Test minus reference.
+    /// The difference, test minus reference.
     pub difference: f64,
 }
 
-/// Test minus reference of every channel, with their names, their windows and what gives them their meaning; rounded once,
-/// to float32. Where a sample is not finite, neither is the difference.
+/// Test minus reference of every channel, rounded once, to float32. The names of the channels, the windows and the attributes
+/// that give the numbers their meaning are those of the reference. Where a sample is not finite, neither is the difference.
 ///
-/// Both images have the same size and channels, as [`crate::compare`] has checked.
+/// Both images must have the same size and channels, as [`crate::compare()`] checks.
 pub fn difference(reference: &Image, test: &Image) -> Result<Image, TooFar> {
     let subtract = |channel: &Channel| {
         let test = test.channel(&channel.name).unwrap_or_default();

@@ -1,37 +1,39 @@
-//! Student's and Fisher's distributions, by the regularised incomplete beta function.
+//! Student's and Fisher's distributions by the regularized incomplete beta function.
 
 use std::f64::consts::TAU;
 
-/// Chance that Student's t with this many degrees of freedom is as far from zero as `t`, or farther.
+/// The probability that Student's t with `freedom` degrees of freedom is as far from zero as `t`, or farther.
 pub fn student_two_sided(t: f64, freedom: f64) -> f64 {
     incomplete_beta(0.5 * freedom, 0.5, freedom / (freedom + t * t))
 }
 
-/// Chance that Student's t is `t` or more.
+/// The probability that Student's t is `t` or more.
 pub fn student_upper(t: f64, freedom: f64) -> f64 {
     let half = 0.5 * student_two_sided(t, freedom);
     if t > 0.0 { half } else { 1.0 - half }
 }
 
-/// The t at or above zero that is exceeded with this chance, at most one half.
+/// The t of at least zero that is exceeded with the probability `upper`, which is at most one half.
 pub fn student_quantile(upper: f64, freedom: f64) -> f64 {
     bisect(|t| student_upper(t, freedom) > upper)
 }
 
-/// Chance that the ratio of two estimated variances, of equal true ones, is `ratio` or more.
+/// The probability that the ratio of two estimates of the same variance is `ratio` or more. `numerator` and `denominator` are
+/// their degrees of freedom.
 pub fn fisher_upper(ratio: f64, numerator: f64, denominator: f64) -> f64 {
     incomplete_beta(0.5 * denominator, 0.5 * numerator, denominator / (denominator + numerator * ratio))
 }
 
-/// The ratio of variances that is exceeded with this chance.
+/// The ratio of variances that is exceeded with the probability `upper`.
 pub fn fisher_quantile(upper: f64, numerator: f64, denominator: f64) -> f64 {
     bisect(|ratio| fisher_upper(ratio, numerator, denominator) > upper)
 }
 
-/// Where `below` turns from true to false, between 0 and 1e9; the geometric middle keeps all digits of small ones.
+/// The number between 0 and 1e9 where `below` turns from true to false. Bisection by the geometric mean keeps all digits of
+/// small numbers.
 fn bisect(below: impl Fn(f64) -> bool) -> f64 {
     let (mut low, mut high) = (1e-9_f64, 1e9_f64);
-    // 2^-100 of a range of e^42 is below the last digit of a float64.
+    // A range of e^42, halved 100 times, is below the last digit of a float64.
     for _ in 0..100 {
         let middle = (low * high).sqrt();
         *(if below(middle) { &mut low } else { &mut high }) = middle;
@@ -39,7 +41,7 @@ fn bisect(below: impl Fn(f64) -> bool) -> f64 {
     low
 }
 
-/// The regularised incomplete beta function `I_x(a, b)` by its continued fraction (Lentz's method).
+/// The regularized incomplete beta function `I_x(a, b)` by its continued fraction (Lentz's method).
 pub fn incomplete_beta(a: f64, b: f64, x: f64) -> f64 {
     if x <= 0.0 || x >= 1.0 {
         return if x <= 0.0 { 0.0 } else { 1.0 };
@@ -66,7 +68,7 @@ pub fn incomplete_beta(a: f64, b: f64, x: f64) -> f64 {
     front * fraction
 }
 
-/// `ln Γ(x)` for `x > 0`: Stirling's series after moving to `x ≥ 10`.
+/// `ln Γ(x)` for `x > 0` by Stirling's series after a shift to `x ≥ 10`.
 pub fn ln_gamma(x: f64) -> f64 {
     let (mut x, mut shift) = (x, 0.0);
     while x < 10.0 {
@@ -86,7 +88,7 @@ mod tests {
         assert!((found / expected - 1.0).abs() < tolerance, "{found} is not {expected}");
     }
 
-    /// Tolerances: the digits of the tables.
+    /// The tolerances are the digits of the tables.
     #[test]
     fn tails_have_their_textbook_values() {
         for (freedom, t, p) in [(1.0, 12.706_2, 0.05), (15.0, 2.131_45, 0.05), (15.0, 4.072_77, 0.001)] {
@@ -94,16 +96,16 @@ mod tests {
             close(student_quantile(0.5 * p, freedom), t, 1e-5);
             close(student_upper(t, freedom) + student_upper(-t, freedom), 1.0, 1e-12);
         }
-        // With two degrees of freedom above, the tail has a closed form: (1 + 2 F/n)^(-n/2).
+        // With two degrees of freedom of the numerator, the tail has the closed form (1 + 2 F/n)^(-n/2).
         close(fisher_upper(4.256_5, 2.0, 9.0), (1.0f64 + 2.0 * 4.256_5 / 9.0).powf(-4.5), 1e-9);
         close(fisher_quantile(0.05, 2.0, 9.0), 4.256_5, 1e-5);
         close(ln_gamma(5.0), 24f64.ln(), 1e-9);
     }
 
-    /// Student's t squared is Fisher's ratio with one degree of freedom above; with one below it is Cauchy's law:
-    /// the chance of |t| > x is 2 atan(1/x)/π.
+    /// Student's t squared has Fisher's distribution with one degree of freedom of the numerator. With one degree of freedom, t
+    /// has Cauchy's distribution: the probability of |t| > x is 2 atan(1/x)/π.
     #[test]
-    fn the_distributions_know_each_other_far_out() {
+    fn the_distributions_agree_far_out() {
         for t in [3.0, 6.0, 12.0] {
             close(student_two_sided(t, 70.0), fisher_upper(t * t, 1.0, 70.0), 1e-9);
             close(student_two_sided(t, 1.0), 2.0 * (1.0 / t).atan() / std::f64::consts::PI, 1e-8);

@@ -1,4 +1,4 @@
-//! `compare --html-index FILE REPORT.html...`: no images, so a command line of its own.
+//! `compare --html-index FILE REPORT.html...` compares no images, so it has a command line of its own.
 
 use std::path::PathBuf;
 
@@ -20,7 +20,7 @@ pub(crate) struct IndexArguments {
 }
 
 impl IndexArguments {
-    /// The arguments of the process, if they ask for an index.
+    /// The arguments of the process if they ask for an index.
     pub(crate) fn asked_for() -> Option<IndexArguments> {
         let is_option = |argument: std::ffi::OsString| {
             let text = argument.to_string_lossy().into_owned();
@@ -35,7 +35,7 @@ impl IndexArguments {
         self.reports.iter().try_for_each(|path| files.reads("REPORT.html", path))?;
         files.writes("--html-index", &self.html_index)?;
         formats::atomic::write(&self.html_index, &compare::html::index(&self.html_index, &self.reports)?)?;
-        self.common.say(format_args!("{}: {} reports", self.html_index.display(), self.reports.len()));
+        self.common.say(format_args!("{}: the index lists {} reports", self.html_index.display(), self.reports.len()));
         Ok(0)
     }
 }

@@ -1,37 +1,37 @@
-//! Channels of both images, grouped into layers.
+//! The channels of both images, grouped into layers.
 
 use formats::image::Image;
 
 use crate::metric::Samples;
 
-/// Name of the layer of the picture itself.
+/// The name of the layer of the picture itself.
 pub(crate) const BEAUTY: &str = "beauty";
 
-/// Channels without a layer that say how much of each pixel is covered, by all colors or by one. They belong to the picture,
-/// and are layers of their own, since depth and alpha in its metrics would hide its faults.
+/// The channels without a layer that hold the coverage of each pixel, for all colors or for one. They belong to the picture, but
+/// are layers of their own, because the metrics of the picture would hide its faults if alpha were part of it.
 pub(crate) const ALPHA: [&str; 4] = ["A", "AR", "AG", "AB"];
 
-/// Colors before alpha; then coordinates and chroma, and other channels by name.
+/// The order of the channels of a layer. Other channels follow by name.
 const ORDER: [&str; 9] = ["R", "G", "B", "A", "X", "Y", "Z", "RY", "BY"];
 
 /// A layer of both images.
 #[derive(Clone, Debug)]
 pub struct Layer<'a> {
-    /// What comes before the last dot; `beauty` for the channels without one that are the picture; else the channel's own
-    /// name.
+    /// The part of the channels' names before the last dot. Channels without a dot are `beauty` if they are the picture, else
+    /// layers of their own name.
     pub name: String,
-    /// Names after the dot, with their samples; R, G, B, A, X, Y, Z, RY, BY come in this order, then others by name.
+    /// The names after the dot with their samples: first R, G, B, A, X, Y, Z, RY, BY in this order, then others by name.
     pub channels: Vec<(String, Samples<'a>)>,
 }
 
 impl<'a> Layer<'a> {
-    /// All samples of the layer, channel after channel.
+    /// The samples of the layer, channel after channel.
     pub fn samples(&self) -> Samples<'a> {
         Samples { planes: self.channels.iter().flat_map(|(_, samples)| samples.planes.iter().copied()).collect() }
     }
 }
 
-/// Both images have the same channels. Beauty first, then by name.
+/// The layers of two images with the same channels: beauty first, then by name.
 pub(crate) fn layers<'a>(reference: &'a Image, test: &'a Image) -> Vec<Layer<'a>> {
     let mut layers: Vec<Layer<'a>> = Vec::new();
     let picture = picture(reference);
@@ -53,8 +53,8 @@ pub(crate) fn layers<'a>(reference: &'a Image, test: &'a Image) -> Vec<Layer<'a>
     layers
 }
 
-/// The channels without a layer that are the picture: red, green and blue with a luminance; without these, CIE X, Y and Z,
-/// or luminance with its chroma. X and Z without Y are something else, such as depth.
+/// The channels without a layer that are the picture: red, green and blue with a luminance, else CIE X, Y and Z, else luminance
+/// with its chroma. X and Z without Y are something else, such as depth.
 fn picture(image: &Image) -> &'static [&'static str] {
     let has = |name: &&str| image.channels.iter().any(|channel| channel.name == *name);
     match () {
@@ -85,7 +85,7 @@ mod tests {
         assert_eq!(found(&names), ["beauty RGB", "A A", "N X", "Z Z", "a.b R", "subsurface RGB"]);
     }
 
-    /// Caught: a picture of X, Y, Z or of luminance and chroma of which only Y was judged.
+    /// Seen to catch: a picture of X, Y and Z, or of luminance and chroma, of which only Y was judged.
     #[test]
     fn a_picture_without_colors_is_one_layer() {
         assert_eq!(found(&["X", "Y", "Z"]), ["beauty XYZ"]);
@@ -95,7 +95,7 @@ mod tests {
         assert_eq!(found(&["B", "BY", "G", "R", "X", "Y", "Z"]), ["beauty RGBY", "BY BY", "X X", "Z Z"]);
     }
 
-    /// Layers with the names of their channels.
+    /// The names of the layers with those of their channels.
     fn found(names: &[&str]) -> Vec<String> {
         let channels = names.iter().map(|name| Channel { name: (*name).to_owned(), samples: vec![0.0] }).collect();
         let image = Image { width: 1, height: 1, channels, ..Image::default() };

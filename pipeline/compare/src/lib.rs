@@ -1,93 +1,71 @@
-//! Two images in, metrics and a verdict out.
+//! The difference of two images: metrics, and a verdict by gates.
 //!
-//! Nothing is padded, cropped, clamped or left out: a sample that is not a number makes the metrics of its
-//! channel not a number, and no gate accepts that. Sums are in `f64`, of pieces of a fixed size that are added in
-//! one order, so a report never depends on the number of threads. Metrics of the beauty layer as a picture alone are
-//! of displayed values; their files say how.
+//! [`compare()`] checks that two images have the same structure and meaning, measures every channel, every layer and the
+//! picture that they show ([`metric`]), and judges them by the gates of the [`Settings`]. The [`Report`] can be printed as a
+//! table or written as JSON; [`difference()`], [`heatmap`] and [`html`] draw it. [`replicates`] compares two sets of images of
+//! independent clouds by statistical tests instead.
+//!
+//! ```
+//! use compare::{Gate, Settings, compare};
+//! use formats::image::{Channel, Image};
+//!
+//! let gray = |value: f32| {
+//!     let channel = |name: &str| Channel { name: name.to_owned(), samples: vec![value; 12] };
+//!     Image { width: 4, height: 3, channels: ["R", "G", "B"].map(channel).into(), ..Image::default() }
+//! };
+//! let settings = Settings { gates: vec![Gate::new("max-bias", 0.25, None)?], ..Settings::default() };
+//! let report = compare(&gray(1.0), &gray(1.5), &settings).expect("the images have the same structure");
+//! assert_eq!(report.layers[0].metrics.get("bias"), 0.5);
+//! assert!(!report.pass);
+//! assert_eq!(report.verdict("test.exr"), "FAIL max-bias 0.5 > 0.25 (beauty R)\n");
+//! # Ok::<(), String>(())
+//! ```
+//!
+//! Nothing is padded, cropped, clamped or left out: a NaN sample makes the metrics of its channel NaN, and no gate accepts
+//! that. Sums are made in `f64` over pieces of a fixed size that are added in a fixed order, so that a report does not depend
+//! on the number of threads. Only the metrics of the picture are computed from displayed values; their files say how.
 
 use formats::image::Image;
 use meaning::Meaning;
 
+mod choice;
 mod difference;
 pub mod distribution;
 mod gate;
 pub mod heatmap;
 pub mod html;
+mod judge;
 mod layer;
 mod limits;
 mod meaning;
 pub mod metric;
 pub mod replicates;
 mod report;
+mod settings;
 mod structure;
 
+pub use choice::Choice;
 pub use difference::{TooFar, difference};
 pub use gate::{Gate, Judgement};
 pub use layer::Layer;
 pub use limits::{Limit, LimitsError, read_limits};
 pub use report::{ChannelReport, LayerReport, NonFinite, Report};
+pub use settings::Settings;
 pub use structure::{Input, Mismatch};
-
-/// What is asked of the comparison.
-#[derive(Clone, Debug, Default)]
-pub struct Settings {
-    /// Limits to hold, on the chosen layers.
-    pub gates: Vec<Gate>,
-    /// Limits to hold besides, each on layers of its own.
-    pub limits: Vec<Limit>,
-    /// Which layers the gates look at.
-    pub choice: Choice,
-    /// Values that are not finite do not fail by themselves; they still fail every gate on their channel.
-    pub allow_nonfinite: bool,
-    /// FLIP is measured, which takes longer than all else; a gate on it asks for it too.
-    pub flip: bool,
-    /// Images of different clouds or scenes may be compared.
-    pub ignore_meta: bool,
-}
-
-impl Settings {
-    /// FLIP never judges by itself: its mean misses single bright pixels and a small bias of the whole picture.
-    pub fn judges_by_flip_alone(&self) -> bool {
-        gate::flip_alone(self)
-    }
-}
-
-/// Which layers the gates look at.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum Choice {
-    /// The beauty layer and its alpha; for the bitwise gate, which is about the file, all layers.
-    #[default]
-    Default,
-    /// All layers.
-    All,
-    /// One layer.
-    Named(String),
-}
-
-impl Choice {
-    /// A layer by its name, or `all`. `beauty` by its name is a layer like any other.
-    pub fn new(name: Option<&str>) -> Choice {
-        match name {
-            None => Choice::Default,
-            Some("all") => Choice::All,
-            Some(name) => Choice::Named(name.to_owned()),
-        }
-    }
-}
 
 /// Measures every channel and layer, and judges by the gates.
 pub fn compare(reference: &Image, test: &Image, settings: &Settings) -> Result<Report, Mismatch> {
     let inputs = structure::check(reference, test, settings.ignore_meta)?;
     let layers = layer::layers(reference, test);
-    gate::check_choice(&layers, settings)?;
-    let mut report = report::measure(test, &layers);
+    judge::check_choice(&layers, settings)?;
+    let picture = metric::measure_picture(reference, test, settings.wants_flip());
+    let mut report = report::measure(test, &layers, picture);
     report.inputs = inputs;
-    report.picture = metric::measure_picture(reference, test, settings.flip || gate::any_flip(settings));
     report.nonfinite.allowed = settings.allow_nonfinite;
-    report.gates = gate::judge(&layers, &report, settings);
+    report.gates = judge::judge(&layers, &report, settings);
     report.pass = report.gates.iter().all(|gate| gate.ok);
-    report.judged = gate::judged_layers(&layers, &settings.choice);
-    report.unjudged = gate::unjudged_layers(&layers, &report, settings);
+    report.judged = judge::judged_layers(&layers, &settings.choice);
+    report.unjudged = judge::unjudged_layers(&layers, &report, settings);
     report.notes = Meaning::of(test).notes(&Meaning::of(reference));
     Ok(report)
 }

@@ -1,46 +1,46 @@
-//! The limits file that is kept beside a reference: gates, each with the reason for its limit.
+//! The limits file that is kept beside a reference, with gates and the reason for each limit.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use crate::gate::looks_at;
-use crate::{Choice, Gate};
+use crate::choice::Choice;
+use crate::gate::Gate;
 
-/// Longest file that is read, bytes.
+/// The length of the longest file that is read, in bytes.
 const MAX_LENGTH: u64 = 1 << 20;
-/// The only version of the keys so far.
+/// The only version of the keys.
 const SCHEMA: u32 = 1;
 
-/// A gate with where it looks and why its limit is what it is.
+/// A gate with the layers that it judges and the reason for its limit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limit {
     /// The gate.
     pub gate: Gate,
-    /// Which layers it looks at.
+    /// The layers that it judges.
     pub choice: Choice,
-    /// Why this much is right.
+    /// The reason for its limit.
     pub reason: String,
 }
 
-/// Why a limits file cannot be used; the message names it.
+/// Why a limits file cannot be used. The message names the file.
 #[derive(Debug, thiserror::Error)]
 pub enum LimitsError {
-    /// The operating system refused.
-    #[error("{}: limits cannot be read: {source}", path.display())]
+    /// The operating system refused to read it.
+    #[error("{}: the limits cannot be read: {source}", path.display())]
     Io {
         /// The file.
         path: PathBuf,
-        /// What it said.
+        /// What the operating system said.
         source: std::io::Error,
     },
-    /// Not the JSON that docs/compare.md describes.
+    /// It is not the JSON that docs/compare.md describes.
     #[error("{}: {what}", path.display())]
     Invalid {
         /// The file.
         path: PathBuf,
-        /// Which entry is wrong, and how.
+        /// What is wrong with which entry.
         what: String,
     },
 }
@@ -70,34 +70,34 @@ pub fn read_limits(path: &Path) -> Result<Vec<Limit>, LimitsError> {
 
 fn read(path: &Path) -> std::io::Result<String> {
     if !std::fs::metadata(path)?.is_file() {
-        return Err(std::io::Error::other("not a regular file"));
+        return Err(std::io::Error::other("it is not a regular file"));
     }
     let mut text = String::new();
     std::fs::File::open(path)?.take(MAX_LENGTH + 1).read_to_string(&mut text)?;
     if text.len() as u64 > MAX_LENGTH {
-        return Err(std::io::Error::other("longer than 1 MiB"));
+        return Err(std::io::Error::other("it is longer than 1 MiB"));
     }
     Ok(text)
 }
 
 fn parse(text: &str) -> Result<Vec<Limit>, String> {
-    // Some editors begin a file with a byte order mark.
+    // Guards against a byte order mark, with which some editors begin a file.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let document: Document = serde_json::from_str(text).map_err(|error| error.to_string())?;
     if document.schema != SCHEMA {
-        return Err(format!("`schema` is {}; this program knows {SCHEMA}", document.schema));
+        return Err(format!("`schema` is {}, but this program reads {SCHEMA} only", document.schema));
     }
     if document.limits.is_empty() {
-        return Err("`limits` is empty, so every image would pass; give at least one".to_owned());
+        return Err("`limits` is empty, so that every image would pass; give at least one limit".to_owned());
     }
     let mut limits: Vec<Limit> = Vec::new();
     for (number, entry) in document.limits.into_iter().enumerate() {
         let name = entry.gate.clone();
         let fault = |what: String| format!("limit {} (`{name}`): {what}", number + 1);
         let limit = check(entry).map_err(fault)?;
-        let layer = |limit: &Limit| looks_at(limit.gate, &limit.choice).map(str::to_owned);
+        let layer = |limit: &Limit| limit.gate.layer(&limit.choice).map(str::to_owned);
         if limits.iter().any(|known| layer(known) == layer(&limit) && known.gate.is_same_question(limit.gate)) {
-            return Err(fault("occurs twice for this layer; keep one".to_owned()));
+            return Err(fault("it occurs twice for this layer; keep one".to_owned()));
         }
         limits.push(limit);
     }
@@ -106,7 +106,7 @@ fn parse(text: &str) -> Result<Vec<Limit>, String> {
 
 fn check(entry: LimitEntry) -> Result<Limit, String> {
     if entry.reason.trim().is_empty() {
-        return Err("`reason` is empty; say why this limit is right".to_owned());
+        return Err("`reason` is empty; give the reason for this limit".to_owned());
     }
     let gate = Gate::new(&entry.gate, entry.limit, entry.threshold)?;
     Ok(Limit { gate, choice: Choice::new(entry.layer.as_deref()), reason: entry.reason })
@@ -125,16 +125,17 @@ mod tests {
         let found = one(r#"{"gate": "max-bias", "limit": 5e-3, "reason": "energy"},
             {"gate": "max-outliers", "limit": 3, "threshold": 0.5, "layer": "all", "reason": "edges"},
             {"gate": "exact", "limit": 0, "layer": "Z", "reason": "no randomness"}"#);
+        let gate = |name, limit, threshold| Gate::new(name, limit, threshold).unwrap();
         let limit = |gate, choice, reason: &str| Limit { gate, choice, reason: reason.to_owned() };
         let expected = [
-            limit(Gate::Bias(0.005), Choice::Default, "energy"),
-            limit(Gate::Outliers { count: 3, threshold: 0.5 }, Choice::All, "edges"),
-            limit(Gate::Exact, Choice::Named("Z".to_owned()), "no randomness"),
+            limit(gate("max-bias", 0.005, None), Choice::Default, "energy"),
+            limit(gate("max-outliers", 3.0, Some(0.5)), Choice::All, "edges"),
+            limit(gate("exact", 0.0, None), Choice::Named("Z".to_owned()), "no randomness"),
         ];
         assert_eq!(found.unwrap(), expected);
     }
 
-    /// What is wrong, and the words that say so. Planted and caught: each check of this file and of `Gate::new` left out.
+    /// Wrong entries, and words of the message. Seen to catch: each check of this file and of `Gate::new` left out.
     #[test]
     fn what_would_let_faults_pass_is_refused() {
         for (entry, words) in [
@@ -152,7 +153,7 @@ mod tests {
             (r#"{"gate": "max-outliers", "limit": 1, "reason": "r"}"#, "`threshold`"),
             (r#"{"gate": "max-outliers", "limit": 0.5, "threshold": 1, "reason": "r"}"#, "whole number"),
             (r#"{"gate": "max-outliers", "limit": 1, "threshold": -1, "reason": "r"}"#, "at least 0"),
-            (r#"{"gate": "exact", "limit": 1, "reason": "r"}"#, "0"),
+            (r#"{"gate": "exact", "limit": 1, "reason": "r"}"#, "must be 0"),
             ("", "`limits` is empty"),
         ] {
             let message = one(entry).unwrap_err();
@@ -171,7 +172,7 @@ mod tests {
     fn a_question_is_asked_once() {
         let bias = r#"{"gate": "max-bias", "limit": 1, "reason": "r"}"#;
         let other = r#"{"gate": "max-bias", "limit": 2, "layer": "beauty", "reason": "r"}"#;
-        assert!(one(&format!("{bias}, {other}")).unwrap_err().contains("limit 2 (`max-bias`): occurs twice"));
+        assert!(one(&format!("{bias}, {other}")).unwrap_err().contains("limit 2 (`max-bias`): it occurs twice"));
         let outliers =
             |threshold| format!(r#"{{"gate": "max-outliers", "limit": 1, "threshold": {threshold}, "reason": "r"}}"#);
         assert!(one(&format!("{}, {}", outliers(1), outliers(2))).is_ok());

@@ -1,7 +1,8 @@
-//! One `--accept` of a reference at a time: another would log a change from a reference that is no longer there.
+//! The lock that lets one `--accept` replace a reference at a time. Without it, another one would log a change from a reference
+//! that was already replaced.
 //!
-//! The lock is on the file itself. An acceptance puts another file in its place, so who had to wait looks again which file
-//! is there. It ends with the process that holds it.
+//! The lock is on the file itself. An acceptance replaces the file, so that a process that had to wait has to check whether it
+//! locked the file that is there now. The lock ends with the process that holds it.
 
 use std::fs::{self, File, TryLockError};
 use std::os::unix::fs::MetadataExt;
@@ -12,38 +13,39 @@ use std::time::{Duration, Instant};
 use cli::Failure;
 use formats::ImageError;
 
-/// Longest time that another acceptance is waited for.
+use crate::inputs::named;
+
+/// The longest time to wait for another acceptance.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(300);
-/// Time between two looks.
+/// The time between two attempts.
 const STEP: Duration = Duration::from_millis(10);
 
-/// Held until it is dropped.
+/// A lock that is held until it is dropped.
 #[derive(Debug)]
 pub(crate) struct Lock {
     _file: File,
 }
 
 impl Lock {
-    /// Takes the lock, and tells if it has to wait for it or if there are none.
+    /// Takes the lock. `tell` is called if it has to wait, or if the file system has no locks.
     pub(crate) fn take(path: &Path, patience: Duration, tell: impl Fn(String)) -> Result<Lock, Failure> {
         let (start, name) = (Instant::now(), path.display());
         let mut told = false;
         loop {
-            let file =
-                open(path).map_err(|source| ImageError::File { path: path.to_owned(), source: Box::new(source) })?;
+            let file = open(path).map_err(named(path))?;
             match file.try_lock() {
                 Ok(()) if is_still(path, &file) => return Ok(Lock { _file: file }),
-                // It was replaced between opening and locking, so this is the lock of a file that is gone.
+                // The file was replaced between opening and locking, so this is the lock of a file that is gone.
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => {
                     if !told {
-                        tell(format!("{name}: waiting for another --accept, for {} s at most", patience.as_secs()));
+                        tell(format!("{name}: waiting for another --accept for at most {} s", patience.as_secs()));
                     }
                     told = true;
                     sleep(STEP);
                 }
                 Err(TryLockError::Error(error)) => {
-                    tell(format!("warning: {name}: cannot be locked ({error}); accept one image at a time"));
+                    tell(format!("warning: {name}: the file cannot be locked ({error}); accept one image at a time"));
                     return Ok(Lock { _file: file });
                 }
             }
@@ -57,7 +59,7 @@ impl Lock {
     }
 }
 
-/// For writing where that is allowed: network file systems lock nothing else.
+/// Opens a file for writing if that is allowed, because network file systems lock no others.
 fn open(path: &Path) -> Result<File, ImageError> {
     if !fs::metadata(path)?.is_file() {
         return Err(ImageError::NotAFile);
@@ -65,9 +67,10 @@ fn open(path: &Path) -> Result<File, ImageError> {
     Ok(File::options().read(true).write(true).open(path).or_else(|_| File::open(path))?)
 }
 
+/// Whether an open file is the one at this path.
 fn is_still(path: &Path, file: &File) -> bool {
-    let place = |facts: fs::Metadata| (facts.dev(), facts.ino());
-    fs::metadata(path).is_ok_and(|there| file.metadata().is_ok_and(|here| place(there) == place(here)))
+    let identity = |facts: fs::Metadata| (facts.dev(), facts.ino());
+    fs::metadata(path).is_ok_and(|now| file.metadata().is_ok_and(|opened| identity(now) == identity(opened)))
 }
 
 #[cfg(test)]
@@ -76,9 +79,9 @@ mod tests {
 
     fn silent(_: String) {}
 
-    /// Caught: no bound, so that it waited for ever.
+    /// Seen to catch: no bound, so that it waited for ever.
     #[test]
-    fn it_is_waited_for_and_not_for_ever() {
+    fn a_lock_is_waited_for_but_not_for_ever() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("reference.exr");
         fs::write(&path, "old").unwrap();
@@ -90,7 +93,7 @@ mod tests {
             move || Lock::take(&path, PATIENCE, silent).map(|lock| is_still(&path, &lock._file))
         });
         sleep(Duration::from_millis(30));
-        // As an acceptance does: another file takes the place of the one that is locked.
+        // Like an acceptance, this replaces the locked file by another.
         fs::write(folder.path().join("new"), "new").unwrap();
         fs::rename(folder.path().join("new"), &path).unwrap();
         drop(held);
@@ -98,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_file_is_refused() {
+    fn folders_and_missing_files_are_refused() {
         let folder = tempfile::tempdir().unwrap();
         for path in [folder.path().to_owned(), folder.path().join("missing.exr")] {
             let message = Lock::take(&path, PATIENCE, silent).unwrap_err().message;

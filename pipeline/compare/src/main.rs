@@ -1,13 +1,14 @@
-//! `compare REFERENCE TEST`: metrics, verdict, exit code 0, 1 or 2.
+//! `compare REFERENCE TEST` prints metrics and a verdict, and exits with 0, 1 or 2.
 
 use arguments::Arguments;
 use clap::Parser;
 use cli::Failure;
-use compare::compare;
+use compare::{Mismatch, compare};
 use index_command::IndexArguments;
 
 mod accept;
 mod arguments;
+mod gate_options;
 mod index_command;
 mod inputs;
 mod lock;
@@ -28,13 +29,13 @@ fn judge(arguments: &Arguments) -> Result<u8, Failure> {
     accept::check(arguments)?;
     outputs::check(arguments)?;
     if cli::is_same_file(&arguments.reference, &arguments.test) {
-        arguments.common.warn("REFERENCE and TEST are one file: nothing is tested");
+        arguments.common.warn("REFERENCE and TEST are one file, so that nothing is tested");
     }
     let settings = arguments.settings()?;
     if settings.judges_by_flip_alone() {
         return Err(Failure::usage(
-            "--max-flip: a mean of what is seen misses single bright pixels and a small bias of the whole picture; give \
-             another limit beside it, such as --max-bias or --max-outliers",
+            "--max-flip: the mean of FLIP misses single bright pixels and a small bias of the whole picture; give another \
+             limit beside it, such as --max-bias or --max-outliers",
         ));
     }
     let _lock = accept::lock(arguments)?;
@@ -42,7 +43,12 @@ fn judge(arguments: &Arguments) -> Result<u8, Failure> {
     let (reference, test) = (&old.image, &new.image);
     let report = arguments.common.in_pool(|| compare(reference, test, &settings))?.map_err(|mismatch| {
         let (test, reference) = (arguments.test.display(), arguments.reference.display());
-        Failure::usage(format!("{test}: {mismatch} (the reference is {reference})"))
+        let way_out = match mismatch {
+            Mismatch::Inputs { .. } => "; give --ignore-meta to compare all the same",
+            Mismatch::NoLayer { .. } => "; choose one of them with --layer, or in the limits file",
+            _ => "",
+        };
+        Failure::usage(format!("{test}: {mismatch}{way_out} (the reference is {reference})"))
     })?;
     let name = arguments.test.file_name().unwrap_or_default().to_string_lossy();
     let verdict = report.verdict(&name);
@@ -53,8 +59,8 @@ fn judge(arguments: &Arguments) -> Result<u8, Failure> {
         cli::print(&report.table())?;
     }
     cli::print(&verdict)?;
-    if let Some(done) = &accepted {
-        cli::print(done)?;
+    if let Some(words) = &accepted {
+        cli::print(words)?;
     }
     Ok(if report.pass || accepted.is_some() { 0 } else { 1 })
 }

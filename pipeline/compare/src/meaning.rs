@@ -1,43 +1,43 @@
-//! What of the header gives the numbers of the channels their meaning: equal numbers of other primaries, or of pixels of
-//! another shape, are another picture.
+//! The attributes of a header that give the numbers of the channels their meaning: equal numbers with other primaries, or of
+//! pixels of another shape, are another picture.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use formats::image::{Attribute, Image, Window};
 use serde::{Deserialize, Serialize};
 
-/// An attribute of the header, and what is done where the images disagree about it.
+/// An attribute of the header, and the consequence if the images disagree about it.
 struct Rule {
     name: &'static str,
-    /// What its absence means by the standard, in the words of [`words`]; `None` where that is not known.
+    /// The meaning of its absence by the OpenEXR standard, in the words of [`words`], or `None` if the standard has none.
     absent: Option<&'static str>,
-    /// Most difference of two of its numbers that are the same.
+    /// The largest difference of two numbers that count as equal.
     tolerance: f64,
     judgement: Judgement,
 }
 
 enum Judgement {
-    /// The images cannot be compared; what to do then.
+    /// The images cannot be compared, but this can be done.
     Refused(&'static str),
-    /// It says from where the picture was taken. What changes by that is seen in the pixels, so it is told only.
-    Told,
+    /// The attribute holds the position of the camera. A change of it shows in the pixels, so it is only reported.
+    Reported,
 }
 
-use Judgement::{Refused, Told};
+use Judgement::{Refused, Reported};
 
-/// Writers round primaries to three or four digits.
+/// The tolerance for primaries, which programs round to three or four digits.
 const ROUNDED: f64 = 5e-4;
 const EXACT: f64 = 0.0;
-/// Rounding of a matrix that was multiplied in float32.
+/// The tolerance for the rounding of a matrix that was multiplied in float32.
 const MATRIX: f64 = 1e-5;
 
 const RENDER: &str = "write both with one setting of the renderer";
-/// The display window is no attribute of an image in memory.
+/// The display window, which is a field of an image in memory and not an attribute.
 const DISPLAY: &str = "displayWindow";
 const AS_DATA: &str = "the data window";
 
-/// Every attribute that is looked at; others describe how the file was made or is to be shown, and are not. The data window
-/// is looked at elsewhere. In order of name.
+/// The attributes that are compared, by name. Others describe how the file was made or is to be shown. The data window is
+/// compared in `structure.rs`.
 #[rustfmt::skip]
 const RULES: [Rule; 13] = [
     Rule { name: "acesImageContainerFlag", absent: None, tolerance: EXACT, judgement: Refused("convert one of them") },
@@ -53,20 +53,20 @@ const RULES: [Rule; 13] = [
     Rule { name: "screenWindowWidth", absent: Some("1"), tolerance: 1e-6, judgement: Refused(RENDER) },
     Rule { name: "view", absent: None, tolerance: EXACT, judgement: Refused("compare images of one view") },
     Rule { name: "whiteLuminance", absent: None, tolerance: 1e-3, judgement: Refused("scale one of them") },
-    Rule { name: "worldToCamera", absent: None, tolerance: MATRIX, judgement: Told },
+    Rule { name: "worldToCamera", absent: None, tolerance: MATRIX, judgement: Reported },
 ];
 
-/// What a header says beyond the usual, by name; what is as it would be without the attribute is not in it.
+/// The attributes with their values, by name, except those whose value is the meaning of their absence.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub(crate) struct Meaning(BTreeMap<String, String>);
 
-/// Two meanings.
+/// An attribute about which two headers disagree.
 pub(crate) struct Difference {
     pub name: &'static str,
     pub reference: String,
     pub test: String,
-    /// What to do about it.
+    /// What can be done.
     pub way_out: &'static str,
 }
 
@@ -83,9 +83,9 @@ impl Meaning {
         Meaning(found.collect())
     }
 
-    /// What images are judged by alone, to be kept.
+    /// The attributes that decide whether images can be compared.
     pub(crate) fn judged(mut self) -> Meaning {
-        RULES.iter().filter(|rule| matches!(rule.judgement, Told)).for_each(|rule| drop(self.0.remove(rule.name)));
+        RULES.iter().filter(|rule| matches!(rule.judgement, Reported)).for_each(|rule| drop(self.0.remove(rule.name)));
         self
     }
 
@@ -93,7 +93,7 @@ impl Meaning {
         self.0.is_empty()
     }
 
-    /// The first that makes the two incomparable.
+    /// The first attribute by which the two cannot be compared.
     pub(crate) fn difference(&self, reference: &Meaning) -> Option<Difference> {
         RULES.iter().find_map(|rule| {
             let Refused(way_out) = rule.judgement else { return None };
@@ -103,17 +103,17 @@ impl Meaning {
         })
     }
 
-    /// What a reader should know besides: what is not judged, and what one header alone says.
+    /// What else a reader should know: attributes that differ but are not judged, and those that one header alone has.
     pub(crate) fn notes(&self, reference: &Meaning) -> Vec<String> {
         let note = |rule: &Rule| match [reference, self].map(|meaning| meaning.value(rule)) {
             [Some(_), None] => {
-                Some(format!("{} is in the reference only: another one would not be noticed", rule.name))
+                Some(format!("{} is in the reference only, so that another value would not be noticed", rule.name))
             }
             [None, Some(_)] => {
-                Some(format!("{} is in the test image only: another one would not be noticed", rule.name))
+                Some(format!("{} is in the test image only, so that another value would not be noticed", rule.name))
             }
             [Some(reference), Some(test)] if !rule.agree(&reference, &test) => {
-                Some(format!("{} differs and is not judged: the pictures are taken from different places", rule.name))
+                Some(format!("{} differs and is not judged: the cameras stand at different places", rule.name))
             }
             _ => None,
         };
@@ -126,7 +126,7 @@ impl Meaning {
 }
 
 impl Rule {
-    /// Numbers by the tolerance, all else by the letter.
+    /// Whether two values are equal. Numbers may differ by the tolerance.
     fn agree(&self, one: &str, other: &str) -> bool {
         let numbers =
             |text: &str| text.split(", ").map(|number| number.parse::<f64>().ok()).collect::<Option<Vec<_>>>();
@@ -141,14 +141,14 @@ impl Rule {
     }
 }
 
-/// Attributes that an image computed from this one keeps, because its numbers have their meaning by them.
+/// The attributes that an image computed from this one keeps, because they give its numbers their meaning.
 pub(crate) fn kept(image: &Image) -> BTreeMap<String, Attribute> {
     let names: BTreeSet<&str> = RULES.iter().map(|rule| rule.name).collect();
     let kept = image.attributes.iter().filter(|(name, _)| names.contains(name.as_str()));
     kept.map(|(name, value)| (name.clone(), value.clone())).collect()
 }
 
-/// The value of an attribute; where parts of a file disagree, the values of all.
+/// The value of an attribute, or the values of all parts if the parts of a file disagree.
 fn of_all_parts(image: &Image, name: &str) -> Option<String> {
     let of_part = format!("{name} of part ");
     let others = image.attributes.iter().filter(|(other, _)| other.starts_with(&of_part));
@@ -160,7 +160,7 @@ fn window(Window { position: [x, y], size: [width, height] }: Window) -> String 
     format!("{width} x {height} pixels at [{x}, {y}]")
 }
 
-/// A value of the header in words.
+/// The value of an attribute in words.
 pub(crate) fn words(value: &Attribute) -> String {
     let list = |numbers: &[f32]| numbers.iter().map(f32::to_string).collect::<Vec<_>>().join(", ");
     match value {
@@ -210,7 +210,7 @@ mod tests {
         assert!(Meaning::of(&usual).is_usual());
     }
 
-    /// Planted and caught: each row of the table left out.
+    /// Seen to catch: each row of the table left out.
     #[test]
     fn every_attribute_of_the_table_is_looked_at() {
         let other = |kind: &str, value: &[u8]| Attribute::Other { kind: kind.to_owned(), value: value.to_vec() };

@@ -1,4 +1,4 @@
-//! The files that `compare` writes: only those asked for, each whole, and none over an input.
+//! Writes the files that were asked for, each one whole and none over an input.
 
 use cli::{Failure, Files};
 use compare::heatmap::heatmap;
@@ -9,11 +9,11 @@ use serde::Serialize;
 
 use crate::arguments::Arguments;
 
-/// The report with the names of its files.
+/// A report with its inputs and its verdict.
 #[derive(Serialize)]
-struct Document<'a> {
+pub(crate) struct Document<'a, R> {
     #[serde(flatten)]
-    report: &'a Report,
+    report: &'a R,
     reference: String,
     test: String,
     verdict: &'a str,
@@ -39,7 +39,7 @@ pub(crate) fn check(arguments: &Arguments) -> Result<(), Failure> {
         .try_for_each(|(what, path)| files.writes(what, path))
 }
 
-/// Writes what was asked for, whatever the verdict.
+/// Writes the outputs that were asked for, whatever the verdict.
 pub(crate) fn write(
     arguments: &Arguments,
     settings: &Settings,
@@ -47,14 +47,15 @@ pub(crate) fn write(
     report: &Report,
     verdict: &str,
 ) -> Result<(), Failure> {
-    // First, so that nothing is written if there is none.
+    // The difference comes first, so that nothing is written if there is none.
     let difference = arguments.diff_exr.is_some().then(|| difference(reference, test));
     let path = arguments.diff_exr.as_deref().unwrap_or(&arguments.test).display();
-    let difference = difference.transpose().map_err(|error| Failure::numerical(format!("{path}: {error}")))?;
+    let difference =
+        difference.transpose().map_err(|error| Failure::numerical(format!("{path}: {error}; leave out --diff-exr")))?;
     let mut group = Group::default();
-    let document = document(arguments, report, verdict);
+    let document = Document::new(arguments, report, verdict);
     if let Some(path) = &arguments.json {
-        group.write(path, (serde_json::to_string_pretty(&document)? + "\n").as_bytes())?;
+        group.write(path, &document.json()?)?;
     }
     if let Some(path) = &arguments.html {
         let page = arguments.common.in_pool(|| html::page(&document, report, reference, test))??;
@@ -73,11 +74,18 @@ pub(crate) fn write(
     Ok(group.commit()?)
 }
 
-fn document<'a>(arguments: &Arguments, report: &'a Report, verdict: &'a str) -> Document<'a> {
-    Document {
-        report,
-        reference: arguments.reference.display().to_string(),
-        test: arguments.test.display().to_string(),
-        verdict: verdict.trim_end(),
+impl<'a, R: Serialize> Document<'a, R> {
+    pub(crate) fn new(arguments: &Arguments, report: &'a R, verdict: &'a str) -> Document<'a, R> {
+        Document {
+            report,
+            reference: arguments.reference.display().to_string(),
+            test: arguments.test.display().to_string(),
+            verdict: verdict.trim_end(),
+        }
+    }
+
+    /// The text of the JSON file.
+    pub(crate) fn json(&self) -> serde_json::Result<Vec<u8>> {
+        Ok((serde_json::to_string_pretty(self)? + "\n").into_bytes())
     }
 }

@@ -1,4 +1,4 @@
-//! What was measured, as a table for people and as JSON for programs.
+//! The report: what was measured and judged, as a table for people and as JSON for programs.
 
 use std::fmt::Write;
 
@@ -8,40 +8,40 @@ use serde::Serialize;
 
 use crate::gate::Judgement;
 use crate::layer::Layer;
-use crate::metric::{EPSILON, Metrics, PictureMetrics, measure_each};
+use crate::metric::{CHANNEL_METRICS, EPSILON, Metrics, PictureMetrics, measure_each};
 use crate::structure::Input;
 
-/// Changes only when a key of the JSON report changes its meaning or goes.
+/// The version of the keys, which changes only when a key of the JSON report changes its meaning or is removed.
 const SCHEMA: u32 = 1;
-/// Layers that are not judged that the verdict names; the report has all.
+/// The verdict names so many of the layers that are not judged; the report has all.
 const NAMED: usize = 12;
 
-/// Everything that was measured and judged. Numbers that are not finite become `null` in JSON.
+/// Everything that was measured and judged. Numbers that are not finite are `null` in JSON.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Version of the keys.
+    /// The version of the keys.
     pub schema: u32,
-    /// Pixels per row.
+    /// The number of pixels in a row.
     pub width: usize,
-    /// Rows.
+    /// The number of rows.
     pub height: usize,
-    /// What is added to the squared reference in relMSE.
+    /// The number that is added to the squared reference in relMSE.
     pub relmse_epsilon: f64,
-    /// Whether both images were made from the same inputs, as far as they tell.
+    /// What both headers say of the inputs that the images were made from.
     pub inputs: Vec<Input>,
-    /// NaN and infinity in all channels.
+    /// The number of samples that are not finite, in all channels.
     pub nonfinite: NonFinite,
-    /// The beauty layer first, then by name.
+    /// The layers: beauty first, then by name.
     pub layers: Vec<LayerReport>,
-    /// The beauty layer as it is seen.
+    /// The metrics of the picture.
     pub picture: PictureMetrics,
-    /// Every gate, in the order of the options, on every layer that it looks at.
+    /// The judgements of every gate, in the order of the options, on every layer that it judges.
     pub gates: Vec<Judgement>,
-    /// Layers that the verdict speaks of.
+    /// The layers that the verdict speaks of.
     pub judged: Vec<String>,
-    /// Layers that differ and that no gate looks at.
+    /// The layers that differ and that no gate judges.
     pub unjudged: Vec<String>,
-    /// What a reader should know of the headers besides, in words.
+    /// What else a reader should know of the headers, in words.
     pub notes: Vec<String>,
     /// Whether every gate passed.
     pub pass: bool,
@@ -50,38 +50,38 @@ pub struct Report {
 /// Samples that are NaN or infinite.
 #[derive(Clone, Debug, Serialize)]
 pub struct NonFinite {
-    /// Whether they are let pass.
+    /// Whether they may pass.
     pub allowed: bool,
-    /// In the reference.
+    /// Their number in the reference.
     pub reference: u64,
-    /// In the test image.
+    /// Their number in the test image.
     pub test: u64,
 }
 
-/// A layer, all its channels together and each alone.
+/// A layer: all its channels together, and each alone.
 #[derive(Clone, Debug, Serialize)]
 pub struct LayerReport {
     /// Its name.
     pub name: String,
-    /// Over the samples of all its channels.
+    /// The metrics over the samples of all its channels.
     #[serde(flatten)]
     pub metrics: Metrics,
-    /// Each channel alone.
+    /// The metrics of each channel.
     pub channels: Vec<ChannelReport>,
 }
 
 /// A channel.
 #[derive(Clone, Debug, Serialize)]
 pub struct ChannelReport {
-    /// Its name without the layer.
+    /// Its name without that of the layer.
     pub name: String,
-    /// Over its samples.
+    /// The metrics over its samples.
     #[serde(flatten)]
     pub metrics: Metrics,
 }
 
-/// All metrics; nothing judged yet.
-pub(crate) fn measure(image: &Image, layers: &[Layer<'_>]) -> Report {
+/// A report with all metrics, in which nothing is judged.
+pub(crate) fn measure(image: &Image, layers: &[Layer<'_>], picture: PictureMetrics) -> Report {
     let measure = |layer: &Layer<'_>| {
         let (metrics, each) = measure_each(&layer.samples(), image.width, image.window);
         let channels = layer.channels.iter().zip(each);
@@ -102,7 +102,7 @@ pub(crate) fn measure(image: &Image, layers: &[Layer<'_>]) -> Report {
             test: count(|metrics| metrics.nonfinite_test),
         },
         layers,
-        picture: PictureMetrics::default(),
+        picture,
         gates: Vec::new(),
         judged: Vec::new(),
         unjudged: Vec::new(),
@@ -112,20 +112,21 @@ pub(crate) fn measure(image: &Image, layers: &[Layer<'_>]) -> Report {
 }
 
 impl Report {
-    /// The largest value among the channels of a layer, and whose it is. One that is no number is largest.
-    pub(crate) fn worst_channel(&self, layer: &str, metric: fn(&Metrics) -> f64) -> (f64, Option<String>) {
+    /// The largest absolute value of a metric among the channels of a layer, and the channel. NaN is the largest.
+    pub(crate) fn worst_channel(&self, layer: &str, key: &str) -> (f64, Option<String>) {
         let channels = self.layers.iter().filter(|found| found.name == layer).flat_map(|found| &found.channels);
-        channels.map(|channel| (metric(&channel.metrics).abs(), Some(channel.name.clone()))).fold(
+        channels.map(|channel| (channel.metrics.get(key).abs(), Some(channel.name.clone()))).fold(
             (0.0, None),
             |worst, found| if worst.1.is_none() || found.0.total_cmp(&worst.0).is_gt() { found } else { worst },
         )
     }
 
-    /// A line per layer; the channels too of those that the verdict speaks of.
+    /// The table, with a line for each layer and for each channel of the layers that the verdict speaks of.
     pub fn table(&self) -> String {
+        let headings: String = CHANNEL_METRICS.iter().map(|metric| format!("{:>11}", metric.heading)).collect();
         let mut table = format!(
-            "{:<14}{:>11}{:>11}{:>11}{:>11}{:>11}{:>11}{:>11}{:>11}  at, reference -> test\n",
-            "layer", "mean ref", "mean test", "bias", "MAE", "RMSE", "relMSE", "p99", "max"
+            "{:<14}{:>11}{:>11}{headings}{:>11}{:>11}  at, reference -> test\n",
+            "layer", "mean ref", "mean test", "p99", "max"
         );
         for layer in &self.layers {
             line(&mut table, &printable(&layer.name), &layer.metrics);
@@ -136,7 +137,7 @@ impl Report {
             }
         }
         let NonFinite { reference, test, .. } = &self.nonfinite;
-        // Writing to a string cannot fail, here and below.
+        // Writing to a string cannot fail.
         let _ = writeln!(table, "not finite: {reference} samples of the reference, {test} of the test image");
         let _ = writeln!(table, "relMSE = mean of (test - reference)^2 / (reference^2 + {EPSILON})");
         table.push_str(&self.picture.lines());
@@ -152,28 +153,28 @@ impl Report {
         table
     }
 
-    /// One line: `PASS name relmse=... bias=...`, of the worst channel, or `FAIL gate value > limit`. If layers differ that
-    /// no gate looks at, it says which after the numbers.
+    /// One line: `PASS name relmse=... bias=...` with the values of the worst channel, or `FAIL gate value > limit`. Layers that
+    /// differ and that no gate judges are named at its end.
     pub fn verdict(&self, name: &str) -> String {
         let failed: Vec<String> = self.gates.iter().filter(|gate| !gate.ok).map(failure).collect();
         if !failed.is_empty() {
             return format!("FAIL {}\n", failed.join("; "));
         }
         let judged = || self.layers.iter().filter(|layer| self.judged.contains(&layer.name));
-        let worst = |metric: fn(&Metrics) -> f64| {
-            let values = judged().flat_map(|layer| &layer.channels).map(|channel| metric(&channel.metrics));
+        let worst = |key: &str| {
+            let values = judged().flat_map(|layer| &layer.channels).map(|channel| channel.metrics.get(key));
             values.max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
         };
         format!(
             "PASS {} relmse={:.3e} bias={:+.3e}{}\n",
             printable(name),
-            worst(|metrics| metrics.relmse),
-            worst(|metrics| metrics.bias),
+            worst("relmse"),
+            worst("bias"),
             self.not_judged()
         )
     }
 
-    /// The layers that differ and that no gate looks at, as the end of a verdict.
+    /// The end of a verdict that names the layers that differ and that no gate judges.
     fn not_judged(&self) -> String {
         let named: Vec<_> = self.unjudged.iter().take(NAMED).map(|name| printable(name)).collect();
         match self.unjudged.len().saturating_sub(NAMED) {
@@ -185,11 +186,17 @@ impl Report {
 }
 
 fn line(table: &mut String, name: &str, metrics: &Metrics) {
-    let Metrics { mean_reference, mean_test, bias, mae, rmse, relmse, p99, max, .. } = metrics;
+    let Metrics { mean_reference, mean_test, p99, max, .. } = metrics;
+    let values: String = CHANNEL_METRICS
+        .iter()
+        .map(|metric| match (metric.signed, metrics.get(metric.key)) {
+            (true, value) => format!("{value:>+11.2e}"),
+            (false, value) => format!("{value:>11.3e}"),
+        })
+        .collect();
     let _ = writeln!(
         table,
-        "{name:<14}{mean_reference:>11.3e}{mean_test:>11.3e}{bias:>+11.2e}{mae:>11.3e}{rmse:>11.3e}{relmse:>11.3e}\
-         {p99:>11.3e}{:>11.3e}  {},{} {} -> {}",
+        "{name:<14}{mean_reference:>11.3e}{mean_test:>11.3e}{values}{p99:>11.3e}{:>11.3e}  {},{} {} -> {}",
         max.error,
         max.pixel[0],
         max.pixel[1],
@@ -200,25 +207,25 @@ fn line(table: &mut String, name: &str, metrics: &Metrics) {
 
 fn failure(gate: &Judgement) -> String {
     let layer = printable(&gate.layer);
-    let place = match &gate.channel {
+    let whose = match &gate.channel {
         Some(channel) => format!("{layer} {}", printable(channel)),
         None => layer.into_owned(),
     };
-    format!("{} {} > {} ({place})", gate.gate, number(gate.value), number(gate.limit))
+    format!("{} {} > {} ({whose})", gate.gate, number(gate.value), number(gate.limit))
 }
 
-/// All digits, so that a value beyond a limit never looks equal to it.
+/// A number with all its digits, so that a value beyond a limit never looks equal to the limit.
 fn number(value: f64) -> String {
     if is_plain(value) { format!("{value}") } else { format!("{value:e}") }
 }
 
-/// A value of an image, with the digits of float32.
+/// A sample of an image with the digits of float32.
 fn sample(value: f64) -> String {
     let short = value as f32;
     if is_plain(value) { format!("{short}") } else { format!("{short:e}") }
 }
 
-/// Whether a number is short without an exponent.
+/// Whether a number is written without an exponent.
 fn is_plain(value: f64) -> bool {
     value == 0.0 || (1e-4..1e15).contains(&value.abs())
 }

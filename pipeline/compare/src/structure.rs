@@ -1,6 +1,4 @@
-//! Whether two images can be compared at all.
-
-use std::collections::BTreeSet;
+//! Whether two images can be compared.
 
 use formats::image::Image;
 use serde::Serialize;
@@ -8,13 +6,13 @@ use serde::Serialize;
 use crate::layer::Layer;
 use crate::meaning::{Difference, Meaning, words};
 
-/// Hashes that say what an image was made of.
+/// The attributes that hold hashes of what an image was made from.
 const HASHES: [&str; 2] = ["pcsss/cloud", "pcsss/scene"];
 
-/// What one of the hashes says of both images.
+/// One of the hashes in both headers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Input {
-    /// The attribute.
+    /// The name of the attribute.
     pub name: &'static str,
     /// Its value in the reference, if it has one.
     pub reference: Option<String>,
@@ -23,79 +21,85 @@ pub struct Input {
 }
 
 impl Input {
-    /// What a reader should know: nothing if both images have the same value, or none.
+    /// What a reader should know, unless both images have the same value or none.
     pub(crate) fn note(&self) -> Option<String> {
         let Input { name, reference, test } = self;
         match (reference, test) {
             (Some(reference), Some(test)) if reference != test => {
                 Some(format!("{name} differs and is ignored: {reference} in the reference, {test} in the test image"))
             }
-            (Some(_), None) => Some(format!("{name} is in the reference only: other inputs would not be noticed")),
-            (None, Some(_)) => Some(format!("{name} is in the test image only: other inputs would not be noticed")),
+            (Some(_), None) => {
+                Some(format!("{name} is in the reference only, so that other inputs would not be noticed"))
+            }
+            (None, Some(_)) => {
+                Some(format!("{name} is in the test image only, so that other inputs would not be noticed"))
+            }
             (Some(_), Some(_)) | (None, None) => None,
         }
     }
 }
 
-/// Why two images cannot be compared; said of the test image.
+/// Why two images cannot be compared. The messages are about the test image.
 #[derive(Debug, PartialEq, thiserror::Error)]
 pub enum Mismatch {
-    /// Different resolution.
-    #[error("{} x {} pixels, but the reference has {} x {}; render both at one size", test[0], test[1], reference[0], reference[1])]
+    /// The images have different resolutions.
+    #[error("the image has {} x {} pixels, but the reference has {} x {}; render both at one size", test[0], test[1], reference[0], reference[1])]
     Size {
-        /// Width and height, pixels.
+        /// Width and height in pixels.
         reference: [usize; 2],
-        /// Width and height, pixels.
+        /// Width and height in pixels.
         test: [usize; 2],
     },
-    /// Different part of the picture.
-    #[error("data window starts at {test:?}, but that of the reference at {reference:?}; render both without cropping")]
+    /// The images show different parts of the picture.
+    #[error(
+        "the data window starts at {test:?}, but that of the reference at {reference:?}; render both without cropping"
+    )]
     Window {
-        /// Top left pixel.
+        /// The top left pixel.
         reference: [i32; 2],
-        /// Top left pixel.
+        /// The top left pixel.
         test: [i32; 2],
     },
-    /// Different channels.
+    /// The images have different channels.
     #[error(
-        "other channels than the reference (missing: {missing}; additional: {additional}); write both with one version of the renderer"
+        "the image has other channels than the reference (missing: {missing}; additional: {additional}); write both with one version of the renderer"
     )]
     Channels {
-        /// Only in the reference.
+        /// The channels of the reference only.
         missing: String,
-        /// Only in the test image.
+        /// The channels of the test image only.
         additional: String,
     },
-    /// The same numbers would mean another picture.
-    #[error("{name} is {test}, but {reference} in the reference, so that equal numbers are not the same; {way_out}")]
+    /// The same numbers mean different pictures.
+    #[error(
+        "{name} is {test}, but {reference} in the reference, so that equal numbers do not mean the same; {way_out}"
+    )]
     Meaning {
-        /// The attribute of the header.
+        /// The name of the attribute.
         name: &'static str,
-        /// What it says, or means by its absence.
+        /// Its value, or the meaning of its absence.
         reference: String,
-        /// What it says, or means by its absence.
+        /// Its value, or the meaning of its absence.
         test: String,
-        /// What to do about it.
+        /// What can be done.
         way_out: &'static str,
     },
-    /// Different inputs.
-    #[error(
-        "made from other inputs ({name} is {test}, but {reference} in the reference); give --ignore-meta to compare all the same"
-    )]
+    /// The images were made from different inputs.
+    #[error("the image was made from other inputs ({name} is {test}, but {reference} in the reference)")]
     Inputs {
-        /// The attribute that differs.
+        /// The name of the attribute that differs.
         name: &'static str,
         /// Its value.
         reference: String,
         /// Its value.
         test: String,
     },
-    /// The gates have nothing to look at.
-    #[error("no layer `{name}`; it has {present}; choose with --layer, or in the limits file")]
+    /// The layer that a gate judges does not exist.
+    #[error("there is no layer `{name}`; there are {present}")]
     NoLayer {
-        /// The layer asked for.
+        /// The layer that was asked for.
         name: String,
-        /// Layers of both images.
+        /// The layers of both images.
         present: String,
     },
 }
@@ -107,25 +111,53 @@ impl Mismatch {
     }
 }
 
-/// What the hashes say, if the images can be compared.
+/// What two images must have in common.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Structure {
+    /// Width and height in pixels.
+    pub size: [usize; 2],
+    /// The top left pixel.
+    pub window: [i32; 2],
+    /// The names of the channels in alphabetical order.
+    pub channels: Vec<String>,
+    pub meaning: Meaning,
+}
+
+impl Structure {
+    pub(crate) fn of(image: &Image) -> Structure {
+        let mut channels: Vec<String> = image.channels.iter().map(|channel| channel.name.clone()).collect();
+        channels.sort();
+        let (size, meaning) = ([image.width, image.height], Meaning::of(image).judged());
+        Structure { size, window: image.window, channels, meaning }
+    }
+
+    /// Checks whether an image of this structure can be compared with a reference.
+    pub(crate) fn check(&self, reference: &Structure) -> Result<(), Mismatch> {
+        if self.size != reference.size {
+            return Err(Mismatch::Size { reference: reference.size, test: self.size });
+        }
+        if self.window != reference.window {
+            return Err(Mismatch::Window { reference: reference.window, test: self.window });
+        }
+        if self.channels != reference.channels {
+            let only = |names: &[String], others: &[String]| {
+                names.iter().filter(|name| !others.contains(name)).map(String::as_str).collect::<Vec<_>>().join(" ")
+            };
+            let missing = only(&reference.channels, &self.channels);
+            return Err(Mismatch::Channels { missing, additional: only(&self.channels, &reference.channels) });
+        }
+        match self.meaning.difference(&reference.meaning) {
+            Some(Difference { name, reference, test, way_out }) => {
+                Err(Mismatch::Meaning { name, reference, test, way_out })
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// Checks whether two images can be compared, and returns what the hashes say.
 pub(crate) fn check(reference: &Image, test: &Image, ignore_meta: bool) -> Result<Vec<Input>, Mismatch> {
-    let sizes = [[reference.width, reference.height], [test.width, test.height]];
-    if sizes[0] != sizes[1] {
-        return Err(Mismatch::Size { reference: sizes[0], test: sizes[1] });
-    }
-    if reference.window != test.window {
-        return Err(Mismatch::Window { reference: reference.window, test: test.window });
-    }
-    let names = |image: &Image| image.channels.iter().map(|channel| channel.name.clone()).collect::<BTreeSet<_>>();
-    let (expected, found) = (names(reference), names(test));
-    if expected != found {
-        let list = |names: Vec<&String>| names.into_iter().map(String::as_str).collect::<Vec<_>>().join(" ");
-        let missing = list(expected.difference(&found).collect());
-        return Err(Mismatch::Channels { missing, additional: list(found.difference(&expected).collect()) });
-    }
-    if let Some(Difference { name, reference, test, way_out }) = Meaning::of(test).difference(&Meaning::of(reference)) {
-        return Err(Mismatch::Meaning { name, reference, test, way_out });
-    }
+    Structure::of(test).check(&Structure::of(reference))?;
     let inputs = HASHES.map(|name| {
         let value = |image: &Image| image.attributes.get(name).map(words);
         Input { name, reference: value(reference), test: value(test) }
@@ -136,12 +168,10 @@ pub(crate) fn check(reference: &Image, test: &Image, ignore_meta: bool) -> Resul
     Ok(inputs.into())
 }
 
-/// An image without the hash, as of another renderer, can be compared with any.
-fn check_input(input: &Input) -> Result<(), Mismatch> {
-    match (input.name, &input.reference, &input.test) {
-        (name, Some(reference), Some(test)) if reference != test => {
-            Err(Mismatch::Inputs { name, reference: reference.clone(), test: test.clone() })
-        }
+/// An image without the hash, such as one of another renderer, can be compared with any other.
+fn check_input(Input { name, reference, test }: &Input) -> Result<(), Mismatch> {
+    match (reference.clone(), test.clone()) {
+        (Some(reference), Some(test)) if reference != test => Err(Mismatch::Inputs { name, reference, test }),
         _ => Ok(()),
     }
 }

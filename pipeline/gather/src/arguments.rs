@@ -12,12 +12,12 @@ use std::path::PathBuf;
 #[command(version, override_usage = "gather [OPTIONS] CLOUD... SCENE --output IMAGE.exr")]
 pub struct Arguments {
     /// Clouds of sample-surface: one, or shards and seeds of one scene, which are gathered as one whatever their order;
-    /// and last the scene that they were sampled from (with --list-cameras or --list-materials it alone)
+    /// and last the scene that they were sampled from (with --list-cameras, --list-files or --list-materials it alone)
     #[arg(value_name = "CLOUD... SCENE", value_parser = file_name())]
     pub files: Vec<PathBuf>,
     /// OpenEXR image to write
     #[arg(short, long, value_name = "IMAGE.exr", value_parser = file_name(),
-        required_unless_present_any = ["list_cameras", "list_materials", "list_media"])]
+        required_unless_present_any = ["list_cameras", "list_files", "list_materials", "list_media"])]
     pub output: Option<PathBuf>,
     /// Camera of SCENE by its name, its node's, or its index; index:N where a name may be taken for it [default: the first]
     #[arg(long, value_name = "NAME|INDEX")]
@@ -92,6 +92,12 @@ pub struct Arguments {
     /// Print the built-in media
     #[arg(long)]
     pub list_media: bool,
+    /// Print the paths of the files that SCENE consists of, itself first
+    #[arg(long)]
+    pub list_files: bool,
+    /// Print the paths of the images that --output becomes with this --view or --orbit
+    #[arg(long)]
+    pub list_images: bool,
     #[command(flatten)]
     pub common: Common,
 }

@@ -7,7 +7,7 @@ use crate::{
 use cli::Failure;
 use gather::Settings;
 use glam::{DMat3, DVec3};
-use scene::Camera;
+use scene::{Camera, View, ViewFile};
 use std::{
     ffi::OsString,
     path::{Path, PathBuf},
@@ -37,14 +37,14 @@ pub fn shots(
             let shot = |index: u32| {
                 let degrees = 360.0 * f64::from(index) / f64::from(count);
                 let camera = turned(&chosen.camera, chosen.target, degrees);
-                let tag = arguments.orbit.map(|_| format!("{index:04}"));
+                let tag = arguments.orbit.map(|_| view_tag(None, index as usize));
                 Shot { camera, settings: settings.clone(), degrees, argument: chosen.argument.clone(), tag }
             };
             Ok((0..count).map(shot).collect())
         }
         Cameras::List(list) => {
             let shot = |(index, (name, chosen)): (usize, &(Option<String>, Chosen))| {
-                let tag = name.clone().unwrap_or_else(|| format!("{index:04}"));
+                let tag = view_tag(name.as_deref(), index);
                 let settings = settings(chosen).map_err(|e| e.within(place(&tag)))?;
                 let (camera, argument) = (chosen.camera.clone(), chosen.argument.clone());
                 Ok(Shot { camera, settings, degrees: 0.0, argument, tag: Some(tag) })
@@ -52,6 +52,29 @@ pub fn shots(
             list.iter().enumerate().map(shot).collect()
         }
     }
+}
+
+/// The files of the images that `output` becomes, in their order.
+pub fn image_paths(arguments: &Arguments, output: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let tags: Vec<String> = match (arguments.orbit, &arguments.view) {
+        (Some(count), _) => (0..count as usize).map(|index| view_tag(None, index)).collect(),
+        (None, Some(path)) => match View::read(path)? {
+            ViewFile::One(_) => Vec::new(),
+            ViewFile::List(views) => {
+                views.iter().enumerate().map(|(index, (view, _))| view_tag(view.name.as_deref(), index)).collect()
+            }
+        },
+        (None, None) => Vec::new(),
+    };
+    if tags.is_empty() {
+        return Ok(vec![output.to_owned()]);
+    }
+    Ok(tags.iter().map(|tag| tagged(output, tag)).collect())
+}
+
+/// What the files of a view have before their ending: its name, or else its place in the list.
+fn view_tag(name: Option<&str>, index: usize) -> String {
+    name.map_or_else(|| format!("{index:04}"), str::to_owned)
 }
 
 /// Says once if images have other proportions than their cameras ask for.

@@ -4,7 +4,7 @@ use crate::{arguments::Arguments, image_jobs::Shot};
 use cli::{Failure, Files, is_file};
 use formats::cloud::Cloud;
 use gather::shards::{self, JoinError};
-use scene::{MeshDefects, Scene, light::Environment};
+use scene::{MeshDefects, Scene};
 use std::{
     num::NonZeroUsize,
     path::{Path, PathBuf},
@@ -19,7 +19,7 @@ pub fn paths(arguments: &Arguments) -> Result<(&[PathBuf], &Path), Failure> {
 }
 
 /// Reads SCENE; says so if it was left out after several clouds.
-pub fn import(arguments: &Arguments, scene_path: &Path) -> Result<(Scene, Environment), Failure> {
+pub fn import(arguments: &Arguments, scene_path: &Path) -> Result<Scene, Failure> {
     arguments.scene_args.import(scene_path, &arguments.common).map_err(|failure| match Cloud::open(scene_path) {
         Ok(_) => Failure::usage(format!("{}: this is a cloud; give SCENE after all clouds", scene_path.display())),
         Err(_) => failure,
@@ -95,12 +95,7 @@ impl CloudFiles {
     }
 
     /// Refuses clouds that were sampled from something else, and says what differs.
-    pub fn check_fit(
-        &self,
-        (scene, environment): (&Scene, &Environment),
-        scene_path: &Path,
-        arguments: &Arguments,
-    ) -> Result<(), Failure> {
+    pub fn check_fit(&self, scene: &Scene, scene_path: &Path, arguments: &Arguments) -> Result<(), Failure> {
         // The others are as the first.
         let (meta, cloud_path) = (self.clouds[0].meta(), &self.paths[0]);
         let (here, there) = (arguments.scene_args.metres_per_unit, meta.options.metres_per_unit);
@@ -120,10 +115,10 @@ impl CloudFiles {
             .any(|m| scene.materials.get(m.index as usize).is_none_or(|own| own.name != m.name))
         {
             "its materials differ".into()
-        } else if scene.light_digest != meta.lights {
+        } else if scene.light_digest() != meta.lights {
             "its lights differ".into()
-        } else if environment.identity() != meta.options.environment {
-            format!("--environment is {}, the cloud's {}", environment.identity(), meta.options.environment)
+        } else if scene.environment.identity() != meta.options.environment {
+            format!("--environment is {}, the cloud's {}", scene.environment.identity(), meta.options.environment)
         } else {
             let normals = arguments.scene_args.normals;
             if normals != meta.options.normals {

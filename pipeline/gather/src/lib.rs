@@ -26,7 +26,7 @@ use counts::Counts;
 use estimator::Estimator;
 use film::Pixel;
 use formats::cloud::Cloud;
-use scene::{Camera, NormalKind, Rays, Scene, light::Environment};
+use scene::{Camera, NormalKind, Rays, Scene};
 
 /// Over what part of a pixel its paths are spread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,8 +59,6 @@ pub struct Settings {
     pub estimator: Estimator,
     pub model: Model,
     pub normals: NormalKind,
-    /// What rays that escape see.
-    pub environment: Environment,
     pub max_depth: u32,
     pub seed: u64,
 }

@@ -12,7 +12,7 @@ use adaptive::{render_all, render_to};
 use arguments::Arguments;
 use bssrdf::{Medium, Model, built_in, built_in_names};
 use clap::Parser;
-use cli::{Failure, Need, camera_table, count, material_table};
+use cli::{Failure, Need, camera_table, count, material_table, printable};
 use formats::{
     atomic::{Group, Output},
     cloud::Cloud,
@@ -23,7 +23,13 @@ use inputs::CloudFiles;
 use report::{Facts, Seconds};
 use scene::{DVec3, Rays, Scene};
 use settings::{cameras, estimator, settings};
-use std::{fmt::Write as _, io::Write as _, num::NonZeroUsize, path::Path, time::Instant};
+use std::{
+    fmt::Write as _,
+    io::Write as _,
+    num::NonZeroUsize,
+    path::{Path, PathBuf},
+    time::Instant,
+};
 
 fn main() {
     let arguments = Arguments::parse();
@@ -37,6 +43,12 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.list_cameras || arguments.list_materials {
         return list_scene(arguments);
     }
+    if arguments.list_files {
+        return list_paths(&Scene::files_of(scene_alone(arguments)?)?);
+    }
+    if let Some(output) = arguments.output.as_deref().filter(|_| arguments.list_images) {
+        return list_paths(&image_jobs::image_paths(arguments, output)?);
+    }
     let start = Instant::now();
     let common = &arguments.common;
     let (cloud_paths, scene_path) = inputs::paths(arguments)?;
@@ -44,11 +56,11 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let estimator = estimator(arguments)?;
     let files = CloudFiles::open(cloud_paths)?;
     let clouds = files.clouds();
-    let (mut scene, environment) = inputs::import(arguments, scene_path)?;
-    files.check_fit((&scene, &environment), scene_path, arguments)?;
+    let mut scene = inputs::import(arguments, scene_path)?;
+    files.check_fit(&scene, scene_path, arguments)?;
     let sampled = |material| shards::materials(clouds).iter().any(|m| m.index == material);
     let cameras = cameras(arguments, &scene, scene_path, || scene.origin + middle(bounds(&scene, sampled)))?;
-    let shots = shots(arguments, &cameras, |chosen| settings(arguments, chosen, estimator, environment.clone()))?;
+    let shots = shots(arguments, &cameras, |chosen| settings(arguments, chosen, estimator))?;
     warn_of_aspects(&shots, arguments);
     shots.iter().try_for_each(|shot| check_memory(&shot.settings).map_err(|e| shot.failure(e)))?;
     let defects = files.defects();
@@ -235,8 +247,7 @@ fn list_media() -> Result<(), Failure> {
 }
 
 fn list_scene(arguments: &Arguments) -> Result<(), Failure> {
-    let path = arguments.files.last().ok_or_else(|| Failure::usage("--list-cameras, --list-materials: give SCENE"))?;
-    let (scene, _) = arguments.scene_args.import(path, &arguments.common)?;
+    let scene = arguments.scene_args.import(scene_alone(arguments)?, &arguments.common)?;
     let mut text = String::new();
     if arguments.list_cameras {
         text += &camera_table(&scene);
@@ -245,4 +256,15 @@ fn list_scene(arguments: &Arguments) -> Result<(), Failure> {
         text += &material_table(&scene)?;
     }
     cli::print(&text)
+}
+
+/// SCENE, where no cloud is needed.
+fn scene_alone(arguments: &Arguments) -> Result<&Path, Failure> {
+    let path = arguments.files.last().map(PathBuf::as_path);
+    path.ok_or_else(|| Failure::usage("--list-cameras, --list-files, --list-materials: give SCENE"))
+}
+
+fn list_paths(paths: &[PathBuf]) -> Result<(), Failure> {
+    let lines = paths.iter().map(|path| format!("{}\n", printable(&path.to_string_lossy())));
+    cli::print(&lines.collect::<String>())
 }

@@ -52,10 +52,9 @@ impl<'a> Passes<'a> {
         let mut renderer = Renderer {
             scene: input.scene,
             rays: input.rays,
-            lights: LightTree::new(&input.scene.lights),
+            lights: LightTree::new(input.scene.lights()),
             camera: input.camera,
             objects: objects(input, settings),
-            environment: settings.environment.clone(),
             normals: settings.normals,
             estimator: settings.estimator,
             drawn: DrawnCounts::of(input.clouds),

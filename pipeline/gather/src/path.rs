@@ -125,7 +125,7 @@ impl Renderer<'_> {
 
     /// A ray that meets nothing more.
     fn escape(&self, state: &PathState, light: &mut PathLight, counts: &mut Counts) {
-        let mut seen = self.environment.radiance(state.direction);
+        let mut seen = self.lights.distant_radiance(state.origin, state.direction);
         if let Some(object) = state.inside.and_then(|m| self.objects[m as usize].as_ref()) {
             counts.escaped_inside += 1;
             let clear = object.unscattered.map(|sigma| f64::from(u8::from(sigma == 0.0)));

@@ -2,11 +2,7 @@
 
 use crate::{estimator::Estimator, shards::DrawnCounts};
 use bssrdf::Medium;
-use scene::{
-    Camera, NormalKind, Rays, Scene,
-    light::{Environment, LightTree},
-    random::Stream,
-};
+use scene::{Camera, NormalKind, Rays, Scene, light::LightTree, random::Stream};
 use std::ops::Range;
 use sums::Summation;
 
@@ -18,8 +14,6 @@ pub struct Renderer<'a> {
     pub camera: &'a Camera,
     /// One entry for each material; none for opaque ones.
     pub objects: Vec<Option<TranslucentObject<'a>>>,
-    /// What rays that escape see.
-    pub environment: Environment,
     pub normals: NormalKind,
     pub estimator: Estimator,
     /// Samples of each cloud, the unlit ones included.

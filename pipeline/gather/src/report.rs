@@ -97,7 +97,7 @@ impl Facts<'_> {
             filter_name(s),
             s.max_depth,
             s.seed,
-            s.environment.identity(),
+            self.clouds[0].meta().options.environment,
             arguments.scene_args.normals.name(),
         )
     }

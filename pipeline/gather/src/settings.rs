@@ -7,7 +7,7 @@ use gather::{
     Crop, Filter, Settings,
     estimator::{Estimator, Rule},
 };
-use scene::{Camera, DVec3, Scene, View, ViewFile, light::Environment};
+use scene::{Camera, DVec3, Scene, View, ViewFile};
 use std::path::Path;
 
 /// Default of `--accuracy`.
@@ -110,12 +110,7 @@ fn own_camera(
 /// Most pixels of an image.
 const MAX_PIXELS: u64 = 1 << 28;
 
-pub fn settings(
-    arguments: &Arguments,
-    chosen: &Chosen,
-    estimator: Estimator,
-    environment: Environment,
-) -> Result<Settings, Failure> {
+pub fn settings(arguments: &Arguments, chosen: &Chosen, estimator: Estimator) -> Result<Settings, Failure> {
     let (width, height) = size(arguments, chosen)?;
     if width as u64 * height as u64 > MAX_PIXELS {
         return Err(Failure::usage(format!("--width, --height: {width} x {height} is more than {MAX_PIXELS} pixels")));
@@ -137,7 +132,6 @@ pub fn settings(
         estimator,
         model,
         normals: arguments.scene_args.normal_kind(),
-        environment,
         max_depth: arguments.max_depth,
         seed: arguments.common.seed,
     })

@@ -1,16 +1,16 @@
-//! Light that reaches a sample by way of one opaque surface.
+//! Light that reaches a sample after one reflection by an opaque surface.
 
-use crate::sample::LitSurface;
+use crate::surface::LitSurface;
 use scene::{DVec3, Scene, SurfacePoint, light::all_light_at, random::Item, warp};
 
-/// Samples that are lit this way where there are opaque surfaces, as a share of all. Of a head on an evenly lit floor,
-/// which gets a third as much light from there as from the lamps, the variance is least at 0.27.
+/// The share of samples that are lit this way where there are opaque surfaces. For a head on an evenly lit floor, which
+/// gets a third as much light from the floor as from the lamps, the variance is least at 0.27.
 pub const SHARE: f64 = 0.25;
 
 /// The opaque surfaces of a scene.
 pub struct Bounce<'a> {
     scene: &'a Scene,
-    /// For each material.
+    /// For each material, whether it is opaque and reflects.
     opaque: Vec<bool>,
 }
 
@@ -23,8 +23,8 @@ impl<'a> Bounce<'a> {
         any.then_some(Bounce { scene, opaque })
     }
 
-    /// Direction to an opaque surface, and the irradiance `π L` from there of cosine-distributed directions, W/m²: its
-    /// light is `L = ρ E/π` (both sides are Lambertian, as phase two shows them). None if there is no light.
+    /// A cosine-distributed direction, and the irradiance `π L` that the opaque surface there gives, W/m². Its light is
+    /// `L = ρ E/π`, since both of its sides are Lambertian, as in phase two. None if there is no such light.
     pub fn light_at(
         &self,
         surface: &LitSurface,
@@ -33,7 +33,7 @@ impl<'a> Bounce<'a> {
         random: Item,
         rays: &mut u64,
     ) -> Option<(DVec3, DVec3)> {
-        // A frame of the triangle's own: what is turned as a whole keeps its samples.
+        // The frame is that of the triangle: a scene that is turned as a whole keeps its samples.
         let [a, b, _] = surface.mesh.corners(at.triangle as usize);
         let tangent = (b - a).reject_from_normalized(at.normal).try_normalize();
         let tangent = tangent.unwrap_or_else(|| at.normal.any_orthonormal_vector());

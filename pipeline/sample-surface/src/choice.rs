@@ -1,4 +1,4 @@
-//! note: [choice] Which triangle, and with what density.
+//! note: [choice] The choice of a triangle, and its density.
 
 use crate::{
     hilbert,
@@ -15,16 +15,16 @@ pub struct Chosen {
     pub pdf_area: f64,
 }
 
-/// The triangles to choose from, on ribbons that follow a curve that fills space.
+/// The triangles to choose from, on ribbons that follow a space-filling curve.
 pub struct TriangleChoice {
     rule: Choice,
     links: Vec<Link>,
-    /// m².
+    /// Area of each triangle, m².
     areas: Vec<f64>,
-    /// For each triangle, what a share of its material multiplies its own by; none without such shares.
+    /// For each triangle, the factor of its weight that gives its material the wanted share; empty if no material has one.
     factors: Vec<f64>,
-    /// Sum of [`Self::share`] of each triangle and all before it.
-    shares_so_far: Vec<f64>,
+    /// Sum of [`Self::weight`] of each triangle and all before it.
+    weights_so_far: Vec<f64>,
 }
 
 impl TriangleChoice {
@@ -33,20 +33,20 @@ impl TriangleChoice {
         TriangleChoice::with_shares(mesh, rule, wanted, &[])
     }
 
-    /// The same; triangles of the materials in `shares` are chosen with these probabilities in all, those of the others
-    /// with what is left.
+    /// The same, but the triangles of each material in `shares` are chosen with that probability in total, and those of the
+    /// other materials with what is left.
     pub fn with_shares(mesh: &Mesh, rule: Choice, wanted: impl Fn(u16) -> bool, shares: &[(u16, f64)]) -> Self {
         let mut triangles: Vec<u32> =
             (0..mesh.triangles.len()).filter(|k| wanted(mesh.triangles[*k].material)).map(|k| k as u32).collect();
         hilbert::sort(mesh, &mut triangles);
         let links = ribbons(mesh, &triangles);
         let areas: Vec<f64> = links.iter().map(|link| mesh.area(link.triangle as usize)).collect();
-        let mut choice = TriangleChoice { rule, links, areas, factors: Vec::new(), shares_so_far: Vec::new() };
+        let mut choice = TriangleChoice { rule, links, areas, factors: Vec::new(), weights_so_far: Vec::new() };
         choice.factors = choice.factors(mesh, shares);
         let mut total = 0.0;
         for k in 0..choice.links.len() {
-            total += choice.share(k);
-            choice.shares_so_far.push(total);
+            total += choice.weight(k);
+            choice.weights_so_far.push(total);
         }
         choice
     }
@@ -56,7 +56,7 @@ impl TriangleChoice {
         self.areas.iter().sum()
     }
 
-    /// [`Self::factors`] that give each of these materials its share.
+    /// The factors that give each of these materials its share.
     fn factors(&self, mesh: &Mesh, shares: &[(u16, f64)]) -> Vec<f64> {
         if shares.is_empty() {
             return Vec::new();
@@ -66,40 +66,40 @@ impl TriangleChoice {
             shares.iter().position(|(m, _)| *m == material).unwrap_or(shares.len())
         };
         let mut totals = vec![0.0; shares.len() + 1];
-        self.links.iter().enumerate().for_each(|(k, link)| totals[group(link)] += self.share(k));
+        self.links.iter().enumerate().for_each(|(k, link)| totals[group(link)] += self.weight(k));
         let rest = 1.0 - shares.iter().map(|(_, share)| share).sum::<f64>();
         let share = |k: usize| shares.get(k).map_or(rest, |(_, share)| *share);
         self.links.iter().map(group).map(|k| share(k) / totals[k]).collect()
     }
 
-    /// What the probability of a triangle is proportional to.
-    fn share(&self, place: usize) -> f64 {
+    /// What the probability of the triangle at an index of the links is proportional to.
+    fn weight(&self, index: usize) -> f64 {
         let own = match self.rule {
-            Choice::Area => self.areas[place],
+            Choice::Area => self.areas[index],
             Choice::Uniform => 1.0,
         };
-        own * self.factor(place)
+        own * self.factor(index)
     }
 
-    fn factor(&self, place: usize) -> f64 {
-        self.factors.get(place).copied().unwrap_or(1.0)
+    fn factor(&self, index: usize) -> f64 {
+        self.factors.get(index).copied().unwrap_or(1.0)
     }
 
-    /// Place of the triangle that the uniform number `xi` chooses, and the share up to there that it stands for.
+    /// Index of the triangle that the uniform number `xi` chooses, and `xi` times the sum of all weights.
     fn find(&self, xi: f64) -> (usize, f64) {
-        let target = xi * self.shares_so_far.last().copied().unwrap_or(0.0);
-        let place = self.shares_so_far.partition_point(|share| *share <= target);
-        (place.min(self.links.len() - 1), target)
+        let target = xi * self.weights_so_far.last().copied().unwrap_or(0.0);
+        let index = self.weights_so_far.partition_point(|weight| *weight <= target);
+        (index.min(self.links.len() - 1), target)
     }
 
-    fn chosen(&self, place: usize) -> Chosen {
-        let total = self.shares_so_far.last().copied().unwrap_or(0.0);
+    fn chosen(&self, index: usize) -> Chosen {
+        let total = self.weights_so_far.last().copied().unwrap_or(0.0);
         let pdf_area = match self.rule {
             Choice::Area => 1.0 / total,
-            Choice::Uniform => 1.0 / (total * self.areas[place]),
+            Choice::Uniform => 1.0 / (total * self.areas[index]),
         };
-        let pdf_area = pdf_area * self.factor(place);
-        Chosen { triangle: self.links[place].triangle, pdf_area }
+        let pdf_area = pdf_area * self.factor(index);
+        Chosen { triangle: self.links[index].triangle, pdf_area }
     }
 
     /// The triangle that the uniform number `xi` chooses.
@@ -107,27 +107,27 @@ impl TriangleChoice {
         self.chosen(self.find(xi).0)
     }
 
-    /// The point at `along` of the ribbons and at `across` of their width, both in [0, 1): triangle and barycentric
-    /// weights. Uniform numbers make uniform points of triangles that the rule chose; what is near in both is near on
-    /// the surface.
+    /// The point at `along` of the length of the ribbons and at `across` of their width, both in [0, 1): triangle and
+    /// barycentric weights. Uniform numbers make uniform points on triangles that the rule chose; points that are close in
+    /// both numbers are close on the surface.
     pub fn on_ribbon(&self, along: f64, across: f64) -> (Chosen, [f64; 3]) {
-        let (place, target) = self.find(along);
-        let first = place - usize::from(self.links[place].part == Part::Second);
+        let (index, target) = self.find(along);
+        let first = index - usize::from(self.links[index].part == Part::Second);
         let second = match self.links[first].part {
-            Part::First => self.share(first + 1),
+            Part::First => self.weight(first + 1),
             _ => 0.0,
         };
-        let shares = [self.share(first), second];
-        let before = if first == 0 { 0.0 } else { self.shares_so_far[first - 1] };
-        let within = ((target - before) / (shares[0] + shares[1])).clamp(0.0, BELOW_ONE);
+        let halves = [self.weight(first), second];
+        let before = if first == 0 { 0.0 } else { self.weights_so_far[first - 1] };
+        let within = ((target - before) / (halves[0] + halves[1])).clamp(0.0, BELOW_ONE);
         let across = if self.links[first].mirrored { BELOW_ONE - across } else { across };
-        let ([x, y], beyond) = warp::halved_square([within, across], shares);
-        let place = first + usize::from(beyond);
+        let ([x, y], beyond) = warp::halved_square([within, across], halves);
+        let index = first + usize::from(beyond);
         let own = if beyond { [x + y - 1.0, 1.0 - y, 1.0 - x] } else { [1.0 - x - y, x, y] };
         let mut weights = [0.0; 3];
-        for (corner, weight) in self.links[place].corners.into_iter().zip(own) {
+        for (corner, weight) in self.links[index].corners.into_iter().zip(own) {
             weights[corner as usize] = weight.max(0.0);
         }
-        (self.chosen(place), weights)
+        (self.chosen(index), weights)
     }
 }

@@ -1,7 +1,8 @@
-//! Order along Hilbert's curve: what is near in the order is near in space.
+//! Order along Hilbert's curve: triangles that are close in the order are close in space.
 
 use scene::{DVec3, Mesh};
 
+/// Bits of each coordinate.
 const BITS: u32 = 21;
 
 /// Sorts triangles of a mesh along Hilbert's curve through their centroids.
@@ -16,7 +17,7 @@ pub fn sort(mesh: &Mesh, triangles: &mut [u32]) {
     });
 }
 
-/// The place of a cell of a grid of 2^21 cells a side on Hilbert's curve (Skilling 2004).
+/// The index on Hilbert's curve of a cell of a grid with 2^21 cells a side (Skilling 2004).
 fn index(cell: [u32; 3]) -> u64 {
     let mut x = cell;
     for bit in (1..BITS).rev() {
@@ -49,8 +50,7 @@ mod tests {
         // The curve's first 2^9 cells fill the corner cube of 8 cells a side.
         let mut cells: Vec<[u32; 3]> = (0..512).map(|k| [k & 7, k >> 3 & 7, k >> 6]).collect();
         cells.sort_by_key(|c| index(*c));
-        let places: Vec<u64> = cells.iter().map(|c| index(*c)).collect();
-        assert!(places.iter().enumerate().all(|(k, place)| *place == k as u64));
+        assert!(cells.iter().enumerate().all(|(k, cell)| index(*cell) == k as u64));
         for pair in cells.windows(2) {
             let step: u32 = (0..3).map(|i| pair[0][i].abs_diff(pair[1][i])).sum();
             assert_eq!(step, 1, "{pair:?}");

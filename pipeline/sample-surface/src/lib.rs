@@ -11,14 +11,16 @@ mod pattern;
 mod points;
 mod ribbon;
 mod sample;
+mod surface;
 mod trials;
 
 pub use adaptive_count::{Enough, Round, sample_enough};
 pub use bounce::Bounce;
 pub use choice::{Choice, Chosen, TriangleChoice};
-pub use pattern::{Numbers, Pattern, Place};
+pub use pattern::{Numbers, Pattern, SamplePoint};
 pub use points::Goal;
-pub use sample::{LitSurface, SampleOutcome, draw};
+pub use sample::{SampleOutcome, draw};
+pub use surface::LitSurface;
 pub use trials::{TRIALS, Trials};
 
 use cli::{Thing, Unclear, count, count_up, the_one};
@@ -100,7 +102,7 @@ pub struct Plan {
 impl Plan {
     /// Decides which surfaces are translucent.
     pub fn new(scene: &Scene, settings: &Settings) -> Result<Plan, SampleError> {
-        if scene.lights.is_empty() {
+        if scene.lights().next().is_none() {
             return Err(SampleError::NoLight);
         }
         let (materials, unmarked) = translucent_materials(scene, &settings.translucent)?;
@@ -109,7 +111,7 @@ impl Plan {
         let mut hasher = blake3::Hasher::new();
         hasher.update(&version().to_le_bytes());
         hasher.update(&geometry);
-        hasher.update(&scene.light_digest);
+        hasher.update(&scene.light_digest());
         hasher.update(&settings.samples.to_le_bytes());
         let options = serde_json::json!({ "options": &settings.options, "materials": &materials });
         hasher.update(options.to_string().as_bytes());
@@ -238,15 +240,15 @@ pub fn sample(
 ) -> Result<Sampled, SampleError> {
     let choice = plan.choice(scene, settings);
     let numbers = Numbers::new(settings.pattern, settings.seed(), settings.samples);
-    let lights = LightTree::new(&scene.lights);
+    let lights = LightTree::new(scene.lights());
     // Independent samples that follow each other lie anywhere.
     let together = if settings.pattern == Pattern::Stratified || lights.is_flat() { TOGETHER } else { 1 };
     let bounce = Bounce::new(scene, |m| plan.samples(m));
-    let surface = LitSurface { mesh: &scene.mesh, rays, lights, normals: settings.normals, bounce };
+    let surface = LitSurface { mesh: &scene.mesh, rays, lights, normals: settings.normals };
     let portion = |chunk: u64| {
         let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(settings.samples);
         progress(range.end - range.start);
-        draw_portion(&surface, plan, numbers.places(&choice, range), together)
+        draw_portion(&surface, bounce.as_ref(), plan, numbers.points(&choice, range), together)
     };
     let portions: Vec<Portion> = (0..settings.samples.div_ceil(CHUNK)).into_par_iter().map(portion).collect();
     let not_finite = portions.iter().map(|p| p.not_finite).sum();
@@ -258,8 +260,9 @@ pub fn sample(
 
 fn draw_portion(
     surface: &LitSurface,
+    bounce: Option<&Bounce>,
     plan: &Plan,
-    mut places: impl Iterator<Item = (usize, Place)>,
+    mut points: impl Iterator<Item = (usize, SamplePoint)>,
     together: usize,
 ) -> Portion {
     let groups = vec![[Vec::new(), Vec::new()]; plan.materials.len()];
@@ -270,11 +273,11 @@ fn draw_portion(
     let mut neighbours = Vec::with_capacity(together);
     loop {
         neighbours.clear();
-        neighbours.extend(places.by_ref().take(together));
+        neighbours.extend(points.by_ref().take(together));
         if neighbours.is_empty() {
             return Portion { shadow_rays, ..p };
         }
-        draw(surface, &neighbours, &mut shadow_rays, |half, drawn| p.count(plan, half, drawn));
+        draw(surface, bounce, &neighbours, &mut shadow_rays, |half, drawn| p.count(plan, half, drawn));
     }
 }
 
@@ -326,7 +329,7 @@ fn join(
     let meta = Meta {
         content: plan.content,
         geometry: plan.geometry,
-        lights: scene.light_digest,
+        lights: scene.light_digest(),
         options: settings.options.clone(),
         samples_drawn: settings.samples,
         samples_dropped: BTreeMap::from([

@@ -130,7 +130,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let start = Instant::now();
     let common = &arguments.common;
     if arguments.list_materials {
-        let (scene, _) = arguments.scene_args.import(&arguments.scene, common)?;
+        let scene = arguments.scene_args.import(&arguments.scene, common)?;
         return cli::print(&material_table(&scene)?);
     }
     let output_path = arguments.output.as_deref().ok_or_else(|| Failure::usage("--output: give CLOUD"))?;
@@ -141,9 +141,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let goal = medium.as_ref().zip(arguments.target_error);
     let goal = goal.map(|(medium, error)| Goal { medium, error, most: room.min(MAX_SAMPLES - 1) });
     let mut seconds = Seconds::default();
-    let (mut scene, environment) = arguments.scene_args.import(&arguments.scene, common)?;
+    let mut scene = arguments.scene_args.import(&arguments.scene, common)?;
     scene.files.iter().try_for_each(|path| files.reads("a file that SCENE names", path))?;
-    let settings = settings(arguments, &environment);
+    let settings = settings(arguments, &scene.environment);
     let mut plan = Plan::new(&scene, &settings).map_err(|e| named(&arguments.scene, &e))?;
     if let Some(goal) = &goal {
         plan.depends_on(goal);

@@ -1,6 +1,6 @@
 //! The uniform numbers that samples are made of: well spread over surface and light together, or independent.
 //!
-//! The samples are two independent halves, even and odd ones: what they differ by tells the error of both.
+//! Even and odd samples are two independent halves of a cloud, whose difference estimates the error.
 
 use crate::choice::TriangleChoice;
 pub use formats::cloud::Pattern;
@@ -18,19 +18,20 @@ mod dimension {
     pub const LIGHT: [u64; 3] = [3, 4, 5];
 }
 
-/// Where one sample lies, and the numbers for its light.
-pub struct Place {
+/// The point of one sample on the surface, and the numbers for its light.
+pub struct SamplePoint {
     pub triangle: u32,
-    /// Barycentric.
+    /// Barycentric weights.
     pub weights: [f64; 3],
-    /// Samples per area over samples of all, 1/m²: the density that makes the estimate unbiased.
+    /// Density of the samples over the surface, 1/m².
     pub pdf_area: f64,
+    /// Uniform numbers for the light.
     pub light: [f64; 3],
-    /// More of them, for light by way of another surface.
+    /// More of them, for light that another surface reflects.
     pub bounce: Item,
 }
 
-/// The numbers of all samples of a cloud.
+/// The uniform numbers of all samples of a cloud.
 pub struct Numbers {
     pattern: Pattern,
     stream: Stream,
@@ -41,10 +42,11 @@ pub struct Numbers {
 /// What the stratified samples of one half have in common.
 struct Half {
     light: Sequence,
-    /// Samples.
+    /// Number of samples.
     count: f64,
-    /// Where the first one lies: in its interval of the ribbons, in [0, 1), and across, in 2^-64.
+    /// Offset of the first sample along the ribbons, as a share of the distance between samples.
     along: f64,
+    /// Its offset across, in 2^-64 of the width.
     across: u64,
 }
 
@@ -61,23 +63,23 @@ impl Numbers {
         Numbers { pattern, stream, bounces, halves: [half(0, samples.div_ceil(2)), half(1, samples / 2)] }
     }
 
-    /// The places of these samples, and the half that each belongs to.
-    pub fn places(&self, choice: &TriangleChoice, range: Range<u64>) -> impl Iterator<Item = (usize, Place)> {
+    /// The points of these samples, each with the half that it belongs to.
+    pub fn points(&self, choice: &TriangleChoice, range: Range<u64>) -> impl Iterator<Item = (usize, SamplePoint)> {
         range.map(move |index| {
             let half = (index & 1) as usize;
             let bounce = self.bounces.item(index);
-            let place = match self.pattern {
+            let point = match self.pattern {
                 Pattern::Independent => independent(choice, self.stream.item(index), bounce),
-                Pattern::Stratified => self.halves[half].place(choice, index >> 1, bounce),
+                Pattern::Stratified => self.halves[half].point(choice, index >> 1, bounce),
             };
-            (half, place)
+            (half, point)
         })
     }
 }
 
-fn independent(choice: &TriangleChoice, random: Item, bounce: Item) -> Place {
+fn independent(choice: &TriangleChoice, random: Item, bounce: Item) -> SamplePoint {
     let chosen = choice.choose(random.uniform(dimension::TRIANGLE));
-    Place {
+    SamplePoint {
         triangle: chosen.triangle,
         weights: warp::triangle(dimension::POINT.map(|d| random.uniform(d))),
         pdf_area: chosen.pdf_area,
@@ -86,17 +88,17 @@ fn independent(choice: &TriangleChoice, random: Item, bounce: Item) -> Place {
     }
 }
 
-/// The golden ratio's fraction, in 2^-64.
+/// The fractional part of the golden ratio, in 2^-64.
 const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
 
 impl Half {
-    /// Sample `index` of the half. The samples divide the ribbons evenly along, and go round across by the golden ratio:
-    /// a lattice without gaps or clusters, whatever its density and the ribbon's width.
-    fn place(&self, choice: &TriangleChoice, index: u64, bounce: Item) -> Place {
+    /// Sample `index` of the half. The samples are equidistant along the ribbons, and each is offset across by the golden
+    /// ratio from the one before: a lattice without gaps or clusters, whatever its density and the ribbon's width.
+    fn point(&self, choice: &TriangleChoice, index: u64, bounce: Item) -> SamplePoint {
         let along = ((index as f64 + self.along) / self.count).min(BELOW_ONE);
         let across = unit(self.across.wrapping_add(index.wrapping_mul(GOLDEN)));
         let (chosen, weights) = choice.on_ribbon(along, across);
         let [l0, l1, l2, _] = self.light.point(index as u32);
-        Place { triangle: chosen.triangle, weights, pdf_area: chosen.pdf_area, light: [l0, l1, l2], bounce }
+        SamplePoint { triangle: chosen.triangle, weights, pdf_area: chosen.pdf_area, light: [l0, l1, l2], bounce }
     }
 }

@@ -1,6 +1,6 @@
 //! The light of a cloud that leaves the surface at points all over it, by the directional dipole.
 
-use crate::{Numbers, Pattern, Place, Plan, Sampled, Settings};
+use crate::{Numbers, Pattern, Plan, SamplePoint, Sampled, Settings};
 use bssrdf::{Medium, Model};
 use formats::cloud::SampledMaterial;
 use glam::DVec3;
@@ -28,7 +28,7 @@ pub struct Goal<'a> {
 pub(crate) struct Points<'a> {
     scene: &'a Scene,
     settings: &'a Settings,
-    places: Vec<Place>,
+    points: Vec<SamplePoint>,
     scatterer: Arc<Scatterer>,
     estimator: Estimator,
 }
@@ -40,7 +40,7 @@ impl<'a> Points<'a> {
         Points {
             scene,
             settings,
-            places: numbers.places(&plan.choice(scene, settings), 0..count).map(|(_, place)| place).collect(),
+            points: numbers.points(&plan.choice(scene, settings), 0..count).map(|(_, point)| point).collect(),
             scatterer: Arc::new(Scatterer::new(Model::DirectionalDipole, goal.medium, f64::INFINITY)),
             // The error of the cut is so far below the target that it does not show in differences between clouds.
             estimator: Estimator::Cut { accuracy: 0.3 * goal.error },
@@ -52,16 +52,16 @@ impl<'a> Points<'a> {
     pub fn light(&self, sampled: &Sampled, half: usize, stream: u64) -> Vec<f64> {
         let materials = &sampled.meta.materials;
         let summations: Vec<Summation> = materials.iter().map(|material| self.summation(sampled, material)).collect();
-        let at = |scratch: &mut Scratch, (index, place): (usize, &Place)| {
-            let point = self.scene.mesh.point(place.triangle, place.weights, self.settings.normals);
-            let key = 2 * (stream * self.places.len() as u64 + index as u64) + half as u64;
+        let at = |scratch: &mut Scratch, (index, sample): (usize, &SamplePoint)| {
+            let point = self.scene.mesh.point(sample.triangle, sample.weights, self.settings.normals);
+            let key = 2 * (stream * self.points.len() as u64 + index as u64) + half as u64;
             let exit = Exit::new(point.position, point.normal, key);
             let slot = materials.iter().position(|material| material.index == point.material);
             let light = slot.map_or(DVec3::ZERO, |slot| summations[slot].half(self.estimator, half, &exit, scratch));
             // With the note's choice of triangles, points do not represent equal areas.
-            (light / place.pdf_area.sqrt()).to_array()
+            (light / sample.pdf_area.sqrt()).to_array()
         };
-        self.places.par_iter().enumerate().map_init(Scratch::default, at).flatten_iter().collect()
+        self.points.par_iter().enumerate().map_init(Scratch::default, at).flatten_iter().collect()
     }
 
     fn summation<'s>(&self, sampled: &'s Sampled, material: &SampledMaterial) -> Summation<'s> {

@@ -1,18 +1,18 @@
-//! Triangles as ribbons: pairs of neighbours make quadrilaterals, and one quadrilateral continues the last across their
-//! common edge. A lattice that runs along a ribbon is then broken at its two sides only, not at every edge.
+//! Ribbons of triangles: pairs of neighbours make quadrilaterals, and each quadrilateral continues the one before across
+//! their common edge. A lattice that runs along a ribbon is broken at its two sides only, not at every edge.
 
 use rayon::prelude::*;
 use scene::{Mesh, Vec3, random::mix};
 
-/// A triangle's part of a cell of the ribbon. A cell is a quadrilateral `a b d c`, seen as the unit square with
-/// `a = (0, 0)`, `b = (1, 0)`, `c = (0, 1)`, `d = (1, 1)` and cut from `b` to `c`; or its first half alone.
+/// The part that a triangle has in a cell of a ribbon. A cell is a quadrilateral `a b d c`, mapped to the unit square with
+/// `a = (0, 0)`, `b = (1, 0)`, `c = (0, 1)`, `d = (1, 1)` and cut from `b` to `c`; or the first half of one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// `a b c` with nothing beyond.
+    /// `a b c`, without a second half.
     Alone,
     /// `a b c`.
     First,
-    /// `d b c`, right after its first half.
+    /// `d b c`; its link follows that of the first half.
     Second,
 }
 
@@ -23,27 +23,27 @@ pub struct Link {
     pub part: Part,
     /// Which of the triangle's corners are `a` (or `d`), `b` and `c`.
     pub corners: [u8; 3],
-    /// The ribbon sees the square from its other side.
+    /// Whether the square is mirrored with respect to the ribbon.
     pub mirrored: bool,
 }
 
-/// No triangle.
+/// The index that stands for no triangle.
 const NONE: u32 = u32::MAX;
 
-/// Cells of one ribbon at most: longer ones are less compact.
-const LONGEST: usize = 16;
+/// The largest number of cells of a ribbon: longer ribbons are less compact.
+const MAX_CELLS: usize = 16;
 
-/// Edges that differ by less count as equal, so that rounding does not decide.
-const CLEARLY: f32 = 1.01;
+/// Squared lengths of edges within this ratio count as equal, so that rounding does not decide.
+const EQUAL_RATIO: f32 = 1.01;
 
-/// The triangle across an edge: its place in the list, and its corner that is not on the edge.
+/// The triangle across an edge: its index in the list, and its corner that is not on the edge.
 #[derive(Clone, Copy)]
 struct Across {
     index: u32,
     apex: u8,
 }
 
-/// Puts a list's triangles on ribbons; those start in the list's order.
+/// Puts the triangles of a list on ribbons, each of which starts with the first triangle that is left.
 pub fn ribbons(mesh: &Mesh, triangles: &[u32]) -> Vec<Link> {
     let links = Vec::with_capacity(triangles.len());
     let across = neighbours(mesh, triangles);
@@ -59,7 +59,7 @@ pub fn ribbons(mesh: &Mesh, triangles: &[u32]) -> Vec<Link> {
 struct Weaver<'a> {
     mesh: &'a Mesh,
     triangles: &'a [u32],
-    /// Across the edge that faces each corner.
+    /// For each triangle, the triangles across the edges that are opposite its corners.
     across: Vec<[Across; 3]>,
     used: Vec<bool>,
     links: Vec<Link>,
@@ -76,25 +76,25 @@ struct Start {
 impl Weaver<'_> {
     fn ribbon(&mut self, index: usize) {
         let mut next = Some(self.start(index));
-        for _ in 0..LONGEST {
+        for _ in 0..MAX_CELLS {
             let Some(start) = next else { break };
             next = self.cell(start);
         }
     }
 
-    /// A cell that nothing comes before: cut along the longest edge that has a free triangle across, and so that the
-    /// ribbon can go on.
+    /// The first cell of a ribbon. It is cut along the longest edge with a free triangle across, and oriented so that the
+    /// ribbon can continue.
     fn start(&self, index: usize) -> Start {
         let a = [1, 2].into_iter().fold(0, |best, a| if self.cuts_better(index, a, best) { a } else { best });
         let (p, q) = ((a + 1) % 3, (a + 2) % 3);
-        let goes_on = self.free(index, a).is_some_and(|second| {
+        let continues = self.free(index, a).is_some_and(|second| {
             let c = self.same_corner(index, q, second);
             self.free(second.index as usize, c).is_some()
         });
-        Start { index, corners: if goes_on { [a, p, q] } else { [a, q, p] }, mirrored: false }
+        Start { index, corners: if continues { [a, p, q] } else { [a, q, p] }, mirrored: false }
     }
 
-    /// Adds a cell, and returns where the next one may start.
+    /// Adds a cell, and returns the start of the next one if there is one.
     fn cell(&mut self, start: Start) -> Option<Start> {
         let Start { index, corners, mirrored } = start;
         self.used[index] = true;
@@ -107,7 +107,7 @@ impl Weaver<'_> {
         let b = 3 - d - c;
         self.used[own] = true;
         self.add(own, Part::Second, [d, b, c], mirrored);
-        // The next cell has its `a` and `c` where this one has `b` and `d`.
+        // `a` and `c` of the next cell are `b` and `d` of this one.
         let next = self.free(own, c)?;
         let (low, high) = if mirrored { (d, b) } else { (b, d) };
         let low = self.same_corner(own, low, next);
@@ -122,16 +122,16 @@ impl Weaver<'_> {
         self.links.push(Link { triangle: self.triangles[index], part, corners, mirrored });
     }
 
-    /// The triangle across the edge that faces a corner, if no ribbon has it.
+    /// The triangle across the edge opposite a corner, if it is on no ribbon yet.
     fn free(&self, index: usize, corner: u8) -> Option<Across> {
         let across = self.across[index][corner as usize];
         (across.index != NONE && !self.used[across.index as usize]).then_some(across)
     }
 
-    /// Whether a cell is better cut along the edge that faces corner `a` than along the one that faces `b`.
+    /// Whether a cell is better cut along the edge opposite corner `a` than along the one opposite `b`.
     fn cuts_better(&self, index: usize, a: u8, b: u8) -> bool {
         match [a, b].map(|corner| self.free(index, corner).is_some()) {
-            [true, true] => self.facing(index, a) > CLEARLY * self.facing(index, b),
+            [true, true] => self.opposite_edge(index, a) > EQUAL_RATIO * self.opposite_edge(index, b),
             [own, other] => own && !other,
         }
     }
@@ -140,12 +140,12 @@ impl Weaver<'_> {
         corner_position(self.mesh, self.triangles[index], corner)
     }
 
-    /// Squared length of the edge that faces a corner, m².
-    fn facing(&self, index: usize, corner: u8) -> f32 {
+    /// Squared length of the edge opposite a corner, m².
+    fn opposite_edge(&self, index: usize, corner: u8) -> f32 {
         self.position(index, (corner + 1) % 3).distance_squared(self.position(index, (corner + 2) % 3))
     }
 
-    /// The corner of the triangle across that is where this corner is.
+    /// The corner of the triangle across that coincides with this corner.
     fn same_corner(&self, index: usize, corner: u8, across: Across) -> u8 {
         let next = (across.apex + 1) % 3;
         if self.position(across.index as usize, next) == self.position(index, corner) {
@@ -160,7 +160,7 @@ fn corner_position(mesh: &Mesh, triangle: u32, corner: u8) -> Vec3 {
     mesh.positions[mesh.triangles[triangle as usize].vertices[corner as usize] as usize]
 }
 
-/// What lies across each edge: the one other triangle of the same material with the same end points.
+/// The triangle across each edge: the only other triangle with the same end points, if it is of the same material.
 fn neighbours(mesh: &Mesh, triangles: &[u32]) -> Vec<[Across; 3]> {
     let ends = |edge: u32| {
         let (triangle, apex) = (triangles[(edge / 3) as usize], (edge % 3) as u8);
@@ -170,7 +170,7 @@ fn neighbours(mesh: &Mesh, triangles: &[u32]) -> Vec<[Across; 3]> {
         .into_par_iter()
         .map(|edge| {
             let [p, q] = ends(edge).map(|p| p.to_array().iter().fold(0, |key, x| mix(key ^ u64::from(x.to_bits()))));
-            // The same for both directions of the edge.
+            // A sum is the same for both directions of the edge.
             (p.wrapping_add(q), edge)
         })
         .collect();

@@ -2,33 +2,24 @@
 
 use crate::{
     bounce::{Bounce, SHARE},
-    pattern::Place,
+    pattern::SamplePoint,
+    surface::LitSurface,
 };
 use formats::cloud::Sample;
 use scene::{
-    Mesh, NormalKind, Rays, SurfacePoint,
-    light::{LightChoice, LightTree, Lit, ReceiverBounds, light_at},
+    SurfacePoint, Vec3,
+    light::{LightChoice, Lit, ReceiverBounds, light_at},
 };
-
-/// A surface and its light.
-pub struct LitSurface<'a> {
-    pub mesh: &'a Mesh,
-    pub rays: &'a Rays<'a>,
-    pub lights: LightTree<'a>,
-    pub normals: NormalKind,
-    /// What else is lit and lights it.
-    pub bounce: Option<Bounce<'a>>,
-}
 
 /// What became of a drawn sample.
 pub enum SampleOutcome {
     /// A lit sample, and the material it lies on.
     Lit { sample: Sample, material: u16 },
-    /// No light can reach it: all are behind the surface, or out of range.
+    /// No light can reach it: all are behind the surface, or it is out of their range.
     FacingAway,
     /// The light that was picked is hidden.
     Shadowed,
-    /// It is lit, but its flux vanishes in float32.
+    /// It is lit, but its flux is 0 in float32.
     Underflow,
     /// No lit opaque surface lies in the direction that was chosen.
     NoBounce,
@@ -36,38 +27,41 @@ pub enum SampleOutcome {
     NotFinite,
 }
 
-/// Entries of the list of lights that places share: some, and more for each of them.
-const ENTRIES: [usize; 2] = [32, 4];
+/// The number of nodes in the list of lights that several samples share: so many, and so many more for each sample.
+const SHARED_NODES: [usize; 2] = [32, 4];
 
-/// Lights places of the surface that lie together, each with the half that it belongs to. `shadow_rays` counts the rays
-/// traced.
+/// Lights sample points that lie close together, each with the half that it belongs to, directly or by `bounce`.
+/// `shadow_rays` counts the rays traced.
 pub fn draw(
     surface: &LitSurface,
-    places: &[(usize, Place)],
+    bounce: Option<&Bounce>,
+    samples: &[(usize, SamplePoint)],
     shadow_rays: &mut u64,
     mut tell: impl FnMut(usize, SampleOutcome),
 ) {
-    let point = |(_, p): &(usize, Place)| surface.mesh.point(p.triangle, p.weights, surface.normals);
-    let points: Vec<SurfacePoint> = places.iter().map(point).collect();
-    let Some(region) = ReceiverBounds::around(&points) else { return };
-    let choice = LightChoice::new(&surface.lights, &region, ENTRIES[0] + ENTRIES[1] * points.len());
-    for ((half, place), point) in places.iter().zip(&points) {
-        tell(*half, drawn(surface, place, point, &choice, shadow_rays));
+    let point = |(_, s): &(usize, SamplePoint)| surface.mesh.point(s.triangle, s.weights, surface.normals);
+    let points: Vec<SurfacePoint> = samples.iter().map(point).collect();
+    let Some(receiver) = ReceiverBounds::around(&points) else { return };
+    let [fixed, per_sample] = SHARED_NODES;
+    let choice = LightChoice::new(&surface.lights, &receiver, fixed + per_sample * points.len());
+    for ((half, sample), point) in samples.iter().zip(&points) {
+        tell(*half, drawn(surface, bounce, sample, point, &choice, shadow_rays));
     }
 }
 
-/// The sample at a place: lit directly or, where there are opaque surfaces, by way of one.
+/// Lights one sample: directly or, for a share of the samples where there are opaque surfaces, by one reflection.
 fn drawn(
     surface: &LitSurface,
-    place: &Place,
+    bounce: Option<&Bounce>,
+    sample: &SamplePoint,
     point: &SurfacePoint,
     choice: &LightChoice,
     shadow_rays: &mut u64,
 ) -> SampleOutcome {
-    let [xi, l1, l2] = place.light;
-    let share = if surface.bounce.is_some() { SHARE } else { 0.0 };
-    let (direction, irradiance) = match &surface.bounce {
-        Some(bounce) if xi < share => match bounce.light_at(surface, point, [l1, l2], place.bounce, shadow_rays) {
+    let [xi, l1, l2] = sample.light;
+    let share = if bounce.is_some() { SHARE } else { 0.0 };
+    let (direction, irradiance) = match bounce {
+        Some(bounce) if xi < share => match bounce.light_at(surface, point, [l1, l2], sample.bounce, shadow_rays) {
             None => return SampleOutcome::NoBounce,
             Some((direction, irradiance)) => (direction, irradiance / share),
         },
@@ -78,12 +72,12 @@ fn drawn(
         },
     };
     // note: [flux] Φ = E/pdf(x); the estimator divides by K (method.md 6.5).
-    // Of a color of -0 it would be -0; a cloud has no negative flux.
-    let flux = (irradiance / place.pdf_area).as_vec3() + scene::Vec3::ZERO;
+    // A color of -0 would make a flux of -0: adding 0 removes the sign.
+    let flux = (irradiance / sample.pdf_area).as_vec3() + Vec3::ZERO;
     if !flux.is_finite() {
         return SampleOutcome::NotFinite;
     }
-    if flux == scene::Vec3::ZERO {
+    if flux == Vec3::ZERO {
         return SampleOutcome::Underflow;
     }
     let sample = Sample { position: point.position.as_vec3(), normal: point.normal, direction, flux };

@@ -155,7 +155,7 @@ fn advice(small: &Batch, large: &Batch, [view, memory, image]: [f64; 3], most: f
          not count: choose K so that the cloud fits, or render each part's image by itself (`gather part7.cloud`, other `--seed`) and average: the mean \
          of images of independent parts is unbiased.\n\
          * **Memory, in sampling.** Half of the {} GB of a node hold {} samples: larger clouds are drawn in parts \
-         (`--shard`, [large.md](../large.md)), each on a node of its own, and gathered together. An image of 1920 x 1080 \
+         (`--shard`, [guide.md](../guide.md#big-clouds)), each on a node of its own, and gathered together. An image of 1920 x 1080 \
          takes {} to gather; `gather` asks for 1280 bytes a pixel before it starts, so 64 GB do for 50 million pixels, and \
          larger images are rendered in crops.\n\n\
          What to set:\n\n\

@@ -16,7 +16,9 @@ pub fn check_comparison(image: &Image) {
     turned.channels.iter_mut().for_each(|channel| channel.samples.reverse());
     let numbers = image.channels.iter().flat_map(|c| &c.samples).all(|x| x.is_finite());
     for (test, same) in [(image, true), (&turned, false)] {
-        let gates = vec![Gate::Exact, Gate::Bias(0.1), Gate::Rmse(0.1), Gate::Outliers { count: 3, threshold: 0.1 }];
+        let gates =
+            [("exact", 0.0, None), ("max-bias", 0.1, None), ("max-rmse", 0.1, None), ("max-outliers", 3.0, Some(0.1))];
+        let gates = gates.map(|(name, limit, threshold)| Gate::new(name, limit, threshold).expect("a gate")).into();
         let settings = Settings { gates, ignore_meta: true, ..Settings::default() };
         let report = match compare(image, test, &settings) {
             Ok(report) => report,

@@ -1,7 +1,7 @@
 //! Limits files of `compare`.
 
 use crate::file::with_file;
-use compare::{Gate, read_limits};
+use compare::read_limits;
 
 /// Accepted limits are numbers that an image can be held to.
 pub fn limits(bytes: &[u8]) -> bool {
@@ -9,12 +9,9 @@ pub fn limits(bytes: &[u8]) -> bool {
     assert!(!limits.is_empty());
     for limit in &limits {
         assert!(!limit.reason.trim().is_empty());
-        let number = match limit.gate {
-            Gate::Bias(x) | Gate::RelMse(x) | Gate::Rmse(x) | Gate::Abs(x) | Gate::Flip(x) => x,
-            Gate::Outliers { threshold, .. } => threshold,
-            Gate::Exact => 0.0,
-        };
-        assert!(number.is_finite() && number >= 0.0, "{number}");
+        for number in [limit.gate.limit(), limit.gate.threshold().unwrap_or(0.0)] {
+            assert!(number.is_finite() && number >= 0.0, "{number}");
+        }
     }
     true
 }

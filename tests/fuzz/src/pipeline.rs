@@ -59,7 +59,6 @@ fn render(scene: &Scene, rays: &Rays, cloud: &Cloud, normals: NormalKind, estima
             filter: Filter::Box,
             estimator,
             normals,
-            environment: scene::DVec3::ONE.into(),
             max_depth: 8,
             ..pipeline::settings(Model::DirectionalDipole, SIDE, SIDE)
         };

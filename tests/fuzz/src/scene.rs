@@ -34,7 +34,7 @@ fn check_surface(scene: &Scene) {
     let translucent = scene.translucent().map_or(Vec::new(), |(materials, _)| materials);
     scene.defects(|material| translucent.contains(&material));
     let rays = Rays::of_scene(scene, |material| translucent.contains(&material));
-    let lights = LightTree::new(&scene.lights);
+    let lights = LightTree::new(scene.lights());
     let count = scene.mesh.triangles.len();
     for k in (0..count).step_by(count.div_ceil(LIT)) {
         assert!(usize::from(scene.mesh.triangles[k].material) < scene.materials.len());
@@ -42,7 +42,7 @@ fn check_surface(scene: &Scene) {
         assert!(scene.mesh.area(k) > 0.0 && point.position.is_finite());
         // Shading normals are rounded to float32 and interpolated.
         assert!((point.normal.length() - 1.0).abs() < 1e-6 && (point.geometric_normal.length() - 1.0).abs() < 1e-12);
-        for light in &scene.lights {
+        for light in scene.lights() {
             assert!(light.importance(&point) >= 0.0);
             if let Some(arriving) = light.illuminate(&point, [0.3, 0.6]) {
                 assert!(arriving.irradiance.is_finite() && arriving.irradiance.min_element() >= 0.0);

@@ -78,7 +78,7 @@ pub fn imported(asset: &Asset, metres_per_unit: f64, environment: DVec3) -> Worl
 
 fn imported_with(path: &Path, options: &ImportOptions, environment: DVec3) -> World {
     let mut scene = Scene::import(path, options).expect("the file is valid glTF");
-    scene.add_environment(environment);
+    scene.environment = environment.into();
     let rays = Rays::new(&scene.mesh);
     World { scene, rays }
 }

@@ -124,7 +124,6 @@ pub fn settings(model: Model, width: usize, height: usize) -> gather::Settings {
         estimator: Estimator::Exhaustive,
         model,
         normals: NormalKind::Geometric,
-        environment: DVec3::ZERO.into(),
         max_depth: 16,
         seed: 1,
     }

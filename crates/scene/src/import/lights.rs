@@ -1,4 +1,4 @@
-//! Import of lights, and their digest.
+//! Import of lights.
 
 use super::{
     fault::{Fault, get},
@@ -18,58 +18,32 @@ use gltf::json::{
 };
 use std::f64::consts::FRAC_PI_2;
 
-/// Lights with a digest of all that defines them.
-#[derive(Default)]
-pub(super) struct Lights {
-    pub list: Vec<Box<dyn Light>>,
-    pub digest: blake3::Hasher,
+/// One area light for each emitting material that is on the mesh.
+pub(super) fn emitters(mesh: &Mesh, materials: &[Material]) -> Vec<Box<dyn Light>> {
+    let mut triangles = vec![Vec::new(); materials.len()];
+    for (k, t) in mesh.triangles.iter().enumerate() {
+        if materials[t.material as usize].emits() {
+            triangles[t.material as usize].push(k);
+        }
+    }
+    let light = |(m, own): (&Material, &Vec<usize>)| AreaLight::new(mesh, own, m.emission, m.double_sided);
+    let lights = materials.iter().zip(&triangles).filter_map(light);
+    lights.map(|light| Box::new(light) as Box<dyn Light>).collect()
 }
 
-impl Lights {
-    fn note(&mut self, kind: u8, numbers: &[f64]) {
-        self.digest.update(&[kind]);
-        numbers.iter().for_each(|x| {
-            self.digest.update(&x.to_le_bytes());
-        });
-    }
-
-    /// Adds an area light for each emitting material of the mesh.
-    pub fn add_emitters(&mut self, mesh: &Mesh, materials: &[Material]) {
-        let mut triangles = vec![Vec::new(); materials.len()];
-        for (k, t) in mesh.triangles.iter().enumerate() {
-            if materials[t.material as usize].emits() {
-                triangles[t.material as usize].push(k);
-            }
+/// The light of a node.
+fn light_of(light: &Punctual, pose: &Pose, power: DVec3, metres_per_unit: f64) -> Result<Box<dyn Light>, Fault> {
+    match light.type_ {
+        Checked::Valid(Type::Directional) => {
+            Ok(Box::new(DirectionalLight { direction: -pose.axis()?, irradiance: power }))
         }
-        for (k, m) in materials.iter().enumerate() {
-            if let Some(light) = AreaLight::new(mesh, &triangles[k], m.emission, m.double_sided) {
-                self.note(3, &[k as f64, f64::from(u8::from(m.double_sided))]);
-                self.note(3, &m.emission.to_array());
-                self.list.push(Box::new(light));
-            }
+        Checked::Valid(kind) => {
+            let cone = if kind == Type::Spot { Some((pose.axis()?, angles_of(light)?)) } else { None };
+            let spot = cone.map(|(axis, [inner, outer])| Spot::new(axis, inner, outer));
+            let range = range_of(light, metres_per_unit)?;
+            Ok(Box::new(PointLight { position: pose.position, intensity: power, spot, range }))
         }
-    }
-
-    /// Adds the light of a node.
-    fn add(&mut self, light: &Punctual, pose: &Pose, power: DVec3, metres_per_unit: f64) -> Result<(), Fault> {
-        match light.type_ {
-            Checked::Valid(Type::Directional) => {
-                let axis = pose.axis()?;
-                self.note(1, &[axis.to_array(), power.to_array()].concat());
-                self.list.push(Box::new(DirectionalLight { direction: -axis, irradiance: power }));
-            }
-            Checked::Valid(kind) => {
-                let cone = if kind == Type::Spot { Some((pose.axis()?, angles_of(light)?)) } else { None };
-                let spot = cone.map(|(axis, [inner, outer])| Spot::new(axis, inner, outer));
-                let range = range_of(light, metres_per_unit)?;
-                self.note(2, &[pose.position.to_array(), power.to_array()].concat());
-                self.note(2, &cone.map_or(vec![], |(axis, angles)| [&axis.to_array()[..], &angles].concat()));
-                self.note(2, &[range.unwrap_or(f64::INFINITY)]);
-                self.list.push(Box::new(PointLight { position: pose.position, intensity: power, spot, range }));
-            }
-            Checked::Invalid => return Err("its type is not directional, point or spot".into()),
-        }
-        Ok(())
+        Checked::Invalid => Err("its type is not directional, point or spot".into()),
     }
 }
 
@@ -96,8 +70,8 @@ pub(super) fn punctual(
     options: &ImportOptions,
     origin: DVec3,
     warnings: &mut Vec<String>,
-) -> Result<Lights, Fault> {
-    let mut lights = Lights::default();
+) -> Result<Vec<Box<dyn Light>>, Fault> {
+    let mut lights = Vec::new();
     let defined = root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
     for node in nodes {
         let Some(reference) = node.node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref()) else {
@@ -112,7 +86,7 @@ pub(super) fn punctual(
             continue;
         }
         let position = node.transform.transform_point3(DVec3::ZERO) - origin;
-        lights.add(light, &Pose { node, position }, power, options.metres_per_unit).map_err(fault)?;
+        lights.push(light_of(light, &Pose { node, position }, power, options.metres_per_unit).map_err(fault)?);
     }
     Ok(lights)
 }

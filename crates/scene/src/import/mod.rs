@@ -29,6 +29,7 @@ mod volumes;
 
 use crate::{
     Material, Scene, SceneError,
+    light::Environment,
     mesh::Mesh,
     unhonoured::{quoted, rest},
 };
@@ -41,7 +42,7 @@ pub use options::{ImportOptions, LightUnit};
 use primitive::CheckedMesh;
 use std::{
     collections::{BTreeMap, BTreeSet},
-    path::Path,
+    path::{Path, PathBuf},
 };
 use unhonoured::RenderedParts;
 
@@ -53,6 +54,18 @@ impl Scene {
             Refusal::Invalid(what) => SceneError::Invalid { path: path.to_owned(), what },
             Refusal::TooLarge => SceneError::TooLarge { path: path.to_owned() },
         })
+    }
+
+    /// The files that a scene consists of: itself, and those in its folder or below that its buffers and images name,
+    /// whether or not they are there or anything uses them.
+    pub fn files_of(path: &Path) -> Result<Vec<PathBuf>, SceneError> {
+        let document = Document::read(path)?;
+        let buffers = document.root.buffers.iter().filter_map(|buffer| buffer.uri.as_ref());
+        let images = document.root.images.iter().filter_map(|image| image.uri.as_ref());
+        let uris = buffers.chain(images).filter(|uri| !uri.starts_with("data:"));
+        let named: BTreeSet<PathBuf> =
+            uris.filter_map(|uri| document.files.borrow().locate(uri).ok()).map(|(path, _)| path).collect();
+        Ok(std::iter::once(path.to_owned()).chain(named).collect())
     }
 }
 
@@ -74,7 +87,7 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
         warnings.push(format!("{count} triangles lie exactly on others of their material and are left out"));
     }
     let mut lights = lights::punctual(root, &nodes, options, origin, &mut warnings)?;
-    lights.add_emitters(&mesh, &materials);
+    lights.extend(lights::emitters(&mesh, &materials));
     let metres_per_unit = options.metres_per_unit;
     let cameras = cameras::read(root, &nodes, metres_per_unit)?;
     let parts = RenderedParts { mesh: &mesh, nodes: &nodes, cameras: &cameras, origin, metres_per_unit };
@@ -84,7 +97,8 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
         claimed: claimed(root, &nodes),
         mesh,
         materials,
-        lights: lights.list,
+        file_lights: lights,
+        environment: Environment::default(),
         cameras,
         origin,
         warnings,
@@ -92,7 +106,6 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
         rounded_triangles: rounded,
         duplicate_triangles: duplicates,
         unhonoured,
-        light_digest: *lights.digest.finalize().as_bytes(),
     })
 }
 

@@ -1,12 +1,13 @@
-//! The choice of one light, in time that does not depend on the number of those that are somewhere; directional lights are
+//! The choice of one light, in a time that does not depend on the number of lights with bounds. Distant lights are
 //! weighed one by one.
 //!
-//! Points that lie together share one list of lights with what each sends to their middle, and of nodes of the tree for
-//! those that send little. A few are drawn from it, and one of them is chosen by what it sends to the point itself. Lights
-//! that are near or infinitely far are weighed anew at every point. Every light that can reach a point has a chance there.
+//! Nearby points share one list: lights with their importance at the center of the points, and nodes of the tree instead
+//! of lights of little importance. A few candidates are drawn from the list, and one of them is chosen by its importance
+//! at the point itself. Near and distant lights are weighed anew at every point. Every light that can reach a point has a
+//! chance there.
 
 use super::{
-    Light,
+    contract::Light,
     hierarchical_sampler::split,
     receiver::ReceiverBounds,
     tree::{Kind, LightTree},
@@ -14,50 +15,50 @@ use super::{
 use crate::{mesh::SurfacePoint, random::BELOW_ONE};
 use std::collections::BinaryHeap;
 
-/// Lights that are weighed at every point because they are near, at most.
+/// The number of lights, at most, that are weighed at every point because they are near.
 const MAX_NEAR: usize = 16;
 
-/// Lights that are drawn from the list to choose one of.
+/// The number of candidates that are drawn from the list.
 const CANDIDATES: usize = 4;
 
-/// Lights to choose from at the points of a region.
+/// Lights to choose from at the points of a receiver.
 pub struct LightChoice<'t, 'a> {
     tree: &'t LightTree<'a>,
-    /// Lights that are weighed at each point.
+    /// Indices of the lights that are weighed at each point.
     single: Vec<u32>,
-    /// Nodes of the tree, each with the importance of it and of all before it.
+    /// Nodes of the tree, each with the sum of the importance of it and all before it.
     shared: Vec<(u32, f64)>,
-    /// Nodes and lights that were weighed for the list.
+    /// How many nodes and lights were weighed for the list.
     pub weighed: u64,
 }
 
 /// A light that was chosen.
 #[derive(Clone, Copy)]
 pub struct Pick<'a> {
-    /// Its number in the list that the tree was made of.
+    /// Its index in the list that the tree was made of.
     pub index: usize,
     pub light: &'a dyn Light,
-    /// What its light is divided by to stand for all: the probability of its choice, or where candidates were compared,
-    /// an estimate of it that leaves the mean as it is.
+    /// What its irradiance is divided by to stand for that of all lights: the probability of its choice or, where
+    /// candidates were compared, an estimate of it that keeps the mean.
     pub share: f64,
 }
 
 impl<'t, 'a> LightChoice<'t, 'a> {
-    /// Lights for the points of a region; the list has `most` entries at most.
-    pub fn new(tree: &'t LightTree<'a>, region: &ReceiverBounds, most: usize) -> Self {
+    /// Lights for the points of a receiver, in a list of `max_nodes` nodes or fewer.
+    pub fn new(tree: &'t LightTree<'a>, receiver: &ReceiverBounds, max_nodes: usize) -> Self {
         let mut choice = LightChoice { tree, single: tree.single.clone(), shared: Vec::new(), weighed: 0 };
         if tree.is_flat() {
             return choice;
         }
-        let nodes = if tree.leaves().len() <= most {
-            tree.leaves().iter().map(|node| (*node, choice.weigh(*node, region))).collect()
+        let nodes = if tree.leaves().len() <= max_nodes {
+            tree.leaves().iter().map(|node| (*node, choice.weigh(*node, receiver))).collect()
         } else {
-            choice.open(region, most)
+            choice.open(receiver, max_nodes)
         };
         let mut total = 0.0;
         for (node, importance) in nodes {
             match tree.kind(node) {
-                Kind::Leaf(light) if choice.single.len() < MAX_NEAR && tree.is_near(node, region) => {
+                Kind::Leaf(light) if choice.single.len() < MAX_NEAR && tree.is_near(node, receiver) => {
                     choice.single.push(light);
                 }
                 _ if importance > 0.0 => {
@@ -70,23 +71,23 @@ impl<'t, 'a> LightChoice<'t, 'a> {
         choice
     }
 
-    fn weigh(&mut self, node: u32, region: &ReceiverBounds) -> f64 {
+    fn weigh(&mut self, node: u32, receiver: &ReceiverBounds) -> f64 {
         self.weighed += 1;
-        self.tree.importance(node, region)
+        self.tree.importance(node, receiver)
     }
 
-    /// Nodes that hold all lights: the most important is opened until there are `most`.
-    fn open(&mut self, region: &ReceiverBounds, most: usize) -> Vec<(u32, f64)> {
+    /// Nodes that hold all lights: the most important one is opened until there are `max_nodes`.
+    fn open(&mut self, receiver: &ReceiverBounds, max_nodes: usize) -> Vec<(u32, f64)> {
         let (mut closed, mut open) = (Vec::new(), BinaryHeap::new());
-        // Numbers that are not negative are in the order of their bits.
-        open.push((self.weigh(0, region).to_bits(), 0));
-        while closed.len() + open.len() < most
+        // The bits of floating-point numbers that are not negative are in the order of the numbers.
+        open.push((self.weigh(0, receiver).to_bits(), 0));
+        while closed.len() + open.len() < max_nodes
             && let Some((bits, node)) = open.pop()
         {
             match self.tree.kind(node) {
                 Kind::Leaf(_) => closed.push((node, f64::from_bits(bits))),
                 Kind::Inner(children) => {
-                    open.extend(children.map(|child| (self.weigh(child, region).to_bits(), child)));
+                    open.extend(children.map(|child| (self.weigh(child, receiver).to_bits(), child)));
                 }
             }
         }
@@ -95,8 +96,8 @@ impl<'t, 'a> LightChoice<'t, 'a> {
         closed
     }
 
-    /// A light, chosen nearly by its share of the light that arrives; none if no light that the uniform number `xi` leads to
-    /// reaches the point.
+    /// Picks a light, nearly in proportion to its share of the irradiance at the point; none if no light that the uniform
+    /// number `xi` leads to reaches the point.
     pub fn pick(&self, at: &SurfacePoint, mut xi: f64) -> Option<Pick<'a>> {
         let importance = |k: &u32| self.tree.lights[*k as usize].importance(at);
         let single: f64 = self.single.iter().map(importance).sum();
@@ -126,17 +127,17 @@ impl<'t, 'a> LightChoice<'t, 'a> {
 
     fn picked(&self, light: u32, share: f64) -> Pick<'a> {
         let index = light as usize;
-        Pick { index, light: &*self.tree.lights[index], share }
+        Pick { index, light: self.tree.lights[index], share }
     }
 
-    /// One light of the shared list: of a few that are drawn by what they send to the middle, one by what it sends to the
-    /// point (resampled importance sampling, Talbot et al. 2005).
+    /// Picks one light of the shared list: candidates are drawn by their importance at the center of the receiver, and one
+    /// of them is chosen by its importance at the point (resampled importance sampling, Talbot et al. 2005).
     fn resample(&self, at: &SurfacePoint, xi: f64, probability: f64) -> Option<Pick<'a>> {
         let count = CANDIDATES as f64;
         let (mut low, mut high) = (0.0f64, 1.0f64);
         let candidates: [(u32, f64, f64); CANDIDATES] = std::array::from_fn(|k| {
             let drawn = self.draw(at, (k as f64 + xi) / count);
-            // All numbers between these draw this light.
+            // All numbers between `low` and `high` draw the same candidates.
             low = low.max(xi - drawn.xi * drawn.probability * count);
             high = high.min(xi + (1.0 - drawn.xi) * drawn.probability * count);
             let importance = if drawn.dark { 0.0 } else { self.tree.lights[drawn.light as usize].importance(at) };
@@ -146,7 +147,7 @@ impl<'t, 'a> LightChoice<'t, 'a> {
         if total.is_nan() || total <= 0.0 {
             return None;
         }
-        // What the candidates left of the number is uniform between those that draw the same ones.
+        // Given the candidates, the number is uniform between `low` and `high`: it is used again to choose among them.
         let mut left = ((xi - low) / (high - low)).clamp(0.0, 1.0) * total;
         let mut last = None;
         for (light, importance, ratio) in candidates {
@@ -161,13 +162,13 @@ impl<'t, 'a> LightChoice<'t, 'a> {
         last
     }
 
-    /// A node of the shared list, and one light below it.
-    fn draw(&self, at: &SurfacePoint, number: f64) -> Draw {
+    /// Draws a node of the shared list, and one light below it.
+    fn draw(&self, at: &SurfacePoint, xi: f64) -> Draw {
         let total = self.shared.last().map_or(0.0, |(_, total)| *total);
-        let target = number * total;
-        let place = self.shared.partition_point(|(_, so_far)| *so_far <= target).min(self.shared.len() - 1);
-        let before = if place == 0 { 0.0 } else { self.shared[place - 1].1 };
-        let (mut node, so_far) = self.shared[place];
+        let target = xi * total;
+        let index = self.shared.partition_point(|(_, so_far)| *so_far <= target).min(self.shared.len() - 1);
+        let before = if index == 0 { 0.0 } else { self.shared[index - 1].1 };
+        let (mut node, so_far) = self.shared[index];
         let own = so_far - before;
         let (mut xi, mut probability) = (((target - before) / own).clamp(0.0, BELOW_ONE), own / total);
         loop {
@@ -186,12 +187,12 @@ impl<'t, 'a> LightChoice<'t, 'a> {
     }
 }
 
-/// A light that is drawn from the list.
+/// A light that was drawn from the list.
 struct Draw {
     light: u32,
-    /// No light below the node that was drawn reaches the point.
+    /// No light below the node reaches the point.
     dark: bool,
     probability: f64,
-    /// Where in the share of what was drawn the number lay, in [0, 1).
+    /// The uniform number again, within the share of what was drawn, in [0, 1).
     xi: f64,
 }

@@ -1,6 +1,9 @@
-//! Light from infinitely far away.
+//! Light from infinitely far away, of one direction.
 
-use super::{Illumination, Light, LightBounds, channel_sum};
+use super::{
+    bounds::LightBounds,
+    contract::{Illumination, Light, channel_sum, hash_numbers},
+};
 use crate::mesh::SurfacePoint;
 use glam::DVec3;
 
@@ -9,7 +12,7 @@ use glam::DVec3;
 pub struct DirectionalLight {
     /// Unit direction towards the light.
     pub direction: DVec3,
-    /// Irradiance `E⊥` on a plane across the light, W/m².
+    /// Irradiance `E⊥` on a plane perpendicular to the light, W/m².
     pub irradiance: DVec3,
 }
 
@@ -32,5 +35,17 @@ impl Light for DirectionalLight {
             distance: f64::INFINITY,
             irradiance: self.irradiance * cosine,
         })
+    }
+
+    fn pdf_solid_angle(&self, _at: &SurfacePoint, _direction: DVec3) -> f64 {
+        0.0
+    }
+
+    fn radiance(&self, _position: DVec3, _direction: DVec3) -> DVec3 {
+        DVec3::ZERO
+    }
+
+    fn hash_into(&self, hasher: &mut blake3::Hasher) {
+        hash_numbers(hasher, 1, &[(-self.direction).to_array(), self.irradiance.to_array()].concat());
     }
 }

@@ -1,6 +1,10 @@
 //! Light from all around.
 
-use super::{EnvironmentMap, Illumination, Light, LightBounds, channel_sum};
+use super::{
+    bounds::LightBounds,
+    contract::{Illumination, Light, channel_sum},
+    environment_map::EnvironmentMap,
+};
 use crate::{mesh::SurfacePoint, warp};
 use glam::DVec3;
 use std::{f64::consts::PI, sync::Arc};
@@ -14,14 +18,6 @@ pub enum Environment {
 }
 
 impl Environment {
-    /// Radiance that a ray in this unit direction sees, W/(m² sr).
-    pub fn radiance(&self, direction: DVec3) -> DVec3 {
-        match self {
-            Environment::Constant(radiance) => *radiance,
-            Environment::Map(map) => map.radiance(direction),
-        }
-    }
-
     /// True if no light comes from it.
     pub fn is_black(&self) -> bool {
         match self {
@@ -30,12 +26,19 @@ impl Environment {
         }
     }
 
-    /// What tells it from others, as text: `R,G,B`, or a digest of the map's pixels with its scale and rotation.
+    /// What distinguishes it from others, as text: `R,G,B`, or a digest of the map's pixels with its scale and rotation.
     pub fn identity(&self) -> String {
         match self {
             Environment::Constant(DVec3 { x, y, z }) => format!("{x},{y},{z}"),
             Environment::Map(map) => map.identity(),
         }
+    }
+}
+
+impl Default for Environment {
+    /// No light.
+    fn default() -> Environment {
+        Environment::Constant(DVec3::ZERO)
     }
 }
 
@@ -57,7 +60,7 @@ impl Light for Environment {
         }
     }
 
-    /// Of a constant one: cosine-distributed directions, `E = V π L` (method.md 6.4).
+    /// A constant environment gives cosine-distributed directions, `E = V π L` (method.md 6.4).
     fn illuminate(&self, at: &SurfacePoint, xi: [f64; 2]) -> Option<Illumination> {
         match self {
             Environment::Constant(radiance) => Some(Illumination {
@@ -67,5 +70,23 @@ impl Light for Environment {
             }),
             Environment::Map(map) => map.illuminate(at, xi),
         }
+    }
+
+    fn pdf_solid_angle(&self, at: &SurfacePoint, direction: DVec3) -> f64 {
+        match self {
+            Environment::Constant(_) => warp::cosine_hemisphere_pdf_solid_angle(at.normal.dot(direction)),
+            Environment::Map(map) => map.pdf_solid_angle(at, direction),
+        }
+    }
+
+    fn radiance(&self, _position: DVec3, direction: DVec3) -> DVec3 {
+        match self {
+            Environment::Constant(radiance) => *radiance,
+            Environment::Map(map) => map.radiance(direction),
+        }
+    }
+
+    fn hash_into(&self, hasher: &mut blake3::Hasher) {
+        hasher.update(self.identity().as_bytes());
     }
 }

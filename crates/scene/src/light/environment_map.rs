@@ -1,11 +1,11 @@
 //! Light from all around by a picture in the equirectangular projection.
 //!
-//! Seen from inside with +Y up, the middle of the picture lies in direction +X, and its columns go on to the right
-//! towards +Z; the top row surrounds +Y. A rotation turns it about +Y, counter-clockwise seen from above. Radiance is
-//! constant over each pixel: what a ray sees is what directions are chosen by.
+//! Seen from inside with +Y up, the middle of the picture lies in direction +X, and its columns run to the right, towards
+//! +Z; the top row surrounds +Y. A rotation turns it about +Y, counter-clockwise seen from above. Radiance is constant over
+//! each pixel: directions are chosen by exactly what a ray sees.
 
 use super::{
-    Illumination, Light, LightBounds, channel_sum,
+    contract::{Illumination, channel_sum},
     cosine_importance::{CosineImportanceTable, TILE_COLUMNS, TILE_ROWS},
     hierarchical_sampler::{Cell, HierarchicalSampler2d},
 };
@@ -13,10 +13,10 @@ use crate::mesh::SurfacePoint;
 use glam::{DVec2, DVec3, Vec3};
 use std::f64::consts::{PI, TAU};
 
-/// Most pixels of a map.
+/// The largest number of pixels of a map.
 const MAX_PIXELS: usize = 1 << 27;
 
-/// Why pixels are no map.
+/// Why pixels cannot be a map.
 #[derive(Debug, thiserror::Error)]
 pub enum MapError {
     #[error(
@@ -27,26 +27,26 @@ pub enum MapError {
     Size { width: usize, height: usize },
 }
 
-/// A picture of distant light. Its directions are chosen by radiance, solid angle and the cosine at the surface.
+/// A picture of distant light. Its directions are chosen in proportion to radiance, solid angle and the cosine at the surface.
 #[derive(Debug)]
 pub struct EnvironmentMap {
     width: usize,
     height: usize,
-    /// Row after row from the top, W/(m² sr) but for the scale.
+    /// Row after row from the top, W/(m² sr) before the scale is applied.
     pixels: Vec<Vec3>,
     scale: f64,
     rotation_degrees: f64,
     /// Cosine and sine of the rotation.
-    turn: DVec2,
-    /// Strength times solid angle of each pixel.
+    rotation: DVec2,
+    /// Channel sum times solid angle of each pixel.
     power: HierarchicalSampler2d,
-    /// The tiles that light comes through, for every way a surface can face.
+    /// For each bin of normals, the light of each tile times a cosine.
     cosine_importance: CosineImportanceTable,
 }
 
 impl EnvironmentMap {
-    /// Bytes that a map of so many columns and rows takes: a pixel of 12 with a sum of 4, and sums of four times as many
-    /// pixels at each level above.
+    /// Bytes that a map of this width and height takes: 12 for a pixel, 4 for its weight, and a third of 4 for the coarser
+    /// levels, each of which has a quarter of the cells of the level below.
     pub fn bytes((width, height): (usize, usize)) -> u64 {
         (width as u64).saturating_mul(height as u64).saturating_mul(18)
     }
@@ -73,13 +73,16 @@ impl EnvironmentMap {
         });
         let cosine_importance = CosineImportanceTable::new(&power);
         let (sine, cosine) = rotation_degrees.to_radians().sin_cos();
-        let turn = DVec2::new(cosine, sine);
-        Ok(EnvironmentMap { width, height, pixels, scale, rotation_degrees, turn, power, cosine_importance })
+        let rotation = DVec2::new(cosine, sine);
+        Ok(EnvironmentMap { width, height, pixels, scale, rotation_degrees, rotation, power, cosine_importance })
     }
 
     /// Radiance that a ray in this unit direction sees, W/(m² sr).
     pub fn radiance(&self, direction: DVec3) -> DVec3 {
-        let [column, row] = self.pixel(self.in_map(direction));
+        self.pixel_radiance(self.pixel(self.in_map(direction)))
+    }
+
+    fn pixel_radiance(&self, [column, row]: [usize; 2]) -> DVec3 {
         self.pixels[row * self.width + column].as_dvec3() * self.scale
     }
 
@@ -97,18 +100,19 @@ impl EnvironmentMap {
         format!("map {} * {} turned by {} degrees", hasher.finalize().to_hex(), self.scale, self.rotation_degrees)
     }
 
-    /// A direction of the world as the map has it.
+    /// A direction of the world in the coordinates of the map.
     fn in_map(&self, d: DVec3) -> DVec3 {
-        let DVec2 { x: cosine, y: sine } = self.turn;
+        let DVec2 { x: cosine, y: sine } = self.rotation;
         DVec3::new(d.x * cosine - d.z * sine, d.y, d.x * sine + d.z * cosine)
     }
 
+    /// A direction of the map in the coordinates of the world.
     fn in_world(&self, d: DVec3) -> DVec3 {
-        let DVec2 { x: cosine, y: sine } = self.turn;
+        let DVec2 { x: cosine, y: sine } = self.rotation;
         DVec3::new(d.x * cosine + d.z * sine, d.y, d.z * cosine - d.x * sine)
     }
 
-    /// Column and row of a unit direction of the map.
+    /// Column and row of the pixel in a unit direction of the map.
     fn pixel(&self, d: DVec3) -> [usize; 2] {
         let across = d.z.atan2(d.x) / TAU + 0.5;
         let down = DVec2::new(d.x, d.z).length().atan2(d.y) / PI;
@@ -116,7 +120,7 @@ impl EnvironmentMap {
         [index(across, self.width), index(down, self.height)]
     }
 
-    /// The direction of the map at a place within a pixel, even in solid angle.
+    /// The direction of the map to the point `cell.xi` of a pixel: uniform numbers make it uniform in solid angle.
     fn direction(&self, cell: &Cell) -> DVec3 {
         let across = (cell.column as f64 + cell.xi[0]) / self.width as f64;
         let [high, low] = [cell.row, cell.row + 1].map(|row| half_angle(row, self.height).sin().powi(2));
@@ -139,29 +143,37 @@ fn solid_angle(width: usize, height: usize, row: usize) -> f64 {
     2.0 * (high + low).sin() * (low - high).sin() * TAU / width as f64
 }
 
-impl Light for EnvironmentMap {
-    fn bounds(&self) -> Option<LightBounds> {
-        None
-    }
-
-    fn importance(&self, at: &SurfacePoint) -> f64 {
+impl EnvironmentMap {
+    /// The light of the tiles that the surface faces, W/m².
+    pub fn importance(&self, at: &SurfacePoint) -> f64 {
         self.cosine_importance.facing(self.in_map(at.normal)).total() * self.scale
     }
 
-    /// note: [irradiance] A tile by its light and cosine, a pixel in it by its light, and any place in the pixel:
-    /// `E = L (n·ω) Ω/P` with the pixel's solid angle and probability.
-    fn illuminate(&self, at: &SurfacePoint, xi: [f64; 2]) -> Option<Illumination> {
+    /// note: [irradiance] A tile is chosen by its light and cosine, a pixel in it by its light, and a uniform direction in
+    /// the pixel: `E = L (n·ω) Ω/P` with the pixel's solid angle and probability.
+    pub fn illuminate(&self, at: &SurfacePoint, xi: [f64; 2]) -> Option<Illumination> {
         let tiles = self.cosine_importance.facing(self.in_map(at.normal));
         if tiles.total() == 0.0 {
             return None;
         }
-        let tile = tiles.choose(xi);
-        let level = self.power.level_within(TILE_COLUMNS, TILE_ROWS);
-        let cell = self.power.choose_below(level, tile);
+        let cell = self.power.choose_below(self.tile_level(), tiles.choose(xi));
         let direction = self.in_world(self.direction(&cell));
         let cosine = at.normal.dot(direction);
-        let radiance = self.pixels[cell.row * self.width + cell.column].as_dvec3() * self.scale;
+        let radiance = self.pixel_radiance([cell.column, cell.row]);
         let factor = cosine * solid_angle(self.width, self.height, cell.row) / cell.probability;
         (cosine > 0.0).then(|| Illumination { direction, distance: f64::INFINITY, irradiance: radiance * factor })
+    }
+
+    /// `P/Ω` of the pixel in this direction.
+    pub fn pdf_solid_angle(&self, at: &SurfacePoint, direction: DVec3) -> f64 {
+        let tiles = self.cosine_importance.facing(self.in_map(at.normal));
+        let ([column, row], level) = (self.pixel(self.in_map(direction)), self.tile_level());
+        let tile = tiles.probability(tiles.top(), column >> level, row >> level);
+        tile * self.power.probability(level, column, row) / solid_angle(self.width, self.height, row)
+    }
+
+    /// The level of `power` whose cells are the tiles.
+    fn tile_level(&self) -> usize {
+        self.power.level_within(TILE_COLUMNS, TILE_ROWS)
     }
 }

@@ -1,14 +1,14 @@
-//! A choice of one cell of a grid in proportion to its weight, which keeps well-spread numbers well spread (Clarberg et
-//! al. 2005, hierarchical sample warping).
+//! The choice of one cell of a grid in proportion to its weight, by numbers that stay well spread (hierarchical sample
+//! warping, Clarberg et al. 2005).
 
 use crate::random::BELOW_ONE;
 
-/// Sums of weights over squares of 1, 2, 4, ... cells a side, the finest first. Weights are relative to each other, and
-/// the probability of a cell is made of the stored sums: rounding moves no density.
+/// Sums of weights over squares of 1, 2, 4, ... cells a side, the finest level first. Weights are relative to each other,
+/// and the probability of a cell is computed from the stored sums: their rounding makes no error in a density.
 #[derive(Debug)]
 pub(super) struct HierarchicalSampler2d {
     levels: Vec<Level>,
-    /// What a weight of 1 stands for.
+    /// The weight that is stored as 1.
     unit: f64,
 }
 
@@ -25,7 +25,7 @@ pub(super) struct Cell {
     pub column: usize,
     pub row: usize,
     pub probability: f64,
-    /// Uniform in [0, 1) again: where in the cell's share the numbers lay that chose it.
+    /// The uniform numbers again, within the cell's share, in [0, 1).
     pub xi: [f64; 2],
 }
 
@@ -35,23 +35,25 @@ impl Level {
         if inside { f64::from(self.weights[row * self.width + column]) } else { 0.0 }
     }
 
+    /// The sum over the square of four cells whose first one this is.
+    fn square_sum(&self, x: usize, y: usize) -> f64 {
+        self.at(x, y) + self.at(x + 1, y) + self.at(x, y + 1) + self.at(x + 1, y + 1)
+    }
+
     /// Sums over squares of two cells a side.
     fn coarser(&self) -> Level {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
-        let sum = |k: usize| {
-            let (x, y) = (k % width * 2, k / width * 2);
-            (self.at(x, y) + self.at(x + 1, y) + self.at(x, y + 1) + self.at(x + 1, y + 1)) as f32
-        };
+        let sum = |k: usize| self.square_sum(k % width * 2, k / width * 2) as f32;
         Level { width, height, weights: (0..width * height).map(sum).collect() }
     }
 }
 
 impl HierarchicalSampler2d {
-    /// The grid of these weights, finite and not negative; `weight` gives one by column and row.
+    /// The grid of these weights, finite and not negative; `weight` takes column and row.
     pub fn new(width: usize, height: usize, weight: impl Fn(usize, usize) -> f64) -> HierarchicalSampler2d {
         let of = |k: usize| weight(k % width, k / width);
         let unit = (0..width * height).map(of).fold(0.0, f64::max);
-        // Whatever has a weight keeps one: nothing becomes impossible by rounding.
+        // A positive weight stays positive: no cell becomes impossible by rounding.
         let relative = |w: f64| if w > 0.0 { ((w / unit) as f32).max(f32::MIN_POSITIVE) } else { 0.0 };
         let weights = (0..width * height).map(|k| relative(of(k))).collect();
         let mut levels = vec![Level { width, height, weights }];
@@ -66,7 +68,7 @@ impl HierarchicalSampler2d {
         self.unit * self.levels.last().map_or(0.0, |top| top.at(0, 0))
     }
 
-    /// The finest level of at most so many columns and rows.
+    /// The finest level that has no more than these numbers of columns and rows.
     pub fn level_within(&self, columns: usize, rows: usize) -> usize {
         self.levels.iter().position(|l| l.width <= columns && l.height <= rows).unwrap_or(0)
     }
@@ -81,12 +83,17 @@ impl HierarchicalSampler2d {
         self.unit * self.levels[level].at(column, row)
     }
 
-    /// The cell that two uniform numbers choose; the total must not be 0.
-    pub fn choose(&self, xi: [f64; 2]) -> Cell {
-        self.choose_below(self.levels.len() - 1, Cell { column: 0, row: 0, probability: 1.0, xi })
+    /// The level of a single cell.
+    pub fn top(&self) -> usize {
+        self.levels.len() - 1
     }
 
-    /// The cell below one of a coarser level, which has a weight.
+    /// The cell that two uniform numbers choose; the total must not be 0.
+    pub fn choose(&self, xi: [f64; 2]) -> Cell {
+        self.choose_below(self.top(), Cell { column: 0, row: 0, probability: 1.0, xi })
+    }
+
+    /// The cell that is chosen below one of a coarser level, whose weight must not be 0.
     pub fn choose_below(&self, level: usize, from: Cell) -> Cell {
         let Cell { column: mut x, row: mut y, mut probability, mut xi } = from;
         for finer in self.levels[..level].iter().rev() {
@@ -99,13 +106,24 @@ impl HierarchicalSampler2d {
         }
         Cell { column: x, row: y, probability, xi }
     }
+
+    /// The probability with which a cell is chosen below its ancestor on a level.
+    pub fn probability(&self, level: usize, column: usize, row: usize) -> f64 {
+        let share = |(k, finer): (usize, &Level)| {
+            let (x, y) = (column >> k, row >> k);
+            let own = finer.at(x, y);
+            if own > 0.0 { own / finer.square_sum(x & !1, y & !1) } else { 0.0 }
+        };
+        self.levels[..level].iter().enumerate().map(share).product()
+    }
 }
 
-/// True if a uniform number chooses the second of two weights; it becomes uniform in the one that is chosen.
+/// True if the uniform number `xi` chooses the second of two weights. It becomes uniform again within the chosen one, whose
+/// share `probability` is multiplied by.
 pub(super) fn split(xi: &mut f64, first: f64, second: f64, probability: &mut f64) -> bool {
     let total = first + second;
     let target = *xi * total;
-    // The second, if it weighs nothing, is not chosen by rounding either.
+    // A second weight of 0 must not be chosen by rounding.
     let chosen = target >= first && second > 0.0;
     let (before, own) = if chosen { (first, second) } else { (0.0, first) };
     *probability *= own / total;
@@ -118,21 +136,24 @@ mod tests {
     use super::*;
 
     /// Every cell is chosen as often as its weight says, by its own probability, and the numbers left are uniform.
-    /// Planted: halves that are taken in the wrong order, a probability of one direction only, a border cell lost.
+    /// Planted: halves taken in the wrong order, a
+    /// probability of one direction only, a border cell lost, a parent's cell divided by the sum of other cells.
     #[test]
     fn cells_are_chosen_in_proportion_to_their_weights() {
         let weights = [[1.0, 0.0, 3.0, 2.0, 4.0], [0.0, 0.0, 0.5, 1.5, 1e-60], [2.0, 6.0, 0.0, 0.0, 5.0]];
-        let hierarchical_sampler = HierarchicalSampler2d::new(5, 3, |x, y| weights[y][x]);
+        let sampler = HierarchicalSampler2d::new(5, 3, |x, y| weights[y][x]);
         // Weights are rounded to float32.
-        assert!((hierarchical_sampler.total() - 25.0).abs() < 1e-5);
+        assert!((sampler.total() - 25.0).abs() < 1e-5);
         let n = 1000;
         let mut chosen = [[0u32; 5]; 3];
         let mut rest = [0.0; 2];
         for k in 0..n * n {
             let xi = [k % n, k / n].map(|i| (f64::from(i) + 0.5) / f64::from(n));
-            let cell = hierarchical_sampler.choose(xi);
+            let cell = sampler.choose(xi);
             chosen[cell.row][cell.column] += 1;
             assert!((cell.probability - weights[cell.row][cell.column] / 25.0).abs() < 1e-6);
+            let again = sampler.probability(sampler.top(), cell.column, cell.row);
+            assert!((again / cell.probability - 1.0).abs() < 1e-12);
             (0..2).for_each(|d| rest[d] += (cell.xi[d] - 0.5) / f64::from(n * n));
         }
         for (row, counts) in chosen.iter().enumerate() {
@@ -142,21 +163,20 @@ mod tests {
             }
         }
         assert!(rest.iter().all(|r| r.abs() < 1e-3), "{rest:?}");
-        // What is tiny has a chance still, and a place of its own.
-        assert!(hierarchical_sampler.weight(0, 4, 1) > 0.0 && hierarchical_sampler.weight(0, 1, 1) == 0.0);
-        let last = hierarchical_sampler.choose([1.0 - f64::EPSILON / 2.0; 2]);
+        // A tiny weight still has a chance.
+        assert!(sampler.weight(0, 4, 1) > 0.0 && sampler.weight(0, 1, 1) == 0.0);
+        let last = sampler.choose([1.0 - f64::EPSILON / 2.0; 2]);
         assert_eq!((last.column, last.row), (4, 2));
     }
 
     #[test]
     fn below_a_cell_the_choice_is_among_its_own() {
-        let hierarchical_sampler = HierarchicalSampler2d::new(8, 4, |x, y| (x + 8 * y) as f64);
-        let level = hierarchical_sampler.level_within(4, 4);
-        assert_eq!((level, hierarchical_sampler.size(level)), (1, (4, 2)));
-        let weight = hierarchical_sampler.weight(level, 3, 1);
+        let sampler = HierarchicalSampler2d::new(8, 4, |x, y| (x + 8 * y) as f64);
+        let level = sampler.level_within(4, 4);
+        assert_eq!((level, sampler.size(level)), (1, (4, 2)));
+        let weight = sampler.weight(level, 3, 1);
         assert!((weight - f64::from(22 + 23 + 30 + 31)).abs() < 1e-5);
-        let cell =
-            hierarchical_sampler.choose_below(level, Cell { column: 3, row: 1, probability: 0.25, xi: [0.999, 0.0] });
+        let cell = sampler.choose_below(level, Cell { column: 3, row: 1, probability: 0.25, xi: [0.999, 0.0] });
         assert_eq!((cell.column, cell.row), (7, 2));
         assert!((cell.probability - 0.25 * 23.0 / weight).abs() < 1e-6);
     }

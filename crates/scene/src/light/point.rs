@@ -1,20 +1,24 @@
 //! Light from one point, to all sides or within a cone.
 
-use super::{Illumination, Light, LightBounds, channel_sum};
+use super::{
+    bounds::LightBounds,
+    contract::{Illumination, Light, channel_sum, hash_numbers},
+    direction_cone::DirectionCone,
+};
 use crate::mesh::SurfacePoint;
 use glam::DVec3;
 
-/// The cone of a spot light. Of small angles the cosines are equal in float64: instead of them it holds what one lacks,
-/// `1 - cos x = 2 sin²(x/2)`, which keeps its digits.
+/// The falloff of a spot light. The cosines of small angles are equal in float64: this holds `1 - cos x = 2 sin²(x/2)`
+/// instead, which keeps its digits.
 #[derive(Clone, Copy, Debug)]
 pub struct Spot {
-    /// Unit direction the cone opens to.
-    axis: DVec3,
-    /// Largest angle from the axis that gets light, rad.
-    outer: f64,
-    /// `1 - cos` of the angle up to which the intensity is whole, and of the largest.
+    /// The directions that get light.
+    cone: DirectionCone,
+    /// The angle from the axis up to which the intensity is whole, rad.
+    inner: f64,
+    /// `1 - cos` of the inner angle, and of the half angle of the cone.
     versines: [f64; 2],
-    /// What these differ by.
+    /// The difference of the two.
     width: f64,
 }
 
@@ -23,15 +27,16 @@ impl Spot {
     /// are the same, the edge is hard.
     pub fn new(axis: DVec3, inner: f64, outer: f64) -> Spot {
         let versine = |angle: f64| 2.0 * (0.5 * angle).sin().powi(2);
-        // cos a - cos b, without a difference of numbers that are nearly equal.
+        // cos inner - cos outer, without a difference of numbers that are nearly equal.
         let width = 2.0 * (0.5 * (outer + inner)).sin() * (0.5 * (outer - inner)).sin();
-        Spot { axis, outer, versines: [versine(inner), versine(outer)], width }
+        let cone = DirectionCone { axis, half_angle: outer };
+        Spot { cone, inner, versines: [versine(inner), versine(outer)], width }
     }
 
     /// Share of the intensity that leaves towards a point in direction `-direction` (KHR_lights_punctual).
     fn attenuation(&self, direction: DVec3) -> f64 {
         // 1 - cos of the angle from the axis: half the square of its chord.
-        let versine = 0.5 * (self.axis + direction).length_squared();
+        let versine = 0.5 * (self.cone.axis + direction).length_squared();
         let [inner, outer] = self.versines;
         if versine <= inner {
             1.0
@@ -58,9 +63,9 @@ pub struct PointLight {
 impl PointLight {
     /// Share of the intensity that leaves towards a point at `distance` in direction `-direction`.
     fn attenuation(&self, direction: DVec3, distance: f64) -> f64 {
-        let cone = self.spot.map_or(1.0, |spot| spot.attenuation(direction));
-        let tile = self.range.map_or(1.0, |range| (1.0 - (distance / range).powi(4)).clamp(0.0, 1.0));
-        cone * tile
+        let spot = self.spot.map_or(1.0, |spot| spot.attenuation(direction));
+        let range = self.range.map_or(1.0, |range| (1.0 - (distance / range).powi(4)).clamp(0.0, 1.0));
+        spot * range
     }
 }
 
@@ -74,20 +79,35 @@ impl Light for PointLight {
 
     fn bounds(&self) -> Option<LightBounds> {
         let point = LightBounds::point(self.position, channel_sum(self.intensity));
-        let cone = self.spot.map_or((point.axis, point.reach), |spot| (spot.axis, spot.outer));
-        Some(LightBounds { axis: cone.0, reach: cone.1, range: self.range.unwrap_or(f64::INFINITY), ..point })
+        let cone = self.spot.map_or(point.cone, |spot| spot.cone);
+        Some(LightBounds { cone, range: self.range.unwrap_or(f64::INFINITY), ..point })
     }
 
     fn illuminate(&self, at: &SurfacePoint, _xi: [f64; 2]) -> Option<Illumination> {
         let offset = self.position - at.position;
         let distance = offset.length();
         if distance == 0.0 {
-            return None; // the light lies in the surface: no direction, no finite irradiance
+            return None; // The light lies in the surface: there is no direction and no finite irradiance.
         }
         let direction = offset / distance;
         let cosine = at.normal.dot(direction);
         let factor = self.attenuation(direction, distance) * cosine / (distance * distance);
         let lit = cosine > 0.0 && factor > 0.0 && factor.is_finite();
         lit.then(|| Illumination { direction, distance, irradiance: self.intensity * factor })
+    }
+
+    fn pdf_solid_angle(&self, _at: &SurfacePoint, _direction: DVec3) -> f64 {
+        0.0
+    }
+
+    fn radiance(&self, _position: DVec3, _direction: DVec3) -> DVec3 {
+        DVec3::ZERO
+    }
+
+    fn hash_into(&self, hasher: &mut blake3::Hasher) {
+        hash_numbers(hasher, 2, &[self.position.to_array(), self.intensity.to_array()].concat());
+        let spot = self.spot.map(|spot| [&spot.cone.axis.to_array()[..], &[spot.inner, spot.cone.half_angle]].concat());
+        hash_numbers(hasher, 2, &spot.unwrap_or_default());
+        hash_numbers(hasher, 2, &[self.range.unwrap_or(f64::INFINITY)]);
     }
 }

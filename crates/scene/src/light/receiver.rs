@@ -1,26 +1,27 @@
-//! Points of a surface that lights are chosen for together.
+//! Bounds of surface points that lights are chosen for together.
 
 use crate::mesh::SurfacePoint;
 use glam::DVec3;
 
-/// A sphere that holds some points, and a cone that holds their normals.
+/// A sphere that holds some surface points, and a cone that holds their normals. Of the cone's half angle it keeps cosine
+/// and sine: the choice of lights asks for nothing else, for many lights each time.
 #[derive(Clone, Copy, Debug)]
 pub struct ReceiverBounds {
-    /// Its middle, as if it were a point of the surface.
-    pub(super) middle: SurfacePoint,
+    /// The center of the sphere, with the axis of the cone as its normals.
+    pub(super) center: SurfacePoint,
     /// m.
     pub(super) radius: f64,
-    /// Cosine and sine of the largest angle between a normal and that of the middle.
-    spread: [f64; 2],
+    cos_half_angle: f64,
+    sin_half_angle: f64,
 }
 
 impl ReceiverBounds {
-    /// One point.
+    /// The bounds of one point.
     pub fn point(at: &SurfacePoint) -> ReceiverBounds {
-        ReceiverBounds { middle: *at, radius: 0.0, spread: [1.0, 0.0] }
+        ReceiverBounds { center: *at, radius: 0.0, cos_half_angle: 1.0, sin_half_angle: 0.0 }
     }
 
-    /// The region of these points; none if there are none.
+    /// The bounds of these points; none if there are none.
     pub fn around(points: &[SurfacePoint]) -> Option<ReceiverBounds> {
         let first = points.first()?;
         let start = (DVec3::INFINITY, DVec3::NEG_INFINITY, DVec3::ZERO);
@@ -32,17 +33,17 @@ impl ReceiverBounds {
         let radius = points.iter().map(|p| p.position.distance(position)).fold(0.0, f64::max);
         // Rounding must leave no normal outside.
         let cosine = (points.iter().map(|p| p.normal.dot(normal)).fold(1.0, f64::min) - 1e-9).max(-1.0);
-        let middle = SurfacePoint { position, normal, geometric_normal: normal, ..*first };
-        Some(ReceiverBounds { middle, radius, spread: [cosine, (1.0 - cosine * cosine).sqrt()] })
+        let center = SurfacePoint { position, normal, geometric_normal: normal, ..*first };
+        let sine = (1.0 - cosine * cosine).sqrt();
+        Some(ReceiverBounds { center, radius, cos_half_angle: cosine, sin_half_angle: sine })
     }
 
-    /// The largest cosine of a normal with a direction that has this one with the middle's.
+    /// The largest cosine between a normal of the cone and a direction whose cosine with the axis is `cosine`.
     pub(super) fn max_cosine(&self, cosine: f64) -> f64 {
-        let [cos_spread, sin_spread] = self.spread;
-        if cosine >= cos_spread {
+        if cosine >= self.cos_half_angle {
             return 1.0;
         }
-        cosine * cos_spread + (1.0 - cosine * cosine).max(0.0).sqrt() * sin_spread
+        cosine * self.cos_half_angle + (1.0 - cosine * cosine).max(0.0).sqrt() * self.sin_half_angle
     }
 }
 
@@ -51,10 +52,10 @@ mod tests {
     use super::*;
     use crate::random::{Purpose, Stream};
 
-    /// No normal of a region has a larger cosine with a direction than is said, and all points lie within.
+    /// No normal has a larger cosine with a direction than the bound, and all points lie within the sphere.
     /// Planted: the spread left out; the cone of the mean of the first two normals.
     #[test]
-    fn regions_hold_their_points_and_normals() {
+    fn receivers_hold_their_points_and_normals() {
         let stream = Stream::new(6, Purpose::Surface);
         for index in 0..2000 {
             let item = stream.item(index);
@@ -65,12 +66,12 @@ mod tests {
                 SurfacePoint { position: vector(2 * k + 1), normal, geometric_normal: normal, triangle: 0, material: 0 }
             };
             let points: Vec<SurfacePoint> = (0..5).map(point).collect();
-            let region = ReceiverBounds::around(&points).expect("points");
+            let receiver = ReceiverBounds::around(&points).expect("points");
             let direction = vector(20).normalize();
-            let most = region.max_cosine(region.middle.normal.dot(direction));
+            let max = receiver.max_cosine(receiver.center.normal.dot(direction));
             for p in &points {
-                assert!(p.normal.dot(direction) <= most, "{index}: {} {most}", p.normal.dot(direction));
-                assert!(p.position.distance(region.middle.position) <= region.radius);
+                assert!(p.normal.dot(direction) <= max, "{index}: {} {max}", p.normal.dot(direction));
+                assert!(p.position.distance(receiver.center.position) <= receiver.radius);
             }
         }
         assert!(ReceiverBounds::around(&[]).is_none());

@@ -1,26 +1,29 @@
-//! Lights in a tree of bounds (after Conty Estevez and Kulla 2018, importance sampling of many lights).
+//! A hierarchy of lights by their bounds (after Conty Estevez and Kulla 2018, importance sampling of many lights).
 
 use super::{
-    Light,
     bounds::{LightBounds, LightSphere},
+    contract::Light,
     receiver::ReceiverBounds,
 };
+use glam::DVec3;
 
-/// So few lights are weighed one by one.
-pub(super) const FEW: usize = 16;
+/// Up to this number, lights with bounds are weighed one by one, without a tree.
+pub(super) const MAX_FLAT: usize = 16;
 
-/// Share of the most light that may arrive which a light is weighed by at least: what the middle of a region does not
-/// see may light the rest of it.
+/// The least importance of a node, as a share of the irradiance with the largest cosine: what the center of a receiver does
+/// not see may light the rest of it.
 const MIN_SHARE: f64 = 0.5;
 
 /// Lights, ready to choose from.
 pub struct LightTree<'a> {
-    pub(super) lights: &'a [Box<dyn Light>],
-    /// Lights that are weighed at each point: those without bounds, or all if there are few.
+    pub(super) lights: Vec<&'a dyn Light>,
+    /// Indices of the lights that are weighed at each point: those without bounds, or all if they are few.
     pub(super) single: Vec<u32>,
-    /// The first is the root; the first child of a node follows it.
+    /// The lights without bounds.
+    distant: Vec<&'a dyn Light>,
+    /// The root first; the first child of a node follows it.
     nodes: Vec<Node>,
-    /// Nodes of single lights.
+    /// Indices of the nodes of single lights.
     leaves: Vec<u32>,
 }
 
@@ -29,7 +32,7 @@ struct Node {
     kind: Kind,
 }
 
-/// What a node stands for.
+/// What is below a node, by index.
 #[derive(Clone, Copy)]
 pub(super) enum Kind {
     /// Two nodes.
@@ -39,38 +42,40 @@ pub(super) enum Kind {
 }
 
 impl<'a> LightTree<'a> {
-    pub fn new(lights: &'a [Box<dyn Light>]) -> LightTree<'a> {
-        let numbers = 0..lights.len() as u32;
-        let mut placed: Vec<(u32, LightBounds)> =
-            numbers.filter_map(|k| Some((k, lights[k as usize].bounds()?))).collect();
-        if placed.len() <= FEW {
-            placed.clear();
+    pub fn new(lights: impl IntoIterator<Item = &'a dyn Light>) -> LightTree<'a> {
+        let lights: Vec<&dyn Light> = lights.into_iter().collect();
+        let indices = 0..lights.len() as u32;
+        let mut bounded: Vec<(u32, LightBounds)> =
+            indices.clone().filter_map(|k| Some((k, lights[k as usize].bounds()?))).collect();
+        if bounded.len() <= MAX_FLAT {
+            bounded.clear();
         }
         let mut in_tree = vec![false; lights.len()];
-        placed.iter().for_each(|(k, _)| in_tree[*k as usize] = true);
-        let single = (0..lights.len() as u32).filter(|k| !in_tree[*k as usize]).collect();
-        let mut tree = LightTree { lights, single, nodes: Vec::new(), leaves: Vec::new() };
-        if !placed.is_empty() {
-            tree.add(&mut placed);
+        bounded.iter().for_each(|(k, _)| in_tree[*k as usize] = true);
+        let single = indices.filter(|k| !in_tree[*k as usize]).collect();
+        let distant = lights.iter().copied().filter(|light| light.bounds().is_none()).collect();
+        let mut tree = LightTree { lights, single, distant, nodes: Vec::new(), leaves: Vec::new() };
+        if !bounded.is_empty() {
+            tree.add(&mut bounded);
         }
         tree
     }
 
-    /// Adds the node of these lights and those below it: halves across the longest edge of the box of their centres.
+    /// Adds the node of these lights and those below it: halves across the longest edge of the box of their centers.
     fn add(&mut self, lights: &mut [(u32, LightBounds)]) {
-        let all = lights.iter().skip(1).fold(lights[0].1, |all, (_, e)| all.join(e));
+        let all = lights.iter().skip(1).fold(lights[0].1, |all, (_, bounds)| all.join(bounds));
         let index = self.nodes.len();
         self.nodes.push(Node { sphere: LightSphere::new(&all), kind: Kind::Leaf(lights[0].0) });
         if lights.len() == 1 {
             self.leaves.push(index as u32);
             return;
         }
-        let first = lights[0].1.centre();
+        let first = lights[0].1.center();
         let (low, high) =
-            lights.iter().fold((first, first), |(low, high), (_, e)| (low.min(e.centre()), high.max(e.centre())));
+            lights.iter().fold((first, first), |(low, high), (_, b)| (low.min(b.center()), high.max(b.center())));
         let axis = (high - low).max_position();
-        // The number of a light decides between equals, so that the order is one.
-        lights.sort_by(|(i, a), (j, b)| a.centre()[axis].total_cmp(&b.centre()[axis]).then(i.cmp(j)));
+        // Between equal centers the index of the light decides, so that there is only one order.
+        lights.sort_by(|(i, a), (j, b)| a.center()[axis].total_cmp(&b.center()[axis]).then(i.cmp(j)));
         let (one, two) = lights.split_at_mut(lights.len() / 2);
         self.add(one);
         self.nodes[index].kind = Kind::Inner([index as u32 + 1, self.nodes.len() as u32]);
@@ -82,6 +87,12 @@ impl<'a> LightTree<'a> {
         self.nodes.is_empty()
     }
 
+    /// Radiance that a ray sees which leaves the scene in this unit direction, W/(m² sr): that of the distant lights.
+    /// Others show it on their own surfaces.
+    pub fn distant_radiance(&self, origin: DVec3, direction: DVec3) -> DVec3 {
+        self.distant.iter().map(|light| light.radiance(origin, direction)).sum()
+    }
+
     pub(super) fn leaves(&self) -> &[u32] {
         &self.leaves
     }
@@ -90,21 +101,21 @@ impl<'a> LightTree<'a> {
         self.nodes[node as usize].kind
     }
 
-    /// A number near the light that arrives from a node, positive if any can, W/m².
-    pub(super) fn importance(&self, node: u32, region: &ReceiverBounds) -> f64 {
+    /// An estimate of the irradiance by a node's lights, positive if any of them can light the receiver, W/m².
+    pub(super) fn importance(&self, node: u32, receiver: &ReceiverBounds) -> f64 {
         let Node { sphere, kind } = &self.nodes[node as usize];
-        let [middle, most] = sphere.arriving(region);
-        let middle = match kind {
-            Kind::Leaf(light) if most > 0.0 && sphere.falls_off() => {
-                self.lights[*light as usize].importance(&region.middle)
+        let [at_center, max] = sphere.irradiance(receiver);
+        let at_center = match kind {
+            Kind::Leaf(light) if max > 0.0 && sphere.falls_off() => {
+                self.lights[*light as usize].importance(&receiver.center)
             }
-            _ => middle,
+            _ => at_center,
         };
-        // Lists of them are added up.
-        middle.min(f64::MAX / 1e9).max(MIN_SHARE * most)
+        // The sum of a list of these must be finite.
+        at_center.min(f64::MAX / 1e9).max(MIN_SHARE * max)
     }
 
-    pub(super) fn is_near(&self, node: u32, region: &ReceiverBounds) -> bool {
-        self.nodes[node as usize].sphere.is_near(region)
+    pub(super) fn is_near(&self, node: u32, receiver: &ReceiverBounds) -> bool {
+        self.nodes[node as usize].sphere.is_near(receiver)
     }
 }

@@ -1,18 +1,18 @@
-//! AVX2: half as many rays again per second as the plain version.
+//! AVX2: one and a half times the rays per second of the plain version.
 //!
-//! The one invariant: an [`Avx2`] exists only on a processor that has the features, because [`Avx2::detect`] alone
-//! makes it. Loads and stores go through references to arrays of their size and need no alignment.
+//! The one invariant: an [`Avx2`] exists only on a processor that has the features, because only [`Avx2::detect`] makes
+//! one. Loads and stores go through references to arrays of their size and need no alignment.
 #![allow(unsafe_code)]
 
 use super::{
+    node::Node,
     ray::BoxRay,
-    tree::Node,
     triangle::{Leaf, TriangleTest},
     vectors::{Query, Vectors},
 };
 use std::arch::x86_64::*;
 
-/// Says that the processor has AVX2 and BMI1.
+/// The proof that the processor has AVX2 and BMI1.
 #[derive(Clone, Copy)]
 pub(super) struct Avx2(());
 
@@ -58,7 +58,7 @@ fn boxes(node: &Node, ray: &BoxRay, limit: f32) -> ([f32; 8], u32) {
     for axis in 0..3 {
         let (origin, inverse) = (_mm256_set1_ps(ray.origin[axis]), _mm256_set1_ps(ray.inverse[axis]));
         let [first, last] = node.planes(axis, ray).map(|p| _mm256_mul_ps(_mm256_sub_ps(load(p), origin), inverse));
-        // Of a number and what is none these return the second argument.
+        // If the first argument is not a number, these return the second.
         near = _mm256_max_ps(first, near);
         far = _mm256_min_ps(last, far);
     }

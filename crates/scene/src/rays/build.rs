@@ -1,10 +1,6 @@
-//! Builds the tree: a binary one by obvhs, which is then made wide.
+//! Builds the tree: obvhs makes a binary one, of which eight-wide nodes are made.
 
-use super::{
-    tree::{Node, Tree},
-    triangle::Leaf,
-    wide::Wide,
-};
+use super::{node::Node, tree::Tree, triangle::Leaf, wide::Wide};
 use glam::{Vec3, Vec3A};
 use obvhs::{
     BvhBuildParams,
@@ -17,16 +13,16 @@ use obvhs::{
 /// reciprocals, limit, box corners and slab test together can be wrong by seven.
 const MIN_PADDING: f32 = 16.0 * f32::EPSILON;
 
-/// Boxes grow by at most this share. How much differs from box to box, at random: the builder joins each box with the
-/// best of its neighbours, and among equal boxes (a mesh on top of itself) all prefer the same one, which makes the
-/// build quadratic and the tree a list.
+/// Boxes grow by at most this share, each by a random amount: the builder joins each box with the best of its neighbours,
+/// and among equal boxes (a mesh on top of itself) all would prefer the same one, which would make the build quadratic and
+/// the tree a list.
 pub(super) const PADDING: f32 = 2.0 * MIN_PADDING;
 
-/// Meshes with more [`crowding`] are left as the builder joined them: to better the tree would take time with the square of
-/// the number of triangles. Of surfaces it is 10 at most.
-const CROWDED: f64 = 64.0;
+/// The tree of a mesh with more [`crowding`] is not optimized: that would take time in proportion to the square of the number
+/// of triangles. Ordinary surfaces have 10 at most.
+const MAX_CROWDING: f64 = 64.0;
 
-/// A tree over triangles of which the box has this diagonal, or less.
+/// A tree over triangles whose bounding box has this diagonal, or less.
 pub(super) fn build(triangles: &[[Vec3; 3]], diagonal: f32) -> (Tree, Vec<Leaf>) {
     let (mut nodes, mut leaves) = (vec![], vec![]);
     if triangles.is_empty() {
@@ -59,15 +55,15 @@ fn binary(triangles: &[[Vec3; 3]], diagonal: f32) -> Bvh2 {
     let mut builder = PlocBuilder::with_capacity(boxes.len());
     let (distance, threshold) = (build.ploc_search_distance, build.search_depth_threshold);
     let mut tree = builder.build(distance, &boxes, indices, build.sort_precision, threshold);
-    // It looks for a better place for each box among those that overlap it.
-    if crowding(&tree) < CROWDED {
+    // The optimizer looks for a better parent for each box among those that overlap it.
+    if crowding(&tree) < MAX_CROWDING {
         ReinsertionOptimizer::default().run(&mut tree, build.reinsertion_batch_ratio, None);
     }
     tree
 }
 
-/// How many boxes of triangles lie over each other where one is, in the mean over the triangles: the largest number of
-/// times that the boxes below a node above it fill the node's.
+/// How many boxes of triangles overlap where a triangle is, in the mean over the triangles: over the nodes above it, the
+/// maximum of the area of all boxes of triangles below the node, divided by the area of the node's box.
 fn crowding(tree: &Bvh2) -> f64 {
     let nodes = &tree.nodes;
     if !tree.children_are_ordered_after_parents {
@@ -78,15 +74,15 @@ fn crowding(tree: &Bvh2) -> f64 {
     for k in (0..nodes.len()).rev().filter(|k| !nodes[*k].is_leaf()) {
         filled[k] = children(k).iter().map(|child| filled[*child]).sum();
     }
-    let mut most = vec![0.0f32; nodes.len()];
+    let mut max = vec![0.0f32; nodes.len()];
     let (mut sum, mut leaves) = (0.0, 0.0);
     for k in 0..nodes.len() {
-        let here = most[k].max(filled[k] / nodes[k].aabb().half_area().max(f32::MIN_POSITIVE));
+        let here = max[k].max(filled[k] / nodes[k].aabb().half_area().max(f32::MIN_POSITIVE));
         if nodes[k].is_leaf() {
             sum += f64::from(here);
             leaves += 1.0;
         } else {
-            children(k).iter().for_each(|child| most[*child] = here);
+            children(k).iter().for_each(|child| max[*child] = here);
         }
     }
     sum / leaves
@@ -109,20 +105,20 @@ mod tests {
     use super::*;
     use crate::random::{Purpose, Stream};
 
-    /// A mesh of triangles of this size at random places of a cube.
+    /// Triangles of this size at random positions in a cube.
     fn tangle(count: u64, size: f32) -> Vec<[Vec3; 3]> {
         let stream = Stream::new(7, Purpose::Surface);
         let triangle = |k: u64| {
             let item = stream.item(k);
             let vector = |d: u64| Vec3::from_array([0, 1, 2].map(|i| item.uniform(3 * d + i) as f32));
-            let place = vector(0);
-            [1, 2, 3].map(|corner| place + size * vector(corner))
+            let position = vector(0);
+            [1, 2, 3].map(|corner| position + size * vector(corner))
         };
         (0..count).map(triangle).collect()
     }
 
-    /// Boxes that lie over each other are told from those that do not, all together or in one corner. Seen to catch: the
-    /// node at the top alone, which does not see the corner.
+    /// Overlapping boxes are distinguished from separate ones, whether all overlap or those of one corner. Seen to catch: the
+    /// root alone, which does not see the corner.
     #[test]
     fn crowding_counts_the_boxes_over_each_other() {
         let of = |triangles: &[[Vec3; 3]]| {

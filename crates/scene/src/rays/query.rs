@@ -1,8 +1,8 @@
 //! The two queries as walks through the tree.
 
 use super::{
-    Hit, Rays,
-    ray::Ray,
+    ray::{Hit, Ray},
+    scaled_mesh::ScaledMesh,
     tree::Visitor,
     triangle::{Crossing, TriangleTest},
     vectors::{Query, Vectors},
@@ -10,12 +10,12 @@ use super::{
 use crate::cutouts::Cutouts;
 use std::ops::ControlFlow;
 
-/// Which points of triangles are there.
+/// Which points of triangles are solid, and which are holes.
 pub(super) trait Solid: Copy {
     fn is_solid(self, triangle: u32, crossing: &Crossing) -> bool;
 }
 
-/// All of them.
+/// Triangles without holes.
 #[derive(Clone, Copy)]
 pub(super) struct Whole;
 
@@ -33,18 +33,18 @@ impl Solid for &Cutouts<'_> {
     }
 }
 
-/// The nearest hit no farther than `limit`, of those equally near the one with the lowest number. Its distance is that
-/// from the ray's start, in scaled units.
+/// Finds the nearest hit within `limit`, of equally near ones that of the first triangle. Its distance is measured from the
+/// ray's start, in scaled units.
 pub(super) struct Closest<'a, S> {
-    pub rays: &'a Rays<'a>,
+    pub mesh: &'a ScaledMesh,
     pub solid: S,
     pub ray: &'a Ray,
     pub limit: f64,
 }
 
-/// Whether anything is hit before `limit`.
+/// Finds whether anything is hit before `limit`.
 pub(super) struct Occluded<'a, S> {
-    pub rays: &'a Rays<'a>,
+    pub mesh: &'a ScaledMesh,
     pub solid: S,
     pub ray: &'a Ray,
     pub limit: f64,
@@ -55,10 +55,10 @@ impl<S: Solid> Query for Closest<'_, S> {
 
     #[inline(always)]
     fn run(self, vectors: impl Vectors) -> Option<Hit> {
-        let Closest { rays, solid, ray, limit } = self;
+        let Closest { mesh, solid, ray, limit } = self;
         let test = TriangleTest::new(ray.origin, ray.direction);
-        let mut search = SearchClosest { vectors, rays, solid, ray, test, limit, best: None };
-        let walk = rays.tree.walk(vectors, &ray.for_boxes(), limit as f32, &mut search);
+        let mut search = SearchClosest { vectors, mesh, solid, ray, test, limit, best: None };
+        let walk = mesh.tree.walk(vectors, &ray.for_boxes(), limit as f32, &mut search);
         debug_assert!(walk.is_continue());
         search.best
     }
@@ -66,7 +66,7 @@ impl<S: Solid> Query for Closest<'_, S> {
 
 struct SearchClosest<'a, V, S> {
     vectors: V,
-    rays: &'a Rays<'a>,
+    mesh: &'a ScaledMesh,
     solid: S,
     ray: &'a Ray,
     test: TriangleTest,
@@ -79,14 +79,14 @@ impl<V: Vectors, S: Solid> Visitor for SearchClosest<'_, V, S> {
 
     #[inline(always)]
     fn visit(&mut self, leaf: u32) -> ControlFlow<(), f32> {
-        let leaf = &self.rays.leaves[leaf as usize];
+        let leaf = &self.mesh.leaves[leaf as usize];
         for lane in lanes(self.vectors.triangles(leaf, &self.test)) {
             let (crossing, triangle) = (self.test.crossing(leaf, lane), leaf.triangles[lane]);
             let distance = crossing.distance;
-            // The order in which leaves are visited must not show.
+            // The result must not depend on the order in which leaves are visited.
             let first =
                 distance < self.limit || distance == self.limit && self.best.is_none_or(|b| triangle < b.triangle);
-            if first && self.rays.counts(distance, leaf, lane, self.ray) && self.solid.is_solid(triangle, &crossing) {
+            if first && self.mesh.counts(distance, leaf, lane, self.ray) && self.solid.is_solid(triangle, &crossing) {
                 self.limit = distance;
                 self.best = Some(Hit { distance, triangle, weights: crossing.weights() });
             }
@@ -100,16 +100,16 @@ impl<S: Solid> Query for Occluded<'_, S> {
 
     #[inline(always)]
     fn run(self, vectors: impl Vectors) -> bool {
-        let Occluded { rays, solid, ray, limit } = self;
+        let Occluded { mesh, solid, ray, limit } = self;
         let test = TriangleTest::new(ray.origin, ray.direction);
-        let mut search = SearchAny { vectors, rays, solid, ray, test, limit };
-        rays.tree.walk(vectors, &ray.for_boxes(), limit as f32, &mut search).is_break()
+        let mut search = SearchAny { vectors, mesh, solid, ray, test, limit };
+        mesh.tree.walk(vectors, &ray.for_boxes(), limit as f32, &mut search).is_break()
     }
 }
 
 struct SearchAny<'a, V, S> {
     vectors: V,
-    rays: &'a Rays<'a>,
+    mesh: &'a ScaledMesh,
     solid: S,
     ray: &'a Ray,
     test: TriangleTest,
@@ -121,12 +121,12 @@ impl<V: Vectors, S: Solid> Visitor for SearchAny<'_, V, S> {
 
     #[inline(always)]
     fn visit(&mut self, leaf: u32) -> ControlFlow<(), f32> {
-        let leaf = &self.rays.leaves[leaf as usize];
+        let leaf = &self.mesh.leaves[leaf as usize];
         for lane in lanes(self.vectors.triangles(leaf, &self.test)) {
             let crossing = self.test.crossing(leaf, lane);
             let distance = crossing.distance;
             if distance < self.limit
-                && self.rays.counts(distance, leaf, lane, self.ray)
+                && self.mesh.counts(distance, leaf, lane, self.ray)
                 && self.solid.is_solid(leaf.triangles[lane], &crossing)
             {
                 return ControlFlow::Break(());
@@ -136,7 +136,7 @@ impl<V: Vectors, S: Solid> Visitor for SearchAny<'_, V, S> {
     }
 }
 
-/// The set bits of four.
+/// The indices of the set bits of four.
 #[inline(always)]
 fn lanes(mut bits: u32) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {

@@ -1,62 +1,24 @@
 //! The tree of boxes, eight to a node, and the walk through it.
 
-use super::{ray::BoxRay, vectors::Vectors};
-use glam::Vec3;
+use super::{node::Node, ray::BoxRay, vectors::Vectors};
 use std::ops::ControlFlow;
 
-/// Set in a child that is a leaf.
-const LEAF: u32 = 1 << 31;
-
-/// The boxes of up to eight children, in full float32: smaller codes cost more to unpack than they save.
-#[repr(align(64))]
-pub(super) struct Node {
-    /// By axis, then low and high, then child.
-    planes: [[[f32; 8]; 2]; 3],
-    /// Indices of nodes, or of leaves with [`LEAF`].
-    children: [u32; 8],
-}
-
 pub(super) struct Tree {
-    /// The root first, if there is anything.
+    /// The root first; empty for a mesh without triangles.
     pub nodes: Vec<Node>,
 }
 
-/// What looks at the leaves.
+/// What a walk does with the leaves.
 pub(super) trait Visitor {
-    /// Whether nearer children are to be visited first. It costs more than it saves where any hit will do.
+    /// Whether nearer children are visited first. Where any hit will do, the order costs more than it saves.
     const ORDERED: bool;
 
     /// Looks at a leaf that the ray may meet and returns the limit from now on, or ends the walk.
     fn visit(&mut self, leaf: u32) -> ControlFlow<(), f32>;
 }
 
-impl Node {
-    /// Boxes that contain nothing.
-    pub const EMPTY: Node = Node { planes: [[[f32::INFINITY; 8], [f32::NEG_INFINITY; 8]]; 3], children: [0; 8] };
-
-    pub fn set(&mut self, slot: usize, low: Vec3, high: Vec3, child: u32) {
-        for axis in 0..3 {
-            self.planes[axis][0][slot] = low[axis];
-            self.planes[axis][1][slot] = high[axis];
-        }
-        self.children[slot] = child;
-    }
-
-    /// The code of a leaf among the children.
-    pub fn leaf(index: usize) -> u32 {
-        LEAF | index as u32
-    }
-
-    /// The planes across an axis: those that the ray meets first, then the others.
-    #[inline(always)]
-    pub fn planes(&self, axis: usize, ray: &BoxRay) -> [&[f32; 8]; 2] {
-        let first = ray.first[axis] & 1;
-        [&self.planes[axis][first], &self.planes[axis][1 - first]]
-    }
-}
-
 impl Tree {
-    /// Shows every leaf of which the ray meets the box no farther than the limit, which the visitor may lower.
+    /// Shows the visitor every leaf whose box the ray meets within the limit, which the visitor may lower.
     #[inline(always)]
     pub fn walk<V: Visitor>(
         &self,
@@ -67,12 +29,12 @@ impl Tree {
     ) -> ControlFlow<()> {
         let mut limit = limit;
         let mut pending = Pending::new();
-        // Not a part of `pending`, which cannot be in registers.
+        // The count is no part of `pending`: it stays in a register.
         let mut count = 0;
         let mut next = 0;
         while !self.nodes.is_empty() {
-            if next & LEAF != 0 {
-                limit = visitor.visit(next & !LEAF)?;
+            if let Some(leaf) = Node::leaf_of(next) {
+                limit = visitor.visit(leaf)?;
             } else {
                 let node = &self.nodes[next as usize];
                 let (near, met) = vectors.boxes(node, ray, limit);
@@ -89,13 +51,14 @@ impl Tree {
     }
 }
 
-/// A child and where the ray enters its box: in the order of the distances, which are positive.
+/// A child with the distance at which the ray enters its box in the upper bits: entries are ordered by distance, which is
+/// positive.
 #[inline(always)]
 fn entry(near: f32, child: u32) -> u64 {
     u64::from(near.to_bits()) << 32 | u64::from(child)
 }
 
-/// Children that are still to be visited, the first ones without asking for memory.
+/// A stack of children that are still to be visited; the first ones need no allocation.
 struct Pending {
     first: [u64; Pending::FIRST],
     others: Vec<u64>,
@@ -112,7 +75,7 @@ impl Pending {
     #[inline(always)]
     fn push(&mut self, count: &mut usize, entry: u64) {
         match self.first.get_mut(*count) {
-            Some(place) => *place = entry,
+            Some(slot) => *slot = entry,
             None => self.push_other(entry),
         }
         *count += 1;
@@ -130,7 +93,7 @@ impl Pending {
         self.first.get(*count).copied().or_else(|| self.others.pop())
     }
 
-    /// The last child that the ray enters no farther than the limit.
+    /// Pops children until the ray enters one within the limit.
     #[inline(always)]
     fn nearer(&mut self, count: &mut usize, limit: f32) -> Option<u32> {
         loop {
@@ -141,7 +104,7 @@ impl Pending {
         }
     }
 
-    /// Returns the first in order of the entries whose bits are set, and keeps the others.
+    /// Returns the nearest of the children whose bits are set, and pushes the others.
     #[inline(always)]
     fn all_but_one(&mut self, count: &mut usize, mut bits: u32, entry: impl Fn(usize) -> u64) -> u32 {
         let mut take = || {
@@ -149,14 +112,14 @@ impl Pending {
             bits &= bits.wrapping_sub(1);
             (entry(slot), bits != 0)
         };
-        let (mut least, mut more) = take();
+        let (mut min, mut more) = take();
         while more {
             let other;
             (other, more) = take();
-            self.push(count, least.max(other));
-            least = least.min(other);
+            self.push(count, min.max(other));
+            min = min.min(other);
         }
-        least as u32
+        min as u32
     }
 }
 

@@ -6,16 +6,15 @@ use std::array::from_fn;
 /// The triangles of a leaf: up to four.
 #[repr(align(32))]
 pub(super) struct Leaf {
-    /// By axis, then corner, then triangle. What is left over is a point, which no ray meets.
+    /// By axis, then corner, then triangle. Lanes without a triangle hold a point, which no ray meets.
     pub corners: [[[f32; 4]; 3]; 3],
-    /// Triangles of the mesh.
+    /// Indices of the triangles in the mesh.
     pub triangles: [u32; 4],
 }
 
-/// A ray sheared so that it runs along one axis, that along which its direction is largest: the triangle test is then
-/// two-dimensional.
+/// A ray sheared so that it runs along the axis of its largest component: the triangle test is then two-dimensional.
 pub(super) struct TriangleTest {
-    /// The two other axes, then this one; so are the components below.
+    /// The two other axes, then this one; the components below are in the same order.
     pub axes: [usize; 3],
     pub origin: [f64; 3],
     pub shear: [f64; 3],
@@ -25,12 +24,12 @@ pub(super) struct TriangleTest {
 pub(super) struct Crossing {
     /// Of any sign.
     pub distance: f64,
-    /// Twice the areas opposite the corners, as seen along the axis; none has another sign than the others.
+    /// Twice the areas opposite the corners, as seen along the axis; no two have opposite signs.
     areas: [f64; 3],
 }
 
 impl Leaf {
-    /// Holds one to four triangles, of which `corners` gives the corners.
+    /// Holds one to four triangles; `corners` gives the corners of each.
     pub fn new(triangles: &[u32], corners: impl Fn(u32) -> [Vec3; 3]) -> Leaf {
         let triangle = |lane: usize| triangles.get(lane).copied().unwrap_or(triangles[0]);
         let lanes: [[Vec3; 3]; 4] = from_fn(|lane| {
@@ -62,7 +61,7 @@ impl TriangleTest {
         TriangleTest { axes, origin: axes.map(|axis| origin[axis]), shear: [x / z, y / z, 1.0 / z] }
     }
 
-    /// Whether the line of the ray meets a triangle, edges and corners included. Not if it is seen edge-on.
+    /// Whether the line of the ray meets a triangle, edges and corners included. One seen edge-on is not met.
     #[inline(always)]
     pub fn meets(&self, leaf: &Leaf, lane: usize) -> bool {
         let areas = areas(&self.sheared(leaf, lane));
@@ -88,7 +87,7 @@ impl TriangleTest {
     }
 }
 
-/// Rounding keeps the order of the two products: none of the signs is ever wrong, at worst it is zero.
+/// Rounding keeps the order of the two products: a sign is never wrong, at worst the area is zero.
 #[inline(always)]
 fn areas([a, b, c]: &[[f64; 3]; 3]) -> [f64; 3] {
     [c[0] * b[1] - c[1] * b[0], a[0] * c[1] - a[1] * c[0], b[0] * a[1] - b[1] * a[0]]

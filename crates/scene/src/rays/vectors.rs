@@ -1,42 +1,32 @@
-//! Eight boxes and four triangles at a time, with the vectors that the processor has.
+//! Tests of eight boxes and of four triangles at a time.
 //!
-//! Every version does the same operations in the same order, without fused multiply-adds, so that all find the same,
-//! to the last bit.
+//! Every implementation does the same operations in the same order, without fused multiply-adds, so that all results are
+//! the same to the last bit.
 
 use super::{
+    node::Node,
     ray::BoxRay,
-    tree::Node,
     triangle::{Leaf, TriangleTest},
 };
 use std::array::from_fn;
 
-/// What a walk needs vectors for.
+/// The instructions that a walk is compiled for.
 pub(super) trait Vectors: Copy {
-    /// Where the ray enters the boxes of a node, and the bits of those that it meets no farther than `limit`.
+    /// The distances at which the ray enters the boxes of a node, and the bits of those that it meets within `limit`.
     fn boxes(self, node: &Node, ray: &BoxRay, limit: f32) -> ([f32; 8], u32);
 
-    /// Bits of the triangles of a leaf that the line of the ray meets.
+    /// The bits of the triangles of a leaf that the line of the ray meets.
     fn triangles(self, leaf: &Leaf, test: &TriangleTest) -> u32;
 }
 
 /// A walk through the tree. `run` must be `#[inline(always)]`, and so must all it calls: it is compiled anew for each
-/// kind of vectors.
+/// implementation of [`Vectors`].
 pub(super) trait Query {
     type Found;
     fn run(self, vectors: impl Vectors) -> Self::Found;
 }
 
-/// Runs a query with the vectors that the processor has.
-#[inline(always)]
-pub(super) fn run<Q: Query>(query: Q) -> Q::Found {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(avx2) = super::avx2::Avx2::detect() {
-        return avx2.run(query);
-    }
-    query.run(Plain)
-}
-
-/// For every processor.
+/// Runs on every processor.
 #[derive(Clone, Copy)]
 pub(super) struct Plain;
 
@@ -68,7 +58,7 @@ mod tests {
     };
     use glam::{DVec3, Vec3};
 
-    /// Few different numbers, so that rays run through edges, corners and planes of boxes.
+    /// One of few numbers, so that rays run through edges, corners and planes of boxes.
     fn coarse(item: Item, dimension: u64) -> f64 {
         (item.uniform(dimension) * 9.0).floor() - 4.0
     }
@@ -80,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn boxes_are_met_alike_with_and_without_vectors() {
+    fn boxes_are_met_alike_with_and_without_avx2() {
         let Some(avx2) = Avx2::detect() else { return };
         let mut met = 0;
         for k in 0..20_000 {
@@ -120,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn triangles_are_met_alike_with_and_without_vectors() {
+    fn triangles_are_met_alike_with_and_without_avx2() {
         let Some(avx2) = Avx2::detect() else { return };
         let mut met = 0;
         for k in 0..20_000 {

@@ -1,23 +1,23 @@
-//! Which nodes of a binary tree become the children of one node with eight, and which become leaves of up to four
-//! triangles: those of the least expected cost, by the dynamic programme of Ylitie, Karras and Laine 2017.
+//! Collapses a binary tree into nodes of up to eight children and leaves of up to four triangles, with the least expected
+//! cost, by the dynamic programme of Ylitie, Karras and Laine 2017.
 
 use obvhs::{aabb::Aabb, bvh2::Bvh2};
 
-/// Cost of a visit to a leaf over that of one to a node: anything from 0.6 to 2.5 is as good.
+/// Cost of a visit to a leaf, as a multiple of that to a node: anything from 0.6 to 2.5 is as good.
 const LEAF_COST: f32 = 1.0;
 
-/// The most triangles of a leaf.
-const FULL: usize = 4;
+/// The largest number of triangles of a leaf.
+const MAX_TRIANGLES: usize = 4;
 
-/// The most children of a node.
+/// The largest number of children of a node.
 const WIDTH: usize = 8;
 
 /// A binary tree with one triangle in each of its leaves.
 pub(super) struct Wide {
     tree: Bvh2,
-    /// For each node, the triangles below it, or one more than [`FULL`].
+    /// For each node, the triangles below it, or one more than [`MAX_TRIANGLES`].
     counts: Vec<u8>,
-    /// For each node, the least cost of it as up to 1, 2, ... children of a wide node.
+    /// For each node, its least cost as up to 1, 2, ... children of a wide node.
     costs: Vec<[f32; WIDTH - 1]>,
 }
 
@@ -33,25 +33,25 @@ impl Wide {
         }
         let size = tree.nodes.len();
         let mut wide = Wide { tree, counts: vec![1; size], costs: vec![[0.0; WIDTH - 1]; size] };
-        downwards.into_iter().rev().for_each(|node| wide.rate(node));
+        downwards.into_iter().rev().for_each(|node| wide.find_costs(node));
         wide
     }
 
-    /// Rates a node of which those below are rated.
-    fn rate(&mut self, node: usize) {
+    /// Finds the costs of a node after those of the nodes below it.
+    fn find_costs(&mut self, node: usize) {
         let as_leaf = self.cost_as_leaf(node);
         let Some([left, right]) = self.halves(node) else {
             self.costs[node] = [as_leaf; WIDTH - 1];
             return;
         };
-        self.counts[node] = (self.counts[left] + self.counts[right]).min(FULL as u8 + 1);
+        self.counts[node] = (self.counts[left] + self.counts[right]).min(MAX_TRIANGLES as u8 + 1);
         let divided = |slots: usize| {
             let cost = |n: usize| self.cost_divided([left, right], slots, n);
             (1..slots).map(cost).fold(f32::INFINITY, f32::min)
         };
         let as_node = divided(WIDTH) + self.bounds(node).half_area();
         let mut costs = [as_node; WIDTH - 1];
-        if usize::from(self.counts[node]) <= FULL {
+        if usize::from(self.counts[node]) <= MAX_TRIANGLES {
             costs[0] = as_leaf.min(as_node);
         }
         for slots in 2..WIDTH {
@@ -60,7 +60,7 @@ impl Wide {
         self.costs[node] = costs;
     }
 
-    /// The two halves as up to `slots` children of one node, of which the left half takes `n`.
+    /// Cost of the two halves as up to `slots` children of one node, of which the left half takes `n`.
     fn cost_divided(&self, [left, right]: [usize; 2], slots: usize, n: usize) -> f32 {
         self.costs[left][n - 1] + self.costs[right][slots - n - 1]
     }
@@ -83,7 +83,7 @@ impl Wide {
         if self.is_leaf(0) { vec![0] } else { self.children(0) }
     }
 
-    /// The children of the wide node that a node becomes which is no leaf.
+    /// The children of the wide node that an inner node becomes.
     pub fn children(&self, node: usize) -> Vec<usize> {
         let mut children = Vec::with_capacity(WIDTH);
         self.divide(node, WIDTH, &mut children);
@@ -98,7 +98,7 @@ impl Wide {
         self.put(halves[1], slots - left, children);
     }
 
-    /// Makes a node up to `slots` children: fewer if that costs as little.
+    /// Makes a node up to `slots` children, fewer if that costs no more.
     fn put(&self, node: usize, slots: usize, children: &mut Vec<usize>) {
         let costs = &self.costs[node];
         let slots = (1..=slots).find(|n| costs[n - 1] <= costs[slots - 1]).expect("at the latest the last");
@@ -106,13 +106,13 @@ impl Wide {
     }
 
     fn is_leaf(&self, node: usize) -> bool {
-        usize::from(self.counts[node]) <= FULL && self.costs[node][0] == self.cost_as_leaf(node)
+        usize::from(self.counts[node]) <= MAX_TRIANGLES && self.costs[node][0] == self.cost_as_leaf(node)
     }
 
     /// The triangles of a node, if it becomes a leaf.
     pub fn leaf(&self, node: usize) -> Option<Vec<u32>> {
         self.is_leaf(node).then(|| {
-            let mut triangles = Vec::with_capacity(FULL);
+            let mut triangles = Vec::with_capacity(MAX_TRIANGLES);
             self.collect(node, &mut triangles);
             triangles
         })

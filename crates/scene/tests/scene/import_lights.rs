@@ -13,8 +13,8 @@ fn facing(scene: &Scene, position: DVec3, normal: DVec3) -> SurfacePoint {
 
 /// Irradiance at a point by the scene's only light; 0 if there is none.
 fn irradiance(scene: &Scene, position: DVec3, normal: DVec3) -> DVec3 {
-    assert_eq!(scene.lights.len(), 1);
-    let light = scene.lights[0].illuminate(&facing(scene, position, normal), [0.5; 2]);
+    assert_eq!(scene.file_lights.len(), 1);
+    let light = scene.file_lights[0].illuminate(&facing(scene, position, normal), [0.5; 2]);
     light.map_or(DVec3::ZERO, |l| l.irradiance)
 }
 
@@ -113,7 +113,7 @@ fn emission_has_a_unit_of_its_own() {
     let (watts, lumens) = (LightUnit::Radiometric, LightUnit::Photometric);
     for (light_unit, emission_unit) in [(watts, watts), (watts, lumens), (lumens, watts), (lumens, lumens)] {
         let scene = asset.import_with(&ImportOptions { light_unit, emission_unit, ..OPTIONS }).expect("a good file");
-        let light = scene.lights[0].illuminate(&facing(&scene, DVec3::NEG_Z, DVec3::Z), [0.5; 2]).expect("lit");
+        let light = scene.file_lights[0].illuminate(&facing(&scene, DVec3::NEG_Z, DVec3::Z), [0.5; 2]).expect("lit");
         let factor = |unit| if unit == watts { 1.0 } else { 1.0 / 683.0 };
         assert!(light.irradiance.distance(DVec3::splat(683.0 * factor(light_unit))) < 1e-10);
         let emission = scene.materials[0].emission;
@@ -124,7 +124,7 @@ fn emission_has_a_unit_of_its_own() {
 #[test]
 fn a_light_without_intensity_is_left_out_with_a_warning() {
     let scene = import(&lit(json!({ "type": "point", "intensity": 0 }), json!({ "name": "dark" })));
-    assert!(scene.lights.is_empty());
+    assert!(scene.file_lights.is_empty());
     assert!(scene.warnings.iter().any(|w| w.contains("`dark`")), "{:?}", scene.warnings);
 }
 
@@ -138,7 +138,7 @@ fn emitting_materials_are_area_lights() {
     // A material without triangles gives no light.
     asset.push("materials", json!({ "emissiveFactor": [9, 9, 9] }));
     let scene = import(&asset);
-    assert_eq!((scene.lights.len(), scene.materials[0].emission), (1, DVec3::splat(4.0)));
+    assert_eq!((scene.file_lights.len(), scene.materials[0].emission), (1, DVec3::splat(4.0)));
     assert!(irradiance(&scene, DVec3::splat(-100.0), DVec3::ONE.normalize()).x > 0.0);
 }
 
@@ -158,7 +158,7 @@ fn an_emissive_texture_is_left_out_with_a_warning() {
 /// Seen to catch: the cosines of the angles in the digest, which are 1 for both narrow spots.
 #[test]
 fn the_light_digest_tells_lights_apart() {
-    let digest = |light: Value| import(&lit(light, json!({}))).light_digest;
+    let digest = |light: Value| import(&lit(light, json!({}))).light_digest();
     let spot = |outer: f64| json!({ "type": "spot", "spot": { "outerConeAngle": outer }, "intensity": 1 });
     let all = [
         digest(json!({ "type": "point", "intensity": 1 })),

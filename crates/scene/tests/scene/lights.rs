@@ -93,7 +93,7 @@ fn narrow_spots_are_as_bright_as_wide_ones() {
         if outer < 0.03 && inner < outer {
             assert!((share(middle) / (expected * expected) - 1.0).abs() < 1e-3, "{inner} {outer}: {}", share(middle));
         }
-        assert!(light.bounds().is_some_and(|extent| extent.reach >= outer));
+        assert!(light.bounds().is_some_and(|bounds| bounds.cone.half_angle >= outer));
     }
 }
 
@@ -184,8 +184,12 @@ fn area_light_shines_to_its_front_or_to_both_sides() {
     assert!(AreaLight::new(&square(), &[], DVec3::ONE, false).is_none());
 }
 
+fn tree_of(lights: &[Box<dyn Light>]) -> LightTree<'_> {
+    LightTree::new(lights.iter().map(|light| &**light))
+}
+
 fn any_picked(lights: &[Box<dyn Light>], at: &SurfacePoint) -> bool {
-    LightChoice::new(&LightTree::new(lights), &ReceiverBounds::point(at), 1).pick(at, 0.5).is_some()
+    LightChoice::new(&tree_of(lights), &ReceiverBounds::point(at), 1).pick(at, 0.5).is_some()
 }
 
 fn lights() -> Vec<Box<dyn Light>> {
@@ -226,10 +230,83 @@ fn importance_is_positive_wherever_there_is_light() {
     assert!(lit.iter().all(|n| *n > 1000), "the scan meets every light: {lit:?}");
 }
 
+/// Sampling, density and emitted radiance are one: `E p(ω) = L (n·ω)` wherever a direction has a density.
+///
+/// Seen to catch: a density without the cosine at the emitter; the radiance of a back side; the solid angle of another row.
+#[test]
+fn density_and_radiance_are_those_of_the_samples() {
+    let lights = lights();
+    let (mut compared, mut equal) = ([0; 7], [0; 7]);
+    for k in 0..50_000 {
+        let item = random(k);
+        let at = facing(direction(item, 0) * (5.0 * item.uniform(2)), direction(item, 3));
+        for (which, light) in lights.iter().enumerate() {
+            let Some(l) = light.illuminate(&at, [item.uniform(7), item.uniform(8)]) else { continue };
+            let (pdf, radiance) = (light.pdf_solid_angle(&at, l.direction), light.radiance(at.position, l.direction));
+            if pdf > 0.0 {
+                let expected = radiance * at.normal.dot(l.direction);
+                compared[which] += 1;
+                equal[which] += u32::from((l.irradiance * pdf).distance(expected) <= 1e-9 * expected.length());
+            } else {
+                assert_eq!(radiance, DVec3::ZERO);
+            }
+        }
+    }
+    assert_eq!(compared[..3], [0; 3], "directional and point lights have no density");
+    // On an edge, rounding may put a direction into either of two pixels.
+    let all_but_few = |k: usize| equal[k] > 1000 && compared[k] - equal[k] <= compared[k] / 10_000;
+    assert!((3..7).all(all_but_few), "{equal:?} of {compared:?}");
+}
+
+/// Clouds are known by their lights: whatever defines one must change its identity.
+#[test]
+fn every_parameter_of_a_light_is_a_part_of_its_identity() {
+    let spot = |axis, inner, outer| PointLight { spot: Some(Spot::new(axis, inner, outer)), ..bulb(DVec3::Z) };
+    let sun = |direction, irradiance| DirectionalLight { direction, irradiance };
+    let area = |triangles: &[usize], radiance, double_sided| {
+        AreaLight::new(&square(), triangles, radiance, double_sided).expect("an area")
+    };
+    let map = |size, value, scale, degrees| {
+        Environment::Map(EnvironmentMap::new(size, vec![Vec3::splat(value); 8], scale, degrees).expect("good").into())
+    };
+    let all: Vec<Box<dyn Light>> = vec![
+        Box::new(bulb(DVec3::Z)),
+        Box::new(bulb(DVec3::X)),
+        Box::new(PointLight { intensity: DVec3::X, ..bulb(DVec3::Z) }),
+        Box::new(PointLight { range: Some(9.0), ..bulb(DVec3::Z) }),
+        Box::new(spot(DVec3::X, 0.1, 0.2)),
+        Box::new(spot(DVec3::Y, 0.1, 0.2)),
+        Box::new(spot(DVec3::X, 0.0, 0.2)),
+        Box::new(spot(DVec3::X, 0.1, 0.3)),
+        Box::new(sun(DVec3::X, DVec3::ONE)),
+        Box::new(sun(DVec3::Y, DVec3::ONE)),
+        Box::new(sun(DVec3::X, DVec3::X)),
+        Box::new(area(&[0], DVec3::ONE, false)),
+        Box::new(area(&[0], DVec3::X, false)),
+        Box::new(area(&[0], DVec3::ONE, true)),
+        Box::new(Environment::Constant(DVec3::ONE)),
+        Box::new(Environment::Constant(DVec3::X)),
+        Box::new(map((4, 2), 1.0, 1.0, 0.0)),
+        Box::new(map((8, 1), 1.0, 1.0, 0.0)),
+        Box::new(map((4, 2), 2.0, 1.0, 0.0)),
+        Box::new(map((4, 2), 1.0, 2.0, 0.0)),
+        Box::new(map((4, 2), 1.0, 1.0, 5.0)),
+    ];
+    let identity = |light: &dyn Light| {
+        let mut hasher = blake3::Hasher::new();
+        light.hash_into(&mut hasher);
+        hasher.finalize()
+    };
+    let identities: Vec<_> = all.iter().map(|light| identity(&**light)).collect();
+    for (k, one) in identities.iter().enumerate() {
+        assert!(!identities[..k].contains(one), "{k}");
+    }
+}
+
 #[test]
 fn lights_are_picked_in_proportion_to_their_importance() {
     let lights = lights();
-    let tree = LightTree::new(&lights);
+    let tree = tree_of(&lights);
     for at in [facing(DVec3::ZERO, tilted(10.0)), facing(DVec3::splat(0.3), tilted(170.0))] {
         let choice = LightChoice::new(&tree, &ReceiverBounds::point(&at), 1);
         let importance: Vec<f64> = lights.iter().map(|l| l.importance(&at)).collect();
@@ -267,7 +344,7 @@ fn one_light_at_random_has_the_mean_of_all() {
         Box::new(DirectionalLight { direction: tilted(60.0), irradiance: DVec3::splat(2.0) }),
     ];
     let expected = 20.0 / 5.0 * (2.0 / 5f64.sqrt()) + 2.0 * 0.5;
-    let tree = LightTree::new(&lights);
+    let tree = tree_of(&lights);
     let choice = LightChoice::new(&tree, &ReceiverBounds::point(&at), 1);
     let n = 10_000;
     let (mut sum, mut traced, mut shadowed) = (0.0, 0, 0);

@@ -4,6 +4,7 @@ mod copies;
 mod cutouts;
 mod environment;
 mod exactness;
+mod identity;
 mod import;
 mod import_faults;
 mod import_files;

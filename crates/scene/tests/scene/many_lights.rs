@@ -74,7 +74,7 @@ fn everything() -> Vec<Box<dyn Light>> {
 #[test]
 fn every_light_is_picked_as_often_as_its_share_says() {
     let lights = everything();
-    let tree = LightTree::new(&lights);
+    let tree = LightTree::new(lights.iter().map(|light| &**light));
     let n = 40_000;
     let mut tested = 0;
     for index in 0..40 {
@@ -108,7 +108,7 @@ fn every_light_is_picked_as_often_as_its_share_says() {
 #[test]
 fn one_of_many_lights_has_the_mean_of_all() {
     let lights = everything();
-    let tree = LightTree::new(&lights);
+    let tree = LightTree::new(lights.iter().map(|light| &**light));
     // Far away: nothing is hidden.
     let rays = Rays::new(&mesh(&[DVec3::X, DVec3::Y, DVec3::Z].map(|d| d * 1e-3 + 900.0), &[[0, 1, 2]]));
     let n = 20_000;
@@ -170,7 +170,7 @@ fn one_of_many_lights_has_the_mean_of_all() {
 fn the_cost_of_a_choice_hardly_depends_on_the_number_of_lights() {
     for (count, max_noise) in [(100, 0.3), (1000, 0.3), (20_000, 0.8)] {
         let lights = lamps(count, [1.5, 4.0]);
-        let tree = LightTree::new(&lights);
+        let tree = LightTree::new(lights.iter().map(|light| &**light));
         let (mut weighed, mut variance, regions, points) = (0, 0.0, 40, 256);
         for index in 0..regions {
             let centre = direction(random(index), 0);

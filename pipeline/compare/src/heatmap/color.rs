@@ -1,34 +1,60 @@
-//! Errors as colors: black, violet, red, orange, yellow.
+//! The colors of errors: black, violet, red, orange, yellow.
 //!
-//! Equal steps of the error are equal steps of lightness in Oklab (Ottosson, "A perceptual color space for image
-//! processing", 2020), so the picture also reads in grey and without telling red from green.
+//! Equal steps of the error are equal steps of lightness in Oklab (Ottosson, "A perceptual color space for image processing",
+//! 2020), so that the picture can also be read in gray and by those who do not tell red from green.
 
 use color::srgb;
 use std::f64::consts::FRAC_PI_2;
 
-/// Steps of the scale: more than eight bits of lightness can show.
+/// The number of steps of the scale, which is more than eight bits of lightness can show.
 pub(super) const STEPS: usize = 256;
-/// What is beyond the scale.
+/// The color of errors beyond the scale.
 pub(super) const ABOVE: [u8; 3] = [255; 3];
-/// NaN or infinity in either image; no hue of the scale.
+/// The color of NaN and infinity, whose hue is not on the scale.
 pub(super) const NOT_FINITE: [u8; 3] = [0, 255, 0];
 
-/// Oklab's lightness at the end of the scale: the yellow that is farthest from white.
+/// The lightness in Oklab at the end of the scale, that of the yellow which is farthest from white.
 const LIGHTEST: f64 = 0.9;
-/// Degrees at both ends; from violet the hue goes up through red.
+/// The hues at both ends in degrees. From violet the hue goes up through red.
 const HUES: [f64; 2] = [285.0, 465.0];
+/// The largest chroma of the scale.
 const CHROMA: f64 = 0.185;
 
-/// Colors from no error to the end of the scale.
+/// The numbers of pixels that the scale does not show.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Counts {
+    pub above: u64,
+    pub not_finite: u64,
+}
+
+impl Counts {
+    /// The color of an error on a scale that ends at `max`. An error that is not finite is `None`.
+    pub fn shade(&mut self, scale: &[[u8; 3]; STEPS], error: Option<f64>, max: f64) -> [u8; 3] {
+        match error {
+            None => {
+                self.not_finite += 1;
+                NOT_FINITE
+            }
+            Some(error) if error > max => {
+                self.above += 1;
+                ABOVE
+            }
+            Some(error) => scale[(error / max * (STEPS - 1) as f64).round() as usize],
+        }
+    }
+}
+
+/// The colors from no error to the end of the scale.
 pub(super) fn scale() -> [[u8; 3]; STEPS] {
     std::array::from_fn(|step| color(step as f64 / (STEPS - 1) as f64))
 }
 
+/// The color at a part, 0 to 1, of the scale.
 fn color(part: f64) -> [u8; 3] {
     let hue = (HUES[0] + (HUES[1] - HUES[0]) * part).to_radians();
     let lightness = LIGHTEST * part;
     let wanted = CHROMA * (FRAC_PI_2 * part).sin().sqrt();
-    // Dark colors cannot be vivid: the most chroma that sRGB has is taken, by halving; black has none.
+    // sRGB has no vivid dark colors: bisection finds the largest chroma that it can show; that of black is zero.
     let (mut chroma, mut step) = (wanted, wanted / 2.0);
     for _ in 0..20 {
         let shown = linear_srgb(lightness, chroma, hue).iter().all(|light| (0.0..=1.0).contains(light));
@@ -38,7 +64,7 @@ fn color(part: f64) -> [u8; 3] {
     linear_srgb(lightness, chroma, hue).map(srgb::encode_byte)
 }
 
-/// Oklab's matrices, from the paper's page.
+/// Converts by Oklab's matrices, which are those of the paper's page.
 fn linear_srgb(lightness: f64, chroma: f64, hue: f64) -> [f64; 3] {
     let (a, b) = (chroma * hue.cos(), chroma * hue.sin());
     let l = (lightness + 0.396_337_777_4 * a + 0.215_803_757_3 * b).powi(3);
@@ -55,7 +81,7 @@ fn linear_srgb(lightness: f64, chroma: f64, hue: f64) -> [f64; 3] {
 mod tests {
     use super::*;
 
-    /// The paper's other direction: from sRGB to lightness and hue, degrees.
+    /// The paper's conversion from sRGB to lightness and to hue in degrees.
     fn lightness_and_hue(color: [u8; 3]) -> [f64; 2] {
         let [r, g, b] = color.map(srgb::decode_byte);
         let l = (0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b).cbrt();
@@ -67,8 +93,8 @@ mod tests {
         [lightness, yellow.atan2(red).to_degrees()]
     }
 
-    /// Half a step of eight bits is most in the dark, where the cube root is steep: 0.04 of lightness near black, 0.005
-    /// and three degrees of hue beyond. Planted and caught: no reduction of chroma, a sign in a matrix.
+    /// The tolerance is half a step of eight bits. It is largest in the dark, where the cube root is steep: 0.04 of lightness near
+    /// black, and 0.005 and three degrees of hue elsewhere. Seen to catch: no reduction of chroma, a wrong sign in a matrix.
     #[test]
     fn lightness_is_linear_in_the_error() {
         for (step, color) in scale().into_iter().enumerate() {

@@ -1,28 +1,28 @@
-//! What the colors mean, below the picture and as text in the file.
+//! The legend: the meaning of the colors, below the picture and as text in the file.
 
 use picture::{Picture, font};
 
-use super::{Counts, color};
+use super::color::{self, Counts};
 
-/// Narrowest picture that holds the legend, pixels.
+/// The width of the narrowest picture that holds the legend, in pixels.
 pub(super) const WIDTH: usize = 448;
-/// Rows of the legend: title, bar, numbers, two lines of other colors.
+/// The height of the legend in pixels: a title, the bar, its numbers, two lines of other colors.
 pub(super) const HEIGHT: usize = MARGIN + 4 * LINE + BAR + TICK + GAP + MARGIN;
 pub(super) const PAPER: [u8; 3] = [24, 24, 26];
 
 const INK: [u8; 3] = [235, 232, 225];
 const MARGIN: usize = 8;
-/// Between the bar's ends and the border: half of the longest number.
+/// The space between the ends of the bar and the border, which holds half of the longest number.
 const SIDE: usize = 4 * font::ADVANCE;
 const BAR: usize = 16;
 const TICK: usize = 6;
-/// Below the numbers.
+/// The space below the numbers.
 const GAP: usize = 6;
 const LINE: usize = font::LINE + 4;
-/// Numbers below the bar, evenly spaced.
+/// The number of evenly spaced numbers below the bar.
 const TICKS: usize = 5;
 
-/// Draws into the rows from `top` on.
+/// Draws the legend into the rows from `top` on.
 pub(super) fn draw(picture: &mut Picture, top: usize, layer: &str, counts: Counts, max: f64) {
     let Counts { above, not_finite } = counts;
     let top = top + MARGIN;
@@ -58,9 +58,9 @@ fn write(picture: &mut Picture, text: &str, left: usize, top: usize) {
     font::dots(text, picture.width - left).for_each(|(x, y)| picture.dot(left + x, top + y, INK));
 }
 
-/// The scale as text, for programs and for those who cannot see it.
+/// The scale as text, for programs and for people who cannot see it.
 pub(super) fn description(layer: &str, max: f64, zoom: usize) -> String {
-    // PNG's plain text is Latin-1.
+    // Plain text in PNG is Latin-1.
     let layer: String = layer.chars().map(|letter| if letter.is_ascii_graphic() { letter } else { '?' }).collect();
     format!(
         "absolute error of {layer}, largest of its channels; linear scale from 0 to {max}, lightness grows with it; \
@@ -68,7 +68,7 @@ pub(super) fn description(layer: &str, max: f64, zoom: usize) -> String {
     )
 }
 
-/// Three digits at most, with an exponent where that is shorter.
+/// A number with at most three digits, and with an exponent where that is shorter.
 fn short(value: f64) -> String {
     let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
     if value == 0.0 || (1e-3..1e5).contains(&value) { format!("{rounded}") } else { format!("{rounded:e}") }
@@ -84,7 +84,7 @@ mod tests {
         assert_eq!(numbers.map(short), ["0", "0.1", "0.075", "0.333", "12300", "1e-9", "3.33e-5"]);
     }
 
-    /// Planted and caught: ticks a quarter too far to the right, the bar upside down.
+    /// Seen to catch: ticks a quarter too far to the right, the bar upside down.
     #[test]
     fn the_bar_runs_from_no_error_to_the_end_of_the_scale() {
         let mut picture = Picture::new(WIDTH, HEIGHT, PAPER);

@@ -1,52 +1,49 @@
-//! The absolute error as a picture, on a scale that does not depend on the images, so that two pictures compare.
+//! The absolute error as a picture. Its scale does not depend on the images, so that two pictures can be compared.
 
+use formats::image::Image;
 use picture::Picture;
 
+use crate::choice::Choice;
 use crate::layer::{Layer, layers};
-use crate::{Choice, Mismatch};
-use formats::image::Image;
+use crate::structure::Mismatch;
 
 mod color;
 mod legend;
 
-/// End of the scale if no other is asked for, in units of the channel: a tenth of a white surface under unit light.
+use color::Counts;
+
+/// The default end of the scale in units of the channel: a tenth of a white surface under unit light.
 pub const DEFAULT_MAX: f64 = 0.1;
 
-/// Most pixels of a picture with its legend: 768 MiB.
+/// The largest number of pixels of a picture with its legend, which take 768 MiB.
 const MAX_PIXELS: usize = 1 << 28;
-/// Most pixels of the picture's side for a pixel of the image.
+/// The largest factor by which an image is enlarged.
 const MAX_ZOOM: usize = 16;
 
 /// Why there is no heatmap.
 #[derive(Debug, thiserror::Error)]
 pub enum HeatmapError {
-    /// The layer is not there.
+    /// The layer does not exist.
     #[error(transparent)]
     Layer(#[from] Mismatch),
-    /// It would take too much memory.
+    /// The picture would need too much memory.
     #[error(
         "a heatmap of {width} x {height} pixels with its legend is too large; at most {MAX_PIXELS} pixels are drawn"
     )]
     TooLarge {
-        /// Pixels per row.
+        /// The number of pixels in a row.
         width: usize,
-        /// Rows.
+        /// The number of rows.
         height: usize,
     },
-    /// The PNG library refused.
+    /// The PNG library failed.
     #[error("the heatmap cannot be packed: {0}")]
     Png(#[from] png::EncodingError),
 }
 
-/// What the scale does not show.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Counts {
-    above: u64,
-    not_finite: u64,
-}
-
-/// A PNG file: the chosen layer's absolute error, largest of its channels, as color from 0 to `max`, with a legend
-/// below. Small images are enlarged by a whole factor. Of all layers, the first is drawn, which is `beauty` if there is.
+/// Draws the absolute error of the chosen layer, the largest of its channels, as color from 0 to `max`, and returns a PNG file
+/// with a legend below the picture. Small images are enlarged by a whole factor. If all layers are chosen, the first is drawn,
+/// which is `beauty` if that exists.
 pub fn heatmap(reference: &Image, test: &Image, choice: &Choice, max: f64) -> Result<Vec<u8>, HeatmapError> {
     let layers = layers(reference, test);
     let layer = choose(&layers, choice)?;
@@ -69,15 +66,11 @@ pub fn heatmap(reference: &Image, test: &Image, choice: &Choice, max: f64) -> Re
 }
 
 fn choose<'a, 'b>(layers: &'b [Layer<'a>], choice: &Choice) -> Result<&'b Layer<'a>, Mismatch> {
-    let wanted = match choice {
-        Choice::Default => crate::layer::BEAUTY,
-        Choice::All => layers.first().map_or("", |layer| layer.name.as_str()),
-        Choice::Named(name) => name,
-    };
+    let wanted = choice.layer().or(layers.first().map(|layer| layer.name.as_str())).unwrap_or_default();
     layers.iter().find(|layer| layer.name == wanted).ok_or_else(|| Mismatch::no_layer(wanted, layers))
 }
 
-/// The largest absolute error among the channels; `None` where either image is not finite.
+/// The largest absolute error of a pixel among the channels, or `None` where an image is not finite.
 fn error(planes: &[(&[f32], &[f32])], pixel: usize) -> Option<f64> {
     planes.iter().try_fold(0.0_f64, |worst, (reference, test)| {
         let error = (f64::from(test[pixel]) - f64::from(reference[pixel])).abs();
@@ -85,29 +78,13 @@ fn error(planes: &[(&[f32], &[f32])], pixel: usize) -> Option<f64> {
     })
 }
 
-impl Counts {
-    fn shade(&mut self, scale: &[[u8; 3]; color::STEPS], error: Option<f64>, max: f64) -> [u8; 3] {
-        match error {
-            None => {
-                self.not_finite += 1;
-                color::NOT_FINITE
-            }
-            Some(error) if error > max => {
-                self.above += 1;
-                color::ABOVE
-            }
-            Some(error) => scale[(error / max * (color::STEPS - 1) as f64).round() as usize],
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Planted and caught: the sum of the channels, errors with their sign, NaN lost in `max`.
+    /// Seen to catch: the sum of the channels, errors with their sign, NaN lost in `max`.
     #[test]
-    fn the_largest_channel_counts_and_no_number_is_one() {
+    fn the_largest_channel_counts_and_nan_is_none() {
         let planes: [(&[f32], &[f32]); 2] = [
             (&[0.0, 1.0, 0.0, f32::INFINITY], &[0.5, 1.0, f32::NAN, f32::INFINITY]),
             (&[2.0, 1.0, 0.0, 0.0], &[1.0, 1.0, 9.0, 0.0]),

@@ -1,63 +1,63 @@
-//! Which samples the page holds, so that it stays under 100 MB.
+//! Chooses the samples that the page holds, so that it stays under 100 MB.
 
+use formats::image::Image;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::plane::{self, Plane};
 use super::reduce::{Rectangle, block_for, means};
 use crate::layer::Layer;
-use crate::{LayerReport, Report};
-use formats::image::Image;
+use crate::report::{LayerReport, Report};
 
-/// Most text of all planes, bytes: the page's code and numbers fit into what is left of 100 MB.
+/// The largest number of bytes for the text of all planes. The code and the numbers of the page fit into the rest of 100 MB.
 pub(super) const BUDGET: usize = 96_000_000;
 
-/// Most pixels of a layer that are embedded one by one.
+/// The largest number of pixels of a layer that is embedded pixel by pixel.
 pub(super) const FULL: usize = 1 << 21;
 
-/// Half the side of what is embedded around a worst pixel where there are only means, pixels.
+/// Half the side of the area around a worst pixel that is embedded pixel by pixel in a reduced layer, in pixels.
 const SURROUNDINGS: usize = 32;
 
-/// Most places of a layer that get their surroundings.
-const PLACES: usize = 4;
+/// The largest number of such areas of a layer.
+const MAX_SURROUNDINGS: usize = 4;
 
-/// A layer as the page has it.
+/// A layer as the page holds it.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct LayerData {
     name: String,
     channels: Vec<String>,
-    /// The whole image; then, if that is of means, parts of it pixel by pixel.
+    /// The whole image, and, if it is reduced, areas of it pixel by pixel.
     grids: Vec<Grid>,
 }
 
-/// Part of a layer, sampled in blocks.
+/// An area of a layer, as means over blocks.
 #[derive(Clone, Debug, Serialize)]
 struct Grid {
-    /// Left end, pixels from that of the image.
+    /// The left end, in pixels from that of the image.
     x: usize,
-    /// Top end, pixels from that of the image.
+    /// The top end, in pixels from that of the image.
     y: usize,
-    /// Blocks per row.
+    /// The number of blocks in a row.
     width: usize,
-    /// Rows of blocks.
+    /// The number of rows of blocks.
     height: usize,
-    /// Side of a block, pixels; one is the pixel itself.
+    /// The side of a block in pixels; a block of one pixel is the pixel itself.
     block: usize,
-    /// Blocks of reference and test, per channel; the same where the images have the same bits.
+    /// The numbers of the planes of reference and test for each channel, which are the same if the images have the same bits.
     planes: Vec<[usize; 2]>,
     #[serde(skip)]
     encoded: Vec<Plane>,
 }
 
-/// What the page holds.
+/// The samples that the page holds.
 pub(super) struct Fitted {
     pub layers: Vec<LayerData>,
-    /// What it holds no longer, in words.
+    /// What was reduced or left out, in words.
     pub notes: Vec<String>,
 }
 
 impl LayerData {
-    /// Those with text of their own.
+    /// The planes of the layer, each one once.
     pub fn planes(&self) -> impl Iterator<Item = &Plane> {
         self.grids.iter().flat_map(|grid| &grid.encoded)
     }
@@ -70,7 +70,7 @@ impl LayerData {
         self.grids[0].block
     }
 
-    /// Gives the planes their numbers in the page.
+    /// Numbers the planes from `next` on.
     fn number(&mut self, next: &mut usize) {
         for grid in &mut self.grids {
             let first = *next;
@@ -81,8 +81,8 @@ impl LayerData {
     }
 }
 
-/// All layers in blocks that make at most [`FULL`] of the image; then, while the text is longer than the budget,
-/// the longest of the layers but the first in blocks twice as wide, then the first, then without the last.
+/// Embeds all layers with at most [`FULL`] blocks each. While the text is longer than the budget, the longest layer after the
+/// first gets blocks that are twice as wide; if they cannot be wider, the first does; at last the last layer is left out.
 pub(super) fn fit(report: &Report, layers: &[Layer<'_>], image: &Image, budget: usize) -> Fitted {
     let encode = |index: usize, block: usize| encode(&layers[index], &report.layers[index], image, block);
     let block = block_for([image.width, image.height], FULL);
@@ -105,7 +105,7 @@ fn encode(layer: &Layer<'_>, report: &LayerReport, image: &Image, block: usize) 
     let whole = Rectangle { x: 0, y: 0, width: image.width, height: image.height };
     let mut areas = vec![(whole, block)];
     if block > 1 {
-        areas.extend(places(report, image).into_iter().map(|area| (area, 1)));
+        areas.extend(surroundings(report, image).into_iter().map(|area| (area, 1)));
     }
     let grids = areas.into_iter().map(|(area, block)| grid(layer, image.width, area, block)).collect();
     LayerData {
@@ -115,18 +115,18 @@ fn encode(layer: &Layer<'_>, report: &LayerReport, image: &Image, block: usize) 
     }
 }
 
-/// Around the worst pixels of the layer's channels.
-fn places(report: &LayerReport, image: &Image) -> Vec<Rectangle> {
+/// The areas around the worst pixels of the layer's channels.
+fn surroundings(report: &LayerReport, image: &Image) -> Vec<Rectangle> {
     let offset = |pixel: [i64; 2], i: usize| usize::try_from(pixel[i] - i64::from(image.window[i])).unwrap_or(0);
     let pixels = report.channels.iter().map(|channel| channel.metrics.max.pixel);
-    let mut places: Vec<Rectangle> = Vec::new();
+    let mut areas: Vec<Rectangle> = Vec::new();
     for pixel in pixels.map(|pixel| [offset(pixel, 0), offset(pixel, 1)]) {
         let area = Rectangle::around(pixel, SURROUNDINGS, [image.width, image.height]);
-        if !places.contains(&area) && places.len() < PLACES {
-            places.push(area);
+        if !areas.contains(&area) && areas.len() < MAX_SURROUNDINGS {
+            areas.push(area);
         }
     }
-    places
+    areas
 }
 
 fn grid(layer: &Layer<'_>, row: usize, area: Rectangle, block: usize) -> Grid {
@@ -162,14 +162,17 @@ fn notes(fitted: &[LayerData], layers: &[Layer<'_>]) -> Vec<String> {
         let names: Vec<&str> =
             fitted.iter().filter(|layer| layer.block() == block).map(|layer| layer.name.as_str()).collect();
         notes.push(format!(
-            "Too large to embed whole. The pictures and histograms of {} show means of {block} x {block} pixels; single \
-             pixels are there only around the worst ones. All numbers in the tables are of the whole image.",
+            "The image is too large to embed whole. The pictures and histograms of {} show means of {block} x {block} \
+             pixels; single pixels are shown only around the worst ones. The numbers in the tables are those of the whole image.",
             names.join(", ")
         ));
     }
     let dropped: Vec<&str> = layers.iter().skip(fitted.len()).map(|layer| layer.name.as_str()).collect();
     if !dropped.is_empty() {
-        notes.push(format!("Only in the tables, because the page would be too large: {}.", dropped.join(", ")));
+        notes.push(format!(
+            "These layers are only in the tables, because the page would be too large: {}.",
+            dropped.join(", ")
+        ));
     }
     notes
 }

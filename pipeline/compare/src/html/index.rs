@@ -1,4 +1,4 @@
-//! Many reports on one page, the worst first.
+//! The index: many reports on one page, the worst first.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
@@ -9,32 +9,32 @@ use serde::{Deserialize, Serialize};
 use super::embed;
 use super::thumbnail::{HEAT_RANGE, Thumbnails};
 
-/// Most bytes in which a report's numbers and small pictures are looked for.
+/// The number of bytes at the beginning of a report in which its numbers and small pictures are searched for.
 const HEAD: u64 = 1 << 28;
 
 /// Why there is no index.
 #[derive(Debug, thiserror::Error)]
 pub enum IndexError {
-    /// The operating system refused.
+    /// The operating system refused to read the file.
     #[error("{}: {source}", path.display())]
     Io {
         /// The report, or the index itself.
         path: PathBuf,
-        /// What it said.
+        /// What the operating system said.
         source: std::io::Error,
     },
-    /// Another file, or another version's.
-    #[error("{}: not a report of compare; make it with --html", path.display())]
+    /// The file is something else, or from another version.
+    #[error("{}: the file is not an HTML report of compare", path.display())]
     NotAReport {
         /// The file.
         path: PathBuf,
     },
-    /// The page cannot be made.
+    /// The page cannot be written.
     #[error(transparent)]
     Json(#[from] serde_json::Error),
 }
 
-/// What the index takes from the JSON of a report; `None` is a number that is not finite.
+/// The part of the JSON of a report that the index needs. `None` is a number that is not finite.
 #[derive(Deserialize)]
 struct Numbers {
     reference: String,
@@ -64,18 +64,19 @@ struct ChannelNumbers {
     relmse: Option<f64>,
 }
 
-/// A line of the index.
+/// A row of the index.
 #[derive(Serialize)]
 struct Row {
-    /// From the index to the report; `/` between parts, not yet escaped.
+    /// The path from the index to the report, with `/` between its parts and not yet escaped.
     link: String,
     reference: String,
     test: String,
     verdict: String,
     pass: bool,
-    /// Largest value over limit of the gates that failed; infinite without a limit or a number; 0 if none failed.
+    /// The largest ratio of value and limit of the gates that failed. It is infinite if there is no such number, 0 if no gate
+    /// failed.
     excess: f64,
-    /// Of the worst channel judged; infinite if it is no number.
+    /// The relMSE of the worst channel that was judged. It is infinite if there is no such number.
     relmse: f64,
     thumbnails: Thumbnails,
 }
@@ -86,8 +87,8 @@ struct Rows {
     heat_range: [f64; 2],
 }
 
-/// A page of the reports that [`super::page`] made, for a file of the name `target`: those that failed first, by how
-/// far they are beyond a limit, then by relMSE.
+/// The page that lists reports of [`super::page`], to be written to the file `target`. Those that failed come first, by the ratio
+/// to their limit, then the others by relMSE.
 pub fn index(target: &Path, reports: &[PathBuf]) -> Result<Vec<u8>, IndexError> {
     let folder = target.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     let folder = folder.canonicalize().map_err(|source| IndexError::Io { path: target.to_owned(), source })?;
@@ -100,9 +101,9 @@ pub fn index(target: &Path, reports: &[PathBuf]) -> Result<Vec<u8>, IndexError> 
     Ok(embed::page(include_str!("page/index.html"), &script(), &data))
 }
 
-/// What runs in the page.
+/// The script of the page.
 pub(super) fn script() -> String {
-    [super::COMMON, include_str!("page/numbers.js"), include_str!("page/index.js")].concat()
+    [embed::COMMON, include_str!("page/numbers.js"), include_str!("page/index.js")].concat()
 }
 
 fn row(folder: &Path, report: &Path) -> Result<Row, IndexError> {
@@ -125,10 +126,10 @@ fn row(folder: &Path, report: &Path) -> Result<Row, IndexError> {
     })
 }
 
-/// The text of the blocks `report` and `thumbnails`; empty where there is none.
+/// The text of the blocks `report` and `thumbnails`, empty if there is no such block.
 fn read(path: &Path) -> std::io::Result<(String, String)> {
     if !std::fs::metadata(path)?.is_file() {
-        return Err(std::io::Error::other("not a regular file; give reports made with --html"));
+        return Err(std::io::Error::other("it is not a regular file"));
     }
     let (mut report, mut thumbnails) = (String::new(), String::new());
     let mut reader = BufReader::new(File::open(path)?.take(HEAD));
@@ -146,7 +147,7 @@ fn read(path: &Path) -> std::io::Result<(String, String)> {
     Ok((report, thumbnails))
 }
 
-/// Value over limit; without a limit above zero anything is infinitely far beyond it.
+/// The ratio of value and limit, which is infinite for a limit of zero.
 fn excess(gate: &GateNumbers) -> f64 {
     match (gate.value, gate.limit) {
         (Some(value), Some(limit)) if limit > 0.0 => value / limit,
@@ -154,7 +155,7 @@ fn excess(gate: &GateNumbers) -> f64 {
     }
 }
 
-/// The way from the folder of the index, canonical, to a report.
+/// The relative path from the canonical folder of the index to a report.
 fn link(folder: &Path, report: &Path) -> std::io::Result<String> {
     let report = report.canonicalize()?;
     let common = folder.components().zip(report.components()).take_while(|(a, b)| a == b).count();

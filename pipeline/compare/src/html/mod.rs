@@ -1,7 +1,7 @@
-//! The report as one HTML file that needs nothing else: numbers, both images as float32, and the page that shows them.
+//! The report as one HTML file that needs no other: numbers, both images as float32, and the page that shows them.
 //!
-//! Names, paths and attributes come from files and are not trusted. They reach the page as JSON only ([`embed`]),
-//! and the page shows them as text nodes only; nothing is ever pasted into markup.
+//! Names, paths and attributes come from files and are not trusted. They reach the page as JSON only (`embed.rs`), and the page
+//! shows them as text nodes only; nothing is pasted into markup.
 
 mod color;
 mod embed;
@@ -14,13 +14,14 @@ mod thumbnail;
 use formats::image::Image;
 use serde::Serialize;
 
-use crate::{Report, layer, meaning};
+use crate::report::Report;
+use crate::{layer, meaning};
+use embed::COMMON;
 use fit::LayerData;
 
 pub use index::{IndexError, index};
 
-/// Scripts that both pages need, then those of the report, in the order of their use.
-const COMMON: &str = concat!(include_str!("page/dom.js"), include_str!("page/theme.js"));
+/// The further scripts of the report, in the order of their use.
 const SCRIPT: &str = concat!(
     include_str!("page/data.js"),
     include_str!("page/color.js"),
@@ -38,16 +39,16 @@ const SCRIPT: &str = concat!(
     include_str!("page/page.js"),
 );
 
-/// What the page has to know about the pixels.
+/// The data of the page about the pixels.
 #[derive(Serialize)]
 struct Picture<'a> {
     width: usize,
     height: usize,
-    /// Column and row of the top left pixel.
+    /// The column and row of the top left pixel.
     window: [i32; 2],
     layers: &'a [LayerData],
     attributes: Vec<AttributePair<'a>>,
-    /// What is not as the reader expects, in words.
+    /// What was reduced or left out, in words.
     notes: Vec<String>,
     colors: color::Maps,
 }
@@ -60,11 +61,10 @@ struct AttributePair<'a> {
     test: Option<String>,
 }
 
-/// The report on two images as an HTML page. `document` is what `--json` writes, with at least the keys of `report`.
+/// The report on two images as an HTML page. `document` is what the page shows in its tables, with at least the keys of `report`.
 ///
-/// The page is under 100 MB: beyond 2^21 pixels it holds means of blocks of pixels, and where that is still too much,
-/// larger blocks of the layers after the first; it says so itself. The same input gives the same bytes for any number
-/// of threads.
+/// The page is under 100 MB: beyond 2^21 pixels it holds means of blocks of pixels, and if that is still too long, larger blocks
+/// of the layers after the first; the page says so. The same input gives the same bytes for any number of threads.
 pub fn page(
     document: &impl Serialize,
     report: &Report,
@@ -90,7 +90,7 @@ pub fn page(
     Ok(embed::page(include_str!("page/page.html"), &[COMMON, SCRIPT].concat(), &data))
 }
 
-/// Of both headers, by name.
+/// The attributes of both headers, by name.
 fn attributes<'a>(reference: &'a Image, test: &'a Image) -> Vec<AttributePair<'a>> {
     let mut names: Vec<&String> = reference.attributes.keys().chain(test.attributes.keys()).collect();
     names.sort_unstable();

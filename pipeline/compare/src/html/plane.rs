@@ -1,4 +1,4 @@
-//! Samples as text.
+//! The encoding of samples as text.
 
 use std::io::Write;
 
@@ -8,29 +8,29 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use serde::Serialize;
 
-/// One channel of one image, encoded.
+/// One channel of one image as text.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Plane {
-    /// Number of its block in the page.
+    /// The number of its block in the page.
     pub id: usize,
-    /// Base64 of the deflated bytes.
+    /// The deflated bytes in base64.
     #[serde(skip)]
     pub text: String,
 }
 
-/// All first bytes of the float32 (little-endian), then all second, third and fourth, deflated, in base64.
+/// Encodes the first bytes of all little-endian float32, then all second, third and fourth bytes, deflated and in base64.
 ///
-/// The bytes of one place are alike, exponents most of all. Higher levels gain 3 % on renderings, at many times the
-/// cost: the low bits of noise do not compress.
+/// Bytes of the same significance are similar, above all those of the exponents. Higher levels of compression gain 3 % on
+/// renderings at many times the cost, because the low bits of noise do not compress.
 pub(super) fn encode(samples: &[f32]) -> String {
-    let bytes: Vec<u8> = (0..4).flat_map(|place| samples.iter().map(move |s| s.to_le_bytes()[place])).collect();
+    let bytes: Vec<u8> = (0..4).flat_map(|byte| samples.iter().map(move |s| s.to_le_bytes()[byte])).collect();
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::fast());
     // Writing to a vector cannot fail.
     let deflated = encoder.write_all(&bytes).and_then(|()| encoder.finish()).unwrap_or_default();
     STANDARD.encode(deflated)
 }
 
-/// Whether both images have the same bits.
+/// Whether both planes have the same bits.
 pub(super) fn same_bits(reference: &[f32], test: &[f32]) -> bool {
     reference.iter().map(|s| s.to_bits()).eq(test.iter().map(|s| s.to_bits()))
 }

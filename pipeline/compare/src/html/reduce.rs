@@ -1,6 +1,6 @@
-//! Parts and means of images that are too large to embed.
+//! Areas and means of images that are too large to embed.
 
-/// A rectangle of an image, in pixels from its top left.
+/// A rectangle of an image in pixels from its top left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rectangle {
     pub x: usize,
@@ -10,7 +10,7 @@ pub(super) struct Rectangle {
 }
 
 impl Rectangle {
-    /// Of at most `2 * radius` pixels a side around a pixel, within the image.
+    /// The rectangle around a pixel with sides of at most `2 * radius` pixels, within an image of this size.
     pub fn around(pixel: [usize; 2], radius: usize, size: [usize; 2]) -> Rectangle {
         let start = |i: usize| pixel[i].saturating_sub(radius);
         let length = |i: usize| (pixel[i] + radius).min(size[i]).saturating_sub(start(i));
@@ -18,14 +18,14 @@ impl Rectangle {
     }
 }
 
-/// The smallest power of two, pixels, of which blocks make at most `limit` of the image.
+/// The smallest power of two for which the image has at most `limit` blocks of this side in pixels.
 pub(super) fn block_for(size: [usize; 2], limit: usize) -> usize {
     let fits = |block: usize| size.iter().try_fold(1, |n: usize, side| n.checked_mul(side.div_ceil(block)));
     (0..usize::BITS).map(|bit| 1 << bit).find(|block| fits(*block).is_some_and(|n| n <= limit)).unwrap_or(1)
 }
 
-/// Means of blocks of a rectangle, row after row; blocks at the right and bottom end are of what is there. A block of
-/// one pixel is that pixel, with its bits; one that holds a value that is not finite has none either.
+/// The means over the blocks of a rectangle, row after row. Blocks at the right and bottom end may be smaller. The mean of one
+/// pixel has the bits of the pixel; the mean of a block with a value that is not finite is not finite.
 pub(super) fn means(samples: &[f32], row: usize, area: Rectangle, block: usize) -> Vec<f32> {
     let at = |x: usize, y: usize| samples[(area.y + y) * row + area.x + x];
     let mut means = Vec::with_capacity(area.width.div_ceil(block) * area.height.div_ceil(block));

@@ -1,8 +1,8 @@
-//! The page as bytes; what it does is looked at in a browser (`make browser-test`).
+//! Tests of the bytes of the page. Its behavior is tested in a browser (`make browser-test`).
 //!
-//! Planted errors that these tests caught: `<` left in JSON, planes equal in both images embedded twice, bytes not
-//! shuffled, means of partial blocks over whole ones, offsets of the data window left out, a layer dropped without a
-//! note, a value of the template looked into for other names.
+//! Seen to catch: `<` left in JSON, planes that are equal in both images embedded twice, bytes not shuffled, means of partial
+//! blocks divided by whole ones, offsets of the data window left out, a layer dropped without a note, a value of the template
+//! searched for names.
 
 use std::collections::BTreeSet;
 use std::io::Read;
@@ -41,7 +41,7 @@ fn text(reference: &Image, test: &Image) -> String {
     String::from_utf8(page(&report, &report, reference, test).unwrap()).unwrap()
 }
 
-/// What the page's own parser would find in a block: it ends at the first `</script`.
+/// The text that an HTML parser finds in a block, which ends at the first `</script`.
 fn block<'a>(page: &'a str, id: &str) -> &'a str {
     let (_, rest) = page.split_once(&format!(" id=\"{id}\">")).unwrap();
     rest.split("</script").next().unwrap()
@@ -52,7 +52,7 @@ fn samples(page: &str, plane: &Value) -> Vec<f32> {
     let mut bytes = Vec::new();
     ZlibDecoder::new(deflated.as_slice()).read_to_end(&mut bytes).unwrap();
     let count = bytes.len() / 4;
-    (0..count).map(|i| f32::from_le_bytes([0, 1, 2, 3].map(|place| bytes[place * count + i]))).collect()
+    (0..count).map(|i| f32::from_le_bytes([0, 1, 2, 3].map(|byte| bytes[byte * count + i]))).collect()
 }
 
 #[test]
@@ -67,14 +67,14 @@ fn samples_come_back_with_their_bits() {
         let planes = &picture["layers"][layer]["grids"][0]["planes"][channel];
         assert_eq!(bits(&samples(&page, &planes[0])), bits(reference.channel(name).unwrap()), "{name}");
         assert_eq!(bits(&samples(&page, &planes[1])), bits(test.channel(name).unwrap()), "{name}");
-        assert_eq!(planes[0] == planes[1], name != "R", "equal planes are there once");
+        assert_eq!(planes[0] == planes[1], name != "R", "equal planes are embedded once");
     }
     assert_eq!(page.matches(" id=\"plane-").count(), 5);
     assert_eq!(picture["window"], serde_json::json!([10, -20]));
 }
 
 #[test]
-fn hostile_names_stay_texts() {
+fn hostile_names_remain_text() {
     let names = ["R", "G", "B", &format!("{HOSTILE}.R")];
     let mut reference = image(4, 4, &names);
     reference.attributes.insert(HOSTILE.to_owned(), Attribute::Text(HOSTILE.to_owned()));
@@ -85,13 +85,13 @@ fn hostile_names_stay_texts() {
     assert_eq!(picture["attributes"][0]["reference"], HOSTILE);
     let report: Value = serde_json::from_str(block(&page, "report")).unwrap();
     assert_eq!(report["layers"][1]["name"], HOSTILE);
-    // One element for each block, and the code at the end.
+    // There is one element for each block, and one for the code at the end.
     assert_eq!(page.matches("<script").count(), 3 + 5 + 1);
     assert_eq!(page.matches("</script>").count(), 3 + 5 + 1);
 }
 
-/// Markup of the page and of the index: ids are there once, every id that the scripts ask for exists, and nothing is
-/// taken from elsewhere or made of texts.
+/// In the markup of the page and of the index each id occurs once, every id that the scripts ask for exists, nothing is loaded,
+/// and no markup is made of text.
 #[test]
 fn pages_are_whole() {
     for (template, script) in [
@@ -137,7 +137,7 @@ fn means_of_blocks() {
     assert_eq!(limits.map(|(limit, _)| block_for([10, 10], limit)), limits.map(|(_, block)| block));
 }
 
-/// 2100 x 1000 pixels are just more than 2^21.
+/// 2100 x 1000 pixels are slightly more than 2^21.
 #[test]
 fn a_large_image_is_reduced_but_for_its_worst_pixel() {
     let reference = image(2100, 1000, &["Y"]);
@@ -152,12 +152,12 @@ fn a_large_image_is_reduced_but_for_its_worst_pixel() {
     assert!(picture["notes"][0].as_str().unwrap().contains("beauty show means of 2 x 2 pixels"), "{picture}");
 }
 
-/// With a small budget, as a page of 100 MB would take long.
+/// The budget is small, because a page of 100 MB would take long.
 #[test]
-fn what_is_too_large_is_reduced_the_first_layer_last() {
+fn large_layers_are_reduced_the_first_one_last() {
     let names = ["R", "a.R", "b.R", "c.R"];
     let mut reference = image(64, 64, &names);
-    // Bits without order cannot be deflated.
+    // Random bits cannot be deflated.
     let mut state = 1_u32;
     for sample in reference.channels.iter_mut().flat_map(|channel| &mut channel.samples) {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -181,11 +181,12 @@ fn what_is_too_large_is_reduced_the_first_layer_last() {
         of(&layers)[1..].iter().any(|block| *block > 1) && notes[0].contains("means of 2 x 2"),
         "{layers} {notes:?}"
     );
-    // Surroundings of the worst pixel keep their size.
+    // The area around the worst pixel keeps its size.
     let (layers, notes) = blocks(14_000);
     assert_eq!(of(&layers).len(), 3, "{layers}");
     assert!(
-        notes.last().unwrap().starts_with("Only in the tables") && notes.last().unwrap().ends_with(": c."),
+        notes.last().unwrap().starts_with("These layers are only in the tables")
+            && notes.last().unwrap().ends_with(": c."),
         "{notes:?}"
     );
 }

@@ -1,7 +1,8 @@
-//! Small pictures of a comparison, for the index of many.
+//! The small pictures of a comparison in the index.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use picture::Picture;
 use serde::{Deserialize, Serialize};
 
 use super::color;
@@ -9,26 +10,26 @@ use super::reduce::{Rectangle, means};
 use crate::layer::Layer;
 use crate::metric::EPSILON;
 
-/// Most pixels of a side.
-const SIDE: usize = 160;
+/// The largest side of a small picture in pixels.
+const MAX_SIDE: usize = 160;
 
-/// The relative errors at both ends of the scale, which is logarithmic: the same for all images of an index.
+/// The relative errors at both ends of the scale, which is logarithmic and the same for all images of an index.
 pub(super) const HEAT_RANGE: [f64; 2] = [0.001, 1.0];
 
-/// What a picture in a page begins with.
+/// The beginning of the address of a picture in a page.
 const PNG: &str = "data:image/png;base64,";
 
-/// PNG images as data addresses; empty where there is nothing to show.
+/// PNG images as data addresses, empty if there is nothing to show.
 #[derive(Debug, Default, Deserialize, Serialize)]
 pub(super) struct Thumbnails {
     /// The test image.
     pub test: String,
-    /// Error relative to the reference, the largest of each block.
+    /// The largest error of each block, relative to the reference.
     pub heat: String,
 }
 
 impl Thumbnails {
-    /// Whether these are what [`thumbnails`] makes; those of a file may be anything.
+    /// Whether these could be made by [`thumbnails`]. Those of a file may be anything.
     pub fn are_pictures(&self) -> bool {
         let plain = |c: char| c.is_ascii_alphanumeric() || "+/=".contains(c);
         [&self.test, &self.heat]
@@ -37,13 +38,13 @@ impl Thumbnails {
     }
 }
 
-/// Of the first layer.
+/// Makes the small pictures of the first layer.
 pub(super) fn thumbnails(layers: &[Layer<'_>], width: usize, height: usize) -> Thumbnails {
     let Some(layer) = layers.first().filter(|_| width > 0 && height > 0) else { return Thumbnails::default() };
-    let block = width.max(height).div_ceil(SIDE);
+    let block = width.max(height).div_ceil(MAX_SIDE);
     let size = [width.div_ceil(block), height.div_ceil(block)];
     let reduced = |samples: &[f32]| means(samples, width, Rectangle { x: 0, y: 0, width, height }, block);
-    // Colors, or one channel as grey.
+    // The picture shows three channels as colors, or the first one as gray.
     let planes = layer.samples().planes;
     let is_luminance = layer.channels.first().is_some_and(|(name, _)| name == "Y");
     let shown = &planes[..if planes.len() < 3 || is_luminance { 1 } else { 3 }];
@@ -51,10 +52,10 @@ pub(super) fn thumbnails(layers: &[Layer<'_>], width: usize, height: usize) -> T
     let test: Vec<Vec<f32>> = shown.iter().map(|(_, test)| reduced(test)).collect();
     let colors = (0..size[0] * size[1]).map(|i| [0, 1, 2].map(|c| shade(test[c.min(test.len() - 1)][i], white)));
     let heat = heat(&planes, [width, height], block).into_iter().map(|error| color::absolute(part(error)));
-    Thumbnails { test: png(size, colors.flatten()), heat: png(size, heat.flatten()) }
+    Thumbnails { test: address(size, colors.collect()), heat: address(size, heat.collect()) }
 }
 
-/// The value that 99 of 100 do not exceed: it becomes white, so that dark pictures can be seen.
+/// The value that 99 of 100 values do not exceed. It is shown as white, so that dark pictures can be seen.
 fn white(values: &[f32]) -> f64 {
     let mut finite: Vec<f32> = values.iter().copied().filter(|value| value.is_finite()).collect();
     finite.sort_unstable_by(f32::total_cmp);
@@ -66,8 +67,8 @@ fn shade(value: f32, white: f64) -> u8 {
     ::color::srgb::encode_byte(f64::from(value) / white)
 }
 
-/// The largest relative error of each block, as relMSE takes it: over the root of the squared reference plus
-/// [`EPSILON`]. NaN where any value is.
+/// The largest error of each block relative to the root of the squared reference plus [`EPSILON`], as in relMSE. It is NaN if any
+/// error of the block is.
 fn heat(planes: &[(&[f32], &[f32])], size: [usize; 2], block: usize) -> Vec<f64> {
     let row = size[0].div_ceil(block);
     let mut errors = vec![0.0_f64; row * size[1].div_ceil(block)];
@@ -82,21 +83,16 @@ fn heat(planes: &[(&[f32], &[f32])], size: [usize; 2], block: usize) -> Vec<f64>
     errors
 }
 
-/// Place on the scale, 0 to 1 between its ends.
+/// The part of the scale at an error: 0 to 1 between its ends.
 fn part(error: f64) -> f64 {
     let [low, high] = HEAT_RANGE;
     if error.is_nan() { error } else { (error.max(low) / low).ln() / (high / low).ln() }
 }
 
-fn png(size: [usize; 2], bytes: impl Iterator<Item = u8>) -> String {
-    let mut file = Vec::new();
-    // Sides are at most SIDE, so they fit.
-    let mut encoder = png::Encoder::new(&mut file, size[0] as u32, size[1] as u32);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    let bytes: Vec<u8> = bytes.collect();
-    let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(&bytes));
-    if written.is_err() { String::new() } else { format!("{PNG}{}", STANDARD.encode(file)) }
+/// The address of a picture of these colors.
+fn address([width, height]: [usize; 2], pixels: Vec<[u8; 3]>) -> String {
+    let file = Picture { width, height, pixels }.encode(png::Compression::Balanced, &[]);
+    file.map_or_else(|_| String::new(), |file| format!("{PNG}{}", STANDARD.encode(file)))
 }
 
 #[cfg(test)]
@@ -108,7 +104,7 @@ mod tests {
         let reference = [0.0, 0.0, 2.0, 0.0, 0.0, 0.0_f32];
         let test = [0.05, -0.2, 2.0, 0.0, 0.0, f32::NAN];
         let found = heat(&[(&reference, &test)], [3, 2], 2);
-        // Against black an error of 0.2 is 0.2 / sqrt(0.01).
+        // Relative to black, an error of 0.2 is 0.2 / sqrt(0.01).
         assert!((found[0] - 2.0).abs() < 1e-6, "{found:?}");
         assert!(found[1].is_nan());
     }
@@ -116,12 +112,12 @@ mod tests {
     #[test]
     fn equal_factors_are_equal_steps() {
         let expected = [(0.0, 0.0), (0.001, 0.0), (0.01, 1.0 / 3.0), (1.0, 1.0), (10.0, 4.0 / 3.0)];
-        assert!(expected.iter().all(|(error, place)| (part(*error) - place).abs() < 1e-12));
+        assert!(expected.iter().all(|(error, expected)| (part(*error) - expected).abs() < 1e-12));
         assert!(part(f64::NAN).is_nan());
     }
 
     #[test]
-    fn white_is_the_percentile_of_what_is_finite() {
+    fn white_is_the_percentile_of_the_finite_values() {
         let values: Vec<f32> = (1..=200).map(|i| i as f32).chain([f32::NAN, f32::INFINITY]).collect();
         assert_eq!(white(&values), 198.0);
         assert_eq!(white(&[f32::NAN]), 1.0);

@@ -1,7 +1,26 @@
-//! Energy: is the test image brighter or darker on the whole? Noise cancels here, faults do not.
+//! The bias: whether the test image is brighter or darker on the whole. Noise cancels in it, a fault does not.
 
-/// Positive where the test image is brighter. Against a black reference any light is infinitely more.
-pub(super) fn relative_difference(reference: f64, test: f64) -> f64 {
+use super::channel::ChannelMetric;
+use super::gate_kind::{GateKind, GateValue};
+
+/// The relative difference of the means.
+pub(super) const METRIC: ChannelMetric = ChannelMetric {
+    key: "bias",
+    heading: "bias",
+    signed: true,
+    // The bias is made of the means of both images alone.
+    term: |_, _| 0.0,
+    value: |means| relative_difference(means.reference, means.test),
+};
+
+pub(super) const GATE: GateKind = GateKind {
+    name: "max-bias",
+    help: "Largest relative difference of the means, of every channel (0.01 is one per cent)",
+    value: GateValue::Channel(METRIC.key),
+};
+
+/// Positive where the test image is brighter. Relative to a black reference, any light is infinitely brighter.
+fn relative_difference(reference: f64, test: f64) -> f64 {
     let difference = test - reference;
     // Guards 0/0: two black images have no bias.
     if difference == 0.0 { 0.0 } else { difference / reference.abs() }
@@ -17,7 +36,7 @@ mod tests {
         let samples = Samples { planes: vec![(&[1.0, 2.0], &[2.0, 2.5]), (&[3.0, 6.0], &[3.0, 0.0])] };
         let metrics = measure(&samples, 2, [0, 0]);
         assert_eq!([metrics.mean_reference, metrics.mean_test], [3.0, 1.875]);
-        assert_eq!(metrics.bias, -0.375);
+        assert_eq!(metrics.get("bias"), -0.375);
     }
 
     #[test]

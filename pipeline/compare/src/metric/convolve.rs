@@ -1,40 +1,38 @@
-//! Filters of one dimension over a tile, along its rows or its columns. Two after each other make one of two dimensions.
+//! One-dimensional filters over a tile, along its rows or its columns. One after the other, two make a separable filter.
 
 use std::ops::Range;
 
 use super::tile::{HALO, LANES, MARGIN, PITCH, Plane, ROWS, SIDE, lanes};
 
-/// Along which samples a filter runs.
+/// The direction of a filter.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Along {
-    /// From left to right; of the rows that a filter of this radius along columns will want.
+    /// The filter runs from left to right, over all rows that a following filter of this radius along columns needs.
     Rows(usize),
-    /// From top to bottom.
+    /// The filter runs from top to bottom.
     Columns,
 }
 
-/// What the weights on both sides of the middle are to each other.
+/// The symmetry of a filter about its middle.
 pub(super) trait Symmetry {
-    /// The weight of the middle, out of the taps'.
-    fn middle(tap: f32) -> f32;
-    /// What the weight of a distance multiplies.
+    /// The factor on the tap of distance 0.
+    const MIDDLE: f32;
+    /// The value that is multiplied by the tap of a distance.
     fn pair(before: f32, middle: f32, after: f32) -> f32;
 }
 
-/// The same on both sides.
+/// Both sides have the same weights.
 pub(super) struct Even;
 
-/// The same with opposite signs, and zero in the middle.
+/// Both sides have the same weights with opposite signs, and the middle has none.
 pub(super) struct Odd;
 
-/// The same on both sides, with a sum of zero: the middle's is what is missing. Exactly zero where nothing varies.
+/// Both sides have the same weights, and the weight of the middle makes their sum zero. The result is exactly zero where
+/// nothing varies.
 pub(super) struct EvenOfSumZero;
 
 impl Symmetry for Even {
-    #[inline(always)]
-    fn middle(tap: f32) -> f32 {
-        tap
-    }
+    const MIDDLE: f32 = 1.0;
     #[inline(always)]
     fn pair(before: f32, _: f32, after: f32) -> f32 {
         before + after
@@ -42,10 +40,7 @@ impl Symmetry for Even {
 }
 
 impl Symmetry for Odd {
-    #[inline(always)]
-    fn middle(_: f32) -> f32 {
-        0.0
-    }
+    const MIDDLE: f32 = 0.0;
     #[inline(always)]
     fn pair(before: f32, _: f32, after: f32) -> f32 {
         after - before
@@ -53,20 +48,17 @@ impl Symmetry for Odd {
 }
 
 impl Symmetry for EvenOfSumZero {
-    #[inline(always)]
-    fn middle(_: f32) -> f32 {
-        0.0
-    }
+    const MIDDLE: f32 = 0.0;
     #[inline(always)]
     fn pair(before: f32, middle: f32, after: f32) -> f32 {
         (before - middle) + (after - middle)
     }
 }
 
-/// Rows of a tile without its margin.
+/// The rows of a tile without its margin.
 pub(super) const INNER: Range<usize> = HALO..ROWS - HALO;
 
-/// Filters the columns without margin. Taps: the weight at distance 0, 1, 2, up to [`HALO`] samples.
+/// Filters the columns without margin. `taps` are the weights at distance 0, 1, 2, up to [`HALO`] samples.
 #[inline(always)]
 pub(super) fn convolve<S: Symmetry>(along: Along, taps: &[f32], from: &Plane, to: &mut Plane) {
     let (rows, spacing) = match along {
@@ -79,7 +71,7 @@ pub(super) fn convolve<S: Symmetry>(along: Along, taps: &[f32], from: &Plane, to
             let middle = lanes(from, at);
             let mut sum = [0.0; LANES];
             for i in 0..LANES {
-                sum[i] = S::middle(taps[0]) * middle[i];
+                sum[i] = S::MIDDLE * taps[0] * middle[i];
             }
             for distance in 1..taps.len() {
                 let before = lanes(from, at - distance * spacing);
@@ -93,7 +85,8 @@ pub(super) fn convolve<S: Symmetry>(along: Along, taps: &[f32], from: &Plane, to
     }
 }
 
-/// Weights of a Gaussian, of standard deviation `sigma` pixels, from the middle to `radius`; both sides sum to 1.
+/// The weights of a Gaussian with a standard deviation of `sigma` pixels, from the middle to `radius`. With both sides they sum
+/// to 1.
 pub(super) fn gaussian(sigma: f64, radius: usize) -> Vec<f64> {
     let weight = |distance: usize| (-0.5 * (distance as f64 / sigma).powi(2)).exp();
     let weights: Vec<f64> = (0..=radius).map(weight).collect();
@@ -103,12 +96,12 @@ pub(super) fn gaussian(sigma: f64, radius: usize) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tile::plane;
+    use super::super::tile::planes;
     use super::*;
 
-    /// A plane whose sample at column x and row y, counted without the margin, is a polynomial.
+    /// A plane whose samples are a polynomial of column x and row y, counted without the margin.
     fn polynomial(of: impl Fn(f32, f32) -> f32) -> Box<Plane> {
-        let mut plane = plane();
+        let [mut plane] = planes();
         for (i, sample) in plane.iter_mut().enumerate() {
             *sample = of((i % PITCH) as f32 - MARGIN as f32, (i / PITCH) as f32 - HALO as f32);
         }
@@ -121,7 +114,7 @@ mod tests {
         of: impl Fn(f32, f32) -> f32,
         expected: impl Fn(f32, f32) -> f32,
     ) {
-        let mut to = plane();
+        let [mut to] = planes();
         convolve::<S>(along, taps, &polynomial(of), &mut to);
         for (x, y) in [(0, 0), (SIDE - 1, 5), (70, SIDE - 1)] {
             let found = to[(y + HALO) * PITCH + MARGIN + x];
@@ -131,12 +124,12 @@ mod tests {
 
     #[test]
     fn polynomials_on_paper() {
-        // f(x-1) + 2 f(x) + f(x+1) of x^2 + y: 4 x^2 + 2 + 4 y.
+        // f(x-1) + 2 f(x) + f(x+1) of x^2 + y is 4 x^2 + 2 + 4 y.
         check::<Even>(Along::Rows(0), &[2.0, 1.0], |x, y| x * x + y, |x, y| 4.0 * x * x + 2.0 + 4.0 * y);
         check::<Even>(Along::Columns, &[0.0, 0.0, 1.0], |x, y| x + y * y, |x, y| 2.0 * x + 2.0 * y * y + 8.0);
-        // f(y+3) - f(y-3) of y^2: 12 y.
+        // f(y+3) - f(y-3) of y^2 is 12 y.
         check::<Odd>(Along::Columns, &[7.0, 0.0, 0.0, 1.0], |_, y| y * y, |_, y| 12.0 * y);
-        // f(x-2) - 2 f(x) + f(x+2) of x^2: 8.
+        // f(x-2) - 2 f(x) + f(x+2) of x^2 is 8.
         check::<EvenOfSumZero>(Along::Rows(0), &[9.0, 0.0, 1.0], |x, _| x * x, |_, _| 8.0);
     }
 

@@ -1,4 +1,4 @@
-//! What a screen shows of a linear value: exposure 0, clamped to 0..1, the curve of sRGB (IEC 61966-2-1).
+//! Display values: linear values at exposure 0, clamped to 0..1, encoded by the curve of sRGB (IEC 61966-2-1).
 
 use super::elementary::power;
 use color::srgb::{GAMMA, LINE_END, LINE_SLOPE, OFFSET, SCALE};

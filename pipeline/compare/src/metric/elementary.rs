@@ -1,18 +1,19 @@
-//! Logarithm, exponential and power in float32, to a few units in the last place.
+//! Logarithm, exponential and power in float32, accurate to a few units in the last place.
 //!
-//! No calls and no branches, so that loops over them become vector instructions, with the same bits on every processor.
+//! They have no calls and no branches, so that loops over them become vector instructions, with the same bits on every
+//! processor.
 
-/// 1.5 * 2^23: a float32 plus this has no fraction, and its lowest bits are the whole number.
+/// 1.5 * 2^23: the sum of a float32 and this has no fraction, and its lowest bits are the rounded number.
 const ROUND: f32 = 12_582_912.0;
 
-/// Of a positive normal number. Zero gives about -127, so that its powers are next to nothing.
+/// The logarithm of a positive normal number. That of zero is about -127, so that its powers are negligible.
 #[inline(always)]
 pub(super) fn log2(x: f32) -> f32 {
     // x = 2^exponent * mantissa with the mantissa in [1/sqrt 2, sqrt 2).
     let offset = x.to_bits().wrapping_sub(std::f32::consts::FRAC_1_SQRT_2.to_bits());
     let exponent = (offset as i32) >> 23;
     let mantissa = f32::from_bits(x.to_bits().wrapping_sub((exponent as u32) << 23));
-    // ln m = 2 artanh((m - 1) / (m + 1)), a series whose next term is below 1e-9.
+    // ln m = 2 artanh((m - 1) / (m + 1)) by a series whose next term is below 1e-9.
     let s = (mantissa - 1.0) / (mantissa + 1.0);
     let s2 = s * s;
     let series = 1.0 + s2 * (1.0 / 3.0 + s2 * (1.0 / 5.0 + s2 * (1.0 / 7.0 + s2 * (1.0 / 9.0))));
@@ -24,7 +25,7 @@ pub(super) fn log2(x: f32) -> f32 {
 pub(super) fn exp2(x: f32) -> f32 {
     let rounded = x + ROUND;
     let y = (x - (rounded - ROUND)) * std::f32::consts::LN_2;
-    // Taylor series of e^y for |y| < 0.35, whose next term is below 1e-8.
+    // The next term of this Taylor series of e^y is below 1e-8 for |y| < 0.35.
     let series = 1.0 / 24.0 + y * (1.0 / 120.0 + y * (1.0 / 720.0 + y * (1.0 / 5040.0)));
     let power = 1.0 + y * (1.0 + y * (0.5 + y * (1.0 / 6.0 + y * series)));
     power * f32::from_bits((rounded.to_bits() << 23).wrapping_add(1.0f32.to_bits()))
@@ -45,7 +46,7 @@ mod tests {
         for i in 1..4000 {
             let x = i as f32 * i as f32 * 1e-5;
             let exact = f64::from(x).log2();
-            // Rounding of a result up to 8 in size.
+            // The tolerance is the rounding of a result of up to 8.
             assert!((f64::from(log2(x)) - exact).abs() < 5e-7, "log2 {x}");
             for p in [1.0 / 3.0, 1.0 / 2.4, 0.7, -0.3] {
                 let (found, exact) = (f64::from(power(x, p)), f64::from(x).powf(f64::from(p)));
@@ -56,7 +57,7 @@ mod tests {
     }
 
     #[test]
-    fn zero_is_next_to_nothing() {
+    fn powers_of_zero_are_negligible() {
         assert!(power(0.0, 0.7) < 1e-20);
         assert_eq!(0.0 * power(0.0, -1.0), 0.0);
     }

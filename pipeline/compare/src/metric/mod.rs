@@ -1,98 +1,74 @@
-//! What is measured: of one channel, of all channels of a layer together, and of the picture that they show.
-
-use rayon::prelude::*;
-use serde::Serialize;
+//! What is measured of a channel, of all channels of a layer together, and of the picture that they show.
+//!
+//! A metric is a file of this folder and a row in one of the tables below, and in [`GATES`] if it can be limited. The report,
+//! the table for people, the limits files, the options of the program and the HTML page take the rest from there.
 
 mod bias;
+mod channel;
 mod convolve;
 mod display;
+mod displayed;
 mod elementary;
 pub mod flip;
+mod gate_kind;
 mod mse;
 mod outliers;
 mod picture;
+mod picture_metrics;
 mod psnr;
 mod rel_mse;
+mod samples;
 mod select;
 mod ssim;
 mod tile;
 mod totals;
+mod worst;
 
-use outliers::Found;
-pub use outliers::Worst;
-pub(crate) use outliers::{bitwise_differences, pixels_beyond};
-pub(crate) use picture::measure as measure_picture;
-pub use picture::{Picture, PictureMetrics};
+pub use channel::{ChannelMetric, Metrics};
+use displayed::DisplayedMetric;
+use formats::image::Image;
+pub use gate_kind::{GateKind, GateValue};
+pub(crate) use outliers::bitwise_differences;
+pub use picture::Picture;
+pub use picture_metrics::PictureMetrics;
 pub use rel_mse::EPSILON;
-use totals::Totals;
+pub use samples::Samples;
+pub use worst::Worst;
 
-/// Samples of both images that belong together; every plane of the same length.
-#[derive(Clone, Debug)]
-pub struct Samples<'a> {
-    /// Reference and test, per channel.
-    pub planes: Vec<(&'a [f32], &'a [f32])>,
+/// Makes the table of metrics and the function that computes their terms in one pass from one list.
+macro_rules! channel_metrics {
+    ($($metric:expr),* $(,)?) => {
+        /// The metrics of a channel that are functions of means, in the order of the report.
+        pub static CHANNEL_METRICS: [ChannelMetric; [$($metric.key),*].len()] = [$($metric),*];
+
+        /// The terms of [`CHANNEL_METRICS`], in the same order.
+        #[inline(always)]
+        fn terms(reference: f64, test: f64) -> [f64; CHANNEL_METRICS.len()] {
+            [$(($metric.term)(reference, test)),*]
+        }
+    };
 }
 
-/// The keys of the JSON report.
-#[derive(Clone, Debug, Serialize)]
-pub struct Metrics {
-    /// Mean of the reference, in units of the channel, as all below without another unit.
-    pub mean_reference: f64,
-    /// Mean of the test image.
-    pub mean_test: f64,
-    /// Relative difference of the means, positive where the test image is brighter.
-    pub bias: f64,
-    /// Mean absolute error.
-    pub mae: f64,
-    /// Root of the mean squared error.
-    pub rmse: f64,
-    /// Mean of squared error over squared reference plus [`EPSILON`].
-    pub relmse: f64,
-    /// Absolute error that 99 of 100 samples do not exceed, rounded to float32.
-    pub p99: f64,
-    /// The largest absolute error.
-    pub max: Worst,
-    /// Samples of the reference that are NaN or infinite.
-    pub nonfinite_reference: u64,
-    /// Samples of the test image that are NaN or infinite.
-    pub nonfinite_test: u64,
-}
+channel_metrics![bias::METRIC, mse::MAE, mse::RMSE, rel_mse::METRIC];
 
-/// All metrics of these samples; `width` is that of the image, pixels, and `window` its top left pixel.
+/// The metrics of the picture as a screen displays it, in the order of the report.
+static DISPLAYED_METRICS: [DisplayedMetric; 2] = [psnr::METRIC, ssim::METRIC];
+
+/// Every kind of gate, in the order of the options.
+pub static GATES: [GateKind; 7] =
+    [bias::GATE, rel_mse::GATE, mse::GATE, outliers::ABS, outliers::OUTLIERS, flip::GATE, outliers::EXACT];
+
+/// Measures these samples; the image is `width` pixels wide, `window` is its top left pixel.
 pub fn measure(samples: &Samples<'_>, width: usize, window: [i32; 2]) -> Metrics {
     measure_each(samples, width, window).0
 }
 
-/// As [`measure`], and the metrics of each plane by itself.
+/// Measures as [`measure`] does, and each plane by itself.
 pub fn measure_each(samples: &Samples<'_>, width: usize, window: [i32; 2]) -> (Metrics, Vec<Metrics>) {
-    let measured = |(reference, test)| (Totals::of(reference, test), outliers::histogram((reference, test)));
-    let planes: Vec<_> = samples.planes.par_iter().copied().map(measured).collect();
-    let metrics = |totals: &Totals, p99| metrics(totals, p99, Found::place(totals.worst, width, window));
-    let each = samples.planes.iter().zip(&planes).map(|(plane, (totals, upper))| {
-        metrics(totals, outliers::percentile_99(&Samples { planes: vec![*plane] }, upper))
-    });
-    let each: Vec<Metrics> = each.collect();
-    let totals = planes.iter().fold(Totals::default(), |sum, (totals, _)| sum.and(totals));
-    let upper = planes.into_iter().map(|(_, upper)| upper).reduce(|sum, upper| select::and(sum, &upper));
-    let p99 = match each.as_slice() {
-        [only] => only.p99,
-        _ => outliers::percentile_99(samples, &upper.unwrap_or_default()),
-    };
-    (metrics(&totals, p99), each)
+    channel::measure_each(&CHANNEL_METRICS, terms, samples, width, window)
 }
 
-fn metrics(totals: &Totals, p99: f64, max: Worst) -> Metrics {
-    let [mean_reference, mean_test] = [totals.mean(totals.reference), totals.mean(totals.test)];
-    Metrics {
-        mean_reference,
-        mean_test,
-        bias: bias::relative_difference(mean_reference, mean_test),
-        mae: totals.mean(totals.absolute),
-        rmse: totals.mean(totals.squared).sqrt(),
-        relmse: totals.mean(totals.relative),
-        p99,
-        max,
-        nonfinite_reference: totals.nonfinite_reference,
-        nonfinite_test: totals.nonfinite_test,
-    }
+/// Measures the picture. FLIP takes some ten times as long as the rest, and is left out unless it is asked for.
+pub(crate) fn measure_picture(reference: &Image, test: &Image, with_flip: bool) -> PictureMetrics {
+    picture_metrics::measure(&DISPLAYED_METRICS, reference, test, with_flip)
 }

@@ -1,17 +1,31 @@
-//! Error in the units of the channel.
+//! The mean absolute error and the root of the mean squared error, in units of the channel.
 
-/// What the mean absolute error is the mean of.
-#[inline(always)]
-pub(super) fn absolute(reference: f64, test: f64) -> f64 {
-    (test - reference).abs()
-}
+use super::channel::ChannelMetric;
+use super::gate_kind::{GateKind, GateValue};
 
-/// What the root mean squared error is the root of the mean of.
-#[inline(always)]
-pub(super) fn squared(reference: f64, test: f64) -> f64 {
-    let error = test - reference;
-    error * error
-}
+/// The mean absolute error.
+pub(super) const MAE: ChannelMetric = ChannelMetric {
+    key: "mae",
+    heading: "MAE",
+    signed: false,
+    term: |reference, test| (test - reference).abs(),
+    value: |means| means.term,
+};
+
+/// The root of the mean squared error.
+pub(super) const RMSE: ChannelMetric = ChannelMetric {
+    key: "rmse",
+    heading: "RMSE",
+    signed: false,
+    term: |reference, test| (test - reference) * (test - reference),
+    value: |means| means.term.sqrt(),
+};
+
+pub(super) const GATE: GateKind = GateKind {
+    name: "max-rmse",
+    help: "Largest root of the mean squared error, of every channel, in units of the channel",
+    value: GateValue::Channel(RMSE.key),
+};
 
 #[cfg(test)]
 mod tests {
@@ -21,12 +35,12 @@ mod tests {
     fn known_errors() {
         let samples = Samples { planes: vec![(&[1.0, 2.0], &[4.0, 2.0]), (&[0.0, 5.0], &[0.0, 1.0])] };
         let metrics = measure(&samples, 2, [0, 0]);
-        assert_eq!((metrics.mae, metrics.rmse), (1.75, 2.5));
+        assert_eq!((metrics.get("mae"), metrics.get("rmse")), (1.75, 2.5));
     }
 
     #[test]
-    fn one_value_that_is_no_number_shows() {
+    fn one_nan_shows() {
         let metrics = measure(&Samples { planes: vec![(&[1.0, f32::NAN], &[1.0, f32::NAN])] }, 2, [0, 0]);
-        assert!(metrics.mae.is_nan() && metrics.rmse.is_nan());
+        assert!(metrics.get("mae").is_nan() && metrics.get("rmse").is_nan());
     }
 }

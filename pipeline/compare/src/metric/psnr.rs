@@ -1,9 +1,18 @@
-//! Peak signal to noise ratio, of display values whose peak is 1.
+//! The peak signal to noise ratio of display values, whose peak is 1.
 
-use super::tile::{HALO, MARGIN, PITCH, Plane, Tile};
+use super::displayed::{DisplayedMetric, Scratch};
+use super::tile::{HALO, MARGIN, PITCH, Tile};
 
-/// Sum over the pixels of a tile, of planes of display values.
-pub(super) fn squared_error(tile: Tile, reference: &Plane, test: &Plane) -> f64 {
+/// The ratio in dB; it is infinite for equal pictures.
+pub(super) const METRIC: DisplayedMetric = DisplayedMetric {
+    key: "psnr",
+    sum: squared_error,
+    value: |sum, [width, height]| Ok(decibels(sum / (3.0 * (width * height) as f64))),
+    words: |psnr| format!("PSNR {psnr:.3} dB"),
+};
+
+/// The sum of the squared error over the pixels of a tile.
+fn squared_error(tile: Tile, Scratch { reference, test, .. }: &mut Scratch) -> f64 {
     let [width, height] = tile.size();
     let mut sum = 0.0;
     for row in HALO..HALO + height {
@@ -15,8 +24,8 @@ pub(super) fn squared_error(tile: Tile, reference: &Plane, test: &Plane) -> f64 
     sum
 }
 
-/// Of a mean squared error; infinite without any.
-pub(super) fn decibels(mean_squared_error: f64) -> f64 {
+/// The ratio of a mean squared error.
+fn decibels(mean_squared_error: f64) -> f64 {
     -10.0 * mean_squared_error.log10()
 }
 
@@ -27,7 +36,7 @@ mod tests {
     #[test]
     fn known_ratios() {
         assert_eq!(decibels(0.0), f64::INFINITY);
-        // An error of a tenth everywhere: 20 dB.
+        // An error of a tenth everywhere is 20 dB.
         assert!((decibels(0.01) - 20.0).abs() < 1e-12);
         assert!(decibels(f64::NAN).is_nan());
     }

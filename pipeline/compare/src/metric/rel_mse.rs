@@ -1,14 +1,25 @@
-//! Error relative to the reference: dark and bright parts of the picture count alike.
+//! The mean squared error relative to the reference, in which dark and bright parts of the image count alike.
 
-/// Added to the squared reference, so that black pixels do not divide by zero; printed with every report.
+use super::channel::ChannelMetric;
+use super::gate_kind::{GateKind, GateValue};
+
+/// Is added to the squared reference, so that no black pixel divides by zero; it is printed with every report.
 pub const EPSILON: f64 = 0.01;
 
-/// What the relative mean squared error is the mean of.
-#[inline(always)]
-pub(super) fn relative(reference: f64, test: f64) -> f64 {
-    let error = test - reference;
-    error * error / (reference * reference + EPSILON)
-}
+/// The relative mean squared error.
+pub(super) const METRIC: ChannelMetric = ChannelMetric {
+    key: "relmse",
+    heading: "relMSE",
+    signed: false,
+    term: |reference, test| (test - reference) * (test - reference) / (reference * reference + EPSILON),
+    value: |means| means.term,
+};
+
+pub(super) const GATE: GateKind = GateKind {
+    name: "max-relmse",
+    help: "Largest mean of (test - reference)^2 / (reference^2 + 0.01), of every channel",
+    value: GateValue::Channel(METRIC.key),
+};
 
 #[cfg(test)]
 mod tests {
@@ -20,12 +31,12 @@ mod tests {
         // 0.5^2 / (0^2 + 0.01) = 25 and 1^2 / (3^2 + 0.01) = 1 / 9.01, over two samples.
         let samples = Samples { planes: vec![(&[0.0, 3.0], &[0.5, 4.0])] };
         let expected = (0.25 / EPSILON + 1.0 / 9.01) / 2.0;
-        assert!((measure(&samples, 2, [0, 0]).relmse - expected).abs() < 1e-12);
+        assert!((measure(&samples, 2, [0, 0]).get("relmse") - expected).abs() < 1e-12);
     }
 
     #[test]
-    fn one_value_that_is_not_finite_shows() {
+    fn one_infinity_shows() {
         let samples = Samples { planes: vec![(&[1.0, f32::INFINITY], &[1.0, f32::INFINITY])] };
-        assert!(measure(&samples, 2, [0, 0]).relmse.is_nan());
+        assert!(measure(&samples, 2, [0, 0]).get("relmse").is_nan());
     }
 }

@@ -1,23 +1,23 @@
-//! The value of a given rank, without sorting and without a copy: two histograms over the bits of float32.
+//! The value of a given rank without sorting or copying, by two histograms over the bits of float32.
 //!
-//! The bits of numbers that are not negative are ordered as the numbers are, with infinity and then NaN at the end. The
-//! first histogram, over the upper half of the bits, says in which bin the value lies; the second, over the lower half
-//! of those in the bin, which it is. Counts do not depend on the order in which they are made.
+//! The bits of numbers that are not negative have the order of the numbers, with infinity and then NaN at the end. The first
+//! histogram, over the upper half of the bits, finds the bin of the value; the second, over the lower half of the bits of the
+//! numbers in that bin, finds the value. Counts do not depend on the order in which they are made.
 
 use rayon::prelude::*;
 
-/// Samples that one thread counts at a time.
+/// The number of samples that one thread counts at a time.
 const CHUNK: usize = 1 << 20;
 
-/// Counts by sixteen bits.
+/// Counts for each value of sixteen bits.
 pub(super) type Histogram = Vec<u64>;
 
-/// By the upper half of the bits. `key` is not negative.
+/// Counts by the upper half of the bits of the keys, which are not negative.
 pub(super) fn upper(length: usize, key: impl Fn(usize) -> f32 + Sync) -> Histogram {
     histogram(length, |i| Some((key(i).to_bits() >> 16) as u16))
 }
 
-/// By the lower half of the bits, of those whose upper half is `bin`.
+/// Counts by the lower half of the bits of the keys whose upper half is `bin`.
 pub(super) fn lower(length: usize, key: impl Fn(usize) -> f32 + Sync, bin: u16) -> Histogram {
     histogram(length, |i| {
         let bits = key(i).to_bits();
@@ -25,7 +25,7 @@ pub(super) fn lower(length: usize, key: impl Fn(usize) -> f32 + Sync, bin: u16) 
     })
 }
 
-/// Sum of two.
+/// The sum of two histograms.
 pub(super) fn and(mut counts: Histogram, others: &Histogram) -> Histogram {
     counts.iter_mut().zip(others).for_each(|(count, other)| *count += other);
     counts
@@ -42,7 +42,7 @@ pub(super) fn locate(counts: &Histogram, mut rank: u64) -> (u16, u64) {
     (u16::MAX, 0)
 }
 
-/// The value whose halves were found.
+/// The value whose halves these are.
 pub(super) fn value(upper: u16, lower: u16) -> f32 {
     f32::from_bits(u32::from(upper) << 16 | u32::from(lower))
 }
@@ -73,7 +73,7 @@ mod tests {
 
     #[test]
     fn every_rank_of_a_shuffled_list() {
-        // 611 has no factor in common with 1000: each of 0..1000 comes once.
+        // 611 and 1000 have no common factor, so that each of 0..1000 comes once.
         let keys: Vec<f32> = (0..1000).map(|i| (i * 611 % 1000) as f32 * 1.000_1).collect();
         for rank in [0, 1, 7, 500, 998, 999] {
             assert_eq!(select(keys.len(), rank, |i| keys[i]), rank as f32 * 1.000_1);

@@ -1,75 +1,62 @@
 //! Structural similarity: Wang, Bovik, Sheikh and Simoncelli, *Image quality assessment: from error visibility to
 //! structural similarity*, 2004.
 //!
-//! Of display values, with the paper's constants and Gaussian window (standard deviation 1.5 pixels, cut off at 5),
-//! weighted moments, the mean over the windows that lie in the picture and over the three channels. This is what
+//! It is computed of display values with the paper's constants and Gaussian window (standard deviation 1.5 pixels, cut off at
+//! 5) and weighted moments, and averaged over the windows that lie in the picture and over the three channels. This is what
 //! scikit-image computes with `gaussian_weights=True, use_sample_covariance=False, data_range=1`.
 
 use simd::Kernel;
 
 use super::convolve::{Along, Even, INNER, convolve, gaussian};
-use super::display::display;
-use super::tile::{GROUPS, HALO, LANES, MARGIN, PITCH, Plane, SIDE, Tile, group, lanes, plane};
+use super::displayed::{DisplayedMetric, Scratch};
+use super::tile::{GROUPS, HALO, LANES, MARGIN, PITCH, Plane, SIDE, Tile, group, lanes};
 
-/// Radius of the window, pixels.
+/// The mean similarity over windows and channels; it is 1 for equal pictures.
+pub(super) const METRIC: DisplayedMetric = DisplayedMetric {
+    key: "ssim",
+    sum: similarity,
+    value: |sum, size| match windows(size) {
+        Some(windows) => Ok(sum / (3 * windows) as f64),
+        None => Err(format!("the picture is smaller than its window of {WINDOW} x {WINDOW} pixels")),
+    },
+    words: |ssim| format!("SSIM {ssim:.6}"),
+};
+
+/// The radius of the window in pixels.
 const RADIUS: usize = 5;
-/// Side of the window, pixels.
-pub(super) const WINDOW: usize = 2 * RADIUS + 1;
-/// Stabilise the quotients where there is no light or no structure; the paper's K1 and K2, squared.
+/// The side of the window in pixels.
+const WINDOW: usize = 2 * RADIUS + 1;
+/// C1 and C2 stabilize the quotients where there is no light or no structure; they are the paper's K1 and K2, squared.
 const C1: f32 = 0.01 * 0.01;
 const C2: f32 = 0.03 * 0.03;
 
-/// One channel of a tile.
-pub(super) struct Scratch {
-    /// Linear light as loaded, then display values.
-    pub reference: Box<Plane>,
-    pub test: Box<Plane>,
-    /// Of the window around each pixel.
-    pub similarity: Box<Plane>,
-    product: Box<Plane>,
-    across: Box<Plane>,
-    /// Moments: means of reference, test, the sum of their squares, and their product.
-    moments: [Box<Plane>; 4],
-}
-
-impl Default for Scratch {
-    fn default() -> Scratch {
-        let [reference, test, similarity, product, across] = std::array::from_fn(|_| plane());
-        Scratch { reference, test, similarity, product, across, moments: std::array::from_fn(|_| plane()) }
-    }
-}
-
-/// Weights of the window.
-pub(super) fn taps() -> Vec<f32> {
-    gaussian(1.5, RADIUS).iter().map(|weight| *weight as f32).collect()
-}
-
-/// Windows that lie in a picture; None if none does.
-pub(super) fn windows([width, height]: [usize; 2]) -> Option<usize> {
+/// The number of windows that lie in a picture, or `None` if none does.
+fn windows([width, height]: [usize; 2]) -> Option<usize> {
     let fit = |length: usize| (length + 1).checked_sub(WINDOW).filter(|count| *count > 0);
     Some(fit(width)? * fit(height)?)
 }
 
-/// Turns the loaded planes into display values, and these into similarities.
-pub(super) fn compute(scratch: &mut Scratch, taps: &[f32]) {
-    simd::dispatch(Compute { scratch, taps });
+/// The sum of the similarities over the windows of a tile that lie in the picture.
+fn similarity(tile: Tile, scratch: &mut Scratch) -> f64 {
+    let taps: Vec<f32> = gaussian(1.5, RADIUS).iter().map(|weight| *weight as f32).collect();
+    simd::dispatch(Similarity { scratch, taps: &taps });
+    sum(tile, &scratch.work[0])
 }
 
-struct Compute<'a> {
+/// Writes the similarity of the window around each pixel into the first plane of `work`.
+struct Similarity<'a> {
     scratch: &'a mut Scratch,
     taps: &'a [f32],
 }
 
-impl Kernel for Compute<'_> {
+impl Kernel for Similarity<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
-        let Scratch { reference, test, similarity, product, across, moments } = self.scratch;
+        let Scratch { reference, test, work } = self.scratch;
+        let [similarity, product, across, mean_reference, mean_test, mean_squares, mean_product] = work;
         let wanted = (INNER.start - RADIUS) * PITCH..(INNER.end + RADIUS) * PITCH;
-        show(&mut reference[wanted.clone()]);
-        show(&mut test[wanted.clone()]);
-        let [mean_reference, mean_test, mean_squares, mean_product] = moments;
         blur(reference, self.taps, across, mean_reference);
         blur(test, self.taps, across, mean_test);
         for at in wanted.clone() {
@@ -93,19 +80,12 @@ impl Kernel for Compute<'_> {
 }
 
 #[inline(always)]
-fn show(values: &mut [f32]) {
-    for value in values {
-        *value = display(*value);
-    }
-}
-
-#[inline(always)]
 fn blur(from: &Plane, taps: &[f32], across: &mut Plane, to: &mut Plane) {
     convolve::<Even>(Along::Rows(RADIUS), taps, from, across);
     convolve::<Even>(Along::Columns, taps, across, to);
 }
 
-/// The paper's equation 13, of weighted means.
+/// Equation 13 of the paper, of weighted means.
 #[inline(always)]
 fn similar([x, y]: [f32; 2], squares: f32, product: f32) -> f32 {
     let (means, covariance) = (x * y, product - x * y);
@@ -113,8 +93,8 @@ fn similar([x, y]: [f32; 2], squares: f32, product: f32) -> f32 {
     (2.0 * means + C1) * (2.0 * covariance + C2) / ((mean_squares + C1) * (variances + C2))
 }
 
-/// Over the tile's windows that lie in the picture.
-pub(super) fn sum(tile: Tile, similarity: &Plane) -> f64 {
+/// The sum over the windows of the tile that lie in the picture.
+fn sum(tile: Tile, similarity: &Plane) -> f64 {
     let [columns, rows] = [0, 1].map(|axis| {
         let begin = RADIUS.saturating_sub(tile.first[axis]);
         let end = (tile.picture[axis] - tile.first[axis]).saturating_sub(RADIUS).min(SIDE);
@@ -142,7 +122,7 @@ mod tests {
 
     #[test]
     fn two_numbers_by_hand() {
-        // x is 0.2 or 0.6, y is 0.4 or 0.4: means 0.4 and 0.4, variance 0.04 and 0, no covariance.
+        // x is 0.2 or 0.6 and y is 0.4: their means are 0.4, their variances 0.04 and 0, and their covariance is 0.
         let found = similar([0.4, 0.4], (0.04 + 0.36) / 2.0 + 0.16, 0.4 * 0.4);
         assert!((found - C2 / (0.04 + C2)).abs() < 1e-6, "{found}");
     }

@@ -1,82 +1,108 @@
-//! A folder of replicates: read one by one, reduced at once.
+//! A folder of replicates, which are read one by one and reduced to their statistics.
 
 use std::path::{Path, PathBuf};
 
 use formats::image::{Attribute, Channel, Image};
 
+use super::error::ReplicateError;
 use super::statistic::{Statistic, statistics};
-use super::{FEWEST, ReplicateError};
-use crate::meaning::{self, Difference, Meaning};
+use crate::meaning;
+use crate::structure::Structure;
+
+/// The smallest number of replicates of either side; the variance of fewer would be known too badly.
+pub const MIN_REPLICATES: usize = 8;
 
 /// The attribute that tells clouds apart.
 const CLOUD: &str = "pcsss/cloud";
 /// The attribute that tells scenes apart.
 const SCENE: &str = "pcsss/scene";
-/// Characters of a cloud's hash that are kept: 64 bits tell any clouds apart.
+/// The number of characters of a cloud's hash that are kept. Their 64 bits tell clouds apart.
 const HASH_LENGTH: usize = 16;
 
-/// What all replicates of a case have in common.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Structure {
-    pub scene: String,
-    pub width: usize,
-    pub height: usize,
-    pub window: [i32; 2],
-    pub channels: Vec<String>,
-    pub meaning: Meaning,
-}
-
-/// What is left of one image.
+/// One image, reduced to its statistics.
 #[derive(Clone, Debug)]
 pub(super) struct Replicate {
     pub(super) path: PathBuf,
     pub(super) structure: Structure,
+    /// The hash of the scene.
+    pub(super) scene: String,
+    /// The beginning of the hash of the cloud.
     pub(super) cloud: String,
     pub(super) not_finite: usize,
     pub(super) statistics: Vec<Statistic>,
 }
 
-/// Images of one scene, each from a cloud of its own.
+/// Images of one scene, each made from a cloud of its own.
 #[derive(Clone, Debug)]
 pub struct Replicates {
     pub(super) all: Vec<Replicate>,
-    /// Mean of the picture, R, G and B.
+    /// The mean of the pictures, R, G and B.
     pub(super) mean: Image,
 }
 
 impl Replicate {
-    /// Reduces an image; `path` is for messages.
+    /// Reduces an image. Messages contain `path`.
     fn of(path: &Path, image: &Image) -> Result<Replicate, ReplicateError> {
         let text = |attribute: &'static str| match image.attributes.get(attribute) {
             Some(Attribute::Text(text)) if !text.is_empty() => Ok(text.clone()),
-            _ => Err(ReplicateError::NoOrigin { path: path.to_owned(), attribute }),
+            _ => Err(ReplicateError::invalid(
+                path,
+                format!(
+                    "the header has no {attribute}, so that it is unknown whether the replicates are independent; use images \
+                     of gather"
+                ),
+            )),
         };
-        let mut channels: Vec<String> = image.channels.iter().map(|channel| channel.name.clone()).collect();
-        channels.sort();
-        let (width, height, window, meaning) = (image.width, image.height, image.window, Meaning::of(image).judged());
         Ok(Replicate {
             path: path.to_owned(),
-            structure: Structure { scene: text(SCENE)?, width, height, window, channels, meaning },
+            structure: Structure::of(image),
+            scene: text(SCENE)?,
             cloud: text(CLOUD)?.chars().take(HASH_LENGTH).collect(),
             not_finite: image.channels.iter().flat_map(|c| &c.samples).filter(|sample| !sample.is_finite()).count(),
             statistics: statistics(image),
         })
     }
+
+    /// Checks that it belongs to a reference of this structure and scene. Messages contain the name of the reference.
+    pub(super) fn check(&self, structure: &Structure, scene: &str, name: &Path) -> Result<(), ReplicateError> {
+        let mismatch = match self.structure.check(structure) {
+            Err(mismatch) => Some(mismatch.to_string()),
+            Ok(()) if self.scene != scene => {
+                Some(format!("the scene is {}, but that of the reference is {scene}; render one scene", self.scene))
+            }
+            Ok(()) => None,
+        };
+        let name = name.display();
+        mismatch.map_or(Ok(()), |what| {
+            Err(ReplicateError::invalid(&self.path, format!("{what} (the reference is {name})")))
+        })
+    }
 }
 
 impl Replicates {
-    /// All `.exr` files of a folder, in order of name.
+    /// Reads all `.exr` files of a folder, in order of name.
     pub fn read(folder: &Path) -> Result<Replicates, ReplicateError> {
         let images = Replicates::paths(folder)?.into_iter().map(|path| Ok((Image::read(&path)?, path)));
         Replicates::of(folder, images)
     }
 
-    /// The files that [`Replicates::read`] reads of a folder, in order of name.
+    /// The files that [`Replicates::read`] reads from a folder, in order of name.
     pub fn paths(folder: &Path) -> Result<Vec<PathBuf>, ReplicateError> {
-        images(folder)
+        let fail = |source| formats::Error::read(folder, source);
+        let mut paths = Vec::new();
+        for entry in std::fs::read_dir(folder).map_err(fail)? {
+            let path = entry.map_err(fail)?.path();
+            // Temporary files of a renderer that is still at work begin with a dot.
+            let hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
+            if !hidden && path.extension().is_some_and(|extension| extension == "exr") {
+                paths.push(path);
+            }
+        }
+        paths.sort();
+        Ok(paths)
     }
 
-    /// Images with their names, one after the other; `folder` is for messages.
+    /// Reduces images with their names, one after the other. Messages contain `folder`.
     pub fn of(
         folder: &Path,
         images: impl IntoIterator<Item = Result<(Image, PathBuf), ReplicateError>>,
@@ -85,7 +111,9 @@ impl Replicates {
         for image in images {
             let (image, path) = image?;
             let replicate = Replicate::of(&path, &image)?;
-            belongs(&replicate, all.first())?;
+            if let Some(Replicate { structure, scene, path, .. }) = all.first() {
+                replicate.check(structure, scene, path)?;
+            }
             if all.is_empty() {
                 let Image { width, height, window, display, .. } = image;
                 mean =
@@ -94,8 +122,13 @@ impl Replicates {
             add(&mut sum, &image);
             all.push(replicate);
         }
-        if all.len() < FEWEST {
-            return Err(ReplicateError::TooFew { folder: folder.to_owned(), found: all.len(), wanted: FEWEST });
+        if all.len() < MIN_REPLICATES {
+            let what = format!(
+                "there are {} replicates (.exr), but at least {MIN_REPLICATES} are needed; render more, each from a cloud \
+                 with a seed of its own",
+                all.len()
+            );
+            return Err(ReplicateError::invalid(folder, what));
         }
         independent(&all)?;
         mean.channels = means(&sum, all.len());
@@ -103,63 +136,13 @@ impl Replicates {
     }
 }
 
-fn images(folder: &Path) -> Result<Vec<PathBuf>, ReplicateError> {
-    let fail = |source| formats::Error::read(folder, source);
-    let mut paths = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(fail)? {
-        let path = entry.map_err(fail)?.path();
-        // A temporary file of a renderer that is still at work begins with a dot.
-        let hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
-        if !hidden && path.extension().is_some_and(|extension| extension == "exr") {
-            paths.push(path);
-        }
-    }
-    paths.sort();
-    Ok(paths)
-}
-
-fn belongs(replicate: &Replicate, first: Option<&Replicate>) -> Result<(), ReplicateError> {
-    let Some(first) = first else { return Ok(()) };
-    match replicate.structure.difference(&first.structure) {
-        None => Ok(()),
-        Some(what) => Err(ReplicateError::Foreign {
-            path: replicate.path.clone(),
-            what,
-            reference: first.path.display().to_string(),
-        }),
-    }
-}
-
-/// Each cloud once.
+/// Checks that no cloud occurs twice.
 fn independent(all: &[Replicate]) -> Result<(), ReplicateError> {
     let mut by_cloud: Vec<&Replicate> = all.iter().collect();
     by_cloud.sort_by(|a, b| (&a.cloud, &a.path).cmp(&(&b.cloud, &b.path)));
     match by_cloud.array_windows().find(|[a, b]| a.cloud == b.cloud) {
         None => Ok(()),
-        Some([a, b]) => Err(ReplicateError::SameCloud { path: b.path.clone(), other: a.path.display().to_string() }),
-    }
-}
-
-impl Structure {
-    /// What differs from the reference, in words.
-    pub(super) fn difference(&self, reference: &Structure) -> Option<String> {
-        let (size, expected) = ((self.width, self.height), (reference.width, reference.height));
-        if size != expected || self.window != reference.window {
-            return Some(format!(
-                "{} x {} pixels at {:?} instead of {} x {} at {:?}; render both at one size",
-                size.0, size.1, self.window, expected.0, expected.1, reference.window
-            ));
-        }
-        if self.channels != reference.channels {
-            return Some("other channels; write both with one version of the renderer".to_owned());
-        }
-        if let Some(Difference { name, reference, test, way_out }) = self.meaning.difference(&reference.meaning) {
-            return Some(format!(
-                "{name} is {test} instead of {reference}, so that equal numbers are not the same; {way_out}"
-            ));
-        }
-        let scenes = (&self.scene, &reference.scene);
-        (scenes.0 != scenes.1).then(|| format!("its scene is {} instead of {}; render one scene", scenes.0, scenes.1))
+        Some([a, b]) => Err(ReplicateError::same_cloud(&b.path, &a.path)),
     }
 }
 

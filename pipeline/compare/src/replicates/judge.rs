@@ -1,67 +1,29 @@
-//! The tests themselves.
+//! The statistical tests.
 //!
-//! Student's two-sample t-test with pooled variance: if nothing has changed, both sides scatter alike, and the many
-//! replicates of the reference say how much. Welch's test would rest on the few of the test side, whose Student tail
-//! asks for three times the deviation at the corrected level. If the scatter has grown, that is found by itself: by
-//! the noise that the images claim (one-sided t-test), and by the ratio of the variances (Fisher, one-sided).
+//! Student's two-sample t-test uses the pooled variance: if nothing has changed, both sides have the same variance, and the many
+//! replicates of the reference estimate it well. Welch's test would rest on the few replicates of the test side, and at the
+//! corrected level its Student tail would need three times the deviation. A larger variance is found by tests of its own: a
+//! one-sided t-test of the noise that the images claim, and Fisher's one-sided test of the ratio of the variances.
 
-use serde::Serialize;
-
-use super::report::NoiseReport;
-use super::summary::{Summarised, moments};
-use super::{Kind, ReplicateError, Replicates, Summary};
+use super::error::ReplicateError;
+use super::folder::Replicates;
+use super::report::{Judged, NoiseReport, SCHEMA, Scatter};
+use super::statistic::{Kind, Statistic};
+use super::summary::{SUMMARY, Summarised, Summary, moments};
 use crate::distribution::{fisher_quantile, fisher_upper, student_quantile, student_two_sided, student_upper};
 
-/// Chance that the same program fails, over all folders of a run together.
+/// The probability that an unchanged program fails, over all folders of a run together.
 pub const FALSE_ALARM_RATE: f64 = 1e-3;
-/// Chance that a bias of the size called visible is found.
+/// The probability that a bias of the size called visible is found.
 const POWER: f64 = 0.9;
 
-/// What became of one statistic. Differences are relative to the reference.
-#[derive(Clone, Debug, Serialize)]
-pub struct Judged {
-    /// Layer, part of it, and channel.
-    pub name: String,
-    /// What it measures.
-    pub kind: Kind,
-    /// Mean of the reference (the geometric one where logarithms are compared).
-    pub reference: f64,
-    /// Mean of the test images.
-    pub test: f64,
-    /// Positive where the test images have more.
-    pub difference: f64,
-    /// Student's statistic.
-    pub t: f64,
-    /// Its degrees of freedom.
-    pub freedom: f64,
-    /// Chance of such a t, or one farther out, if nothing has changed.
-    pub p: f64,
-    /// The smallest bias that is found nine times in ten.
-    pub visible: f64,
-    /// Variance of the test images over that of the reference, where it is tested.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub scatter: Option<Scatter>,
-    /// Whether it passed.
-    pub ok: bool,
-}
-
-/// The ratio of the variances.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Scatter {
-    /// Test over reference.
-    pub ratio: f64,
-    /// Chance of such a ratio, or a larger one.
-    pub p: f64,
-    /// The growth that is found nine times in ten.
-    pub visible: f64,
-}
-
-/// The level of one of `tests` tests in each of `family` folders, such that all hold together (Šidák).
+/// The significance level of each of `tests` tests in each of `family` folders for which all together have the false alarm rate
+/// (Šidák 1967).
 pub fn corrected_level(tests: usize, family: usize) -> f64 {
     -((-FALSE_ALARM_RATE).ln_1p() / (tests * family) as f64).exp_m1()
 }
 
-/// Compares the replicates with the reference; `family` folders are judged in this run.
+/// Tests the replicates against the reference; `family` folders are judged in this run.
 pub fn judge(reference: &Summary, test: &Replicates, family: usize) -> Result<NoiseReport, ReplicateError> {
     reference.fits(test)?;
     let tested: Vec<&Summarised> = reference.statistics.iter().filter(|s| s.left_out.is_none()).collect();
@@ -73,26 +35,39 @@ pub fn judge(reference: &Summary, test: &Replicates, family: usize) -> Result<No
         judged.push(one(statistic, &values(reference, statistic, test)?, counts, level));
     }
     let not_finite = test.all.iter().map(|replicate| replicate.not_finite).sum();
-    Ok(NoiseReport::new(reference, test.all.len(), family, tests, level, judged, not_finite))
+    let left_out = reference.statistics.iter().filter_map(|s| Some([s.name.clone(), s.left_out.clone()?]));
+    Ok(NoiseReport {
+        schema: SCHEMA,
+        reference_replicates: reference.count(),
+        test_replicates: test.all.len(),
+        false_alarm_rate: FALSE_ALARM_RATE,
+        family,
+        tests,
+        level,
+        not_finite,
+        pass: not_finite == 0 && !judged.is_empty() && judged.iter().all(|judged| judged.ok),
+        statistics: judged,
+        left_out: left_out.collect(),
+    })
 }
 
+/// Whether the variance of a statistic is tested too.
 fn tests_scatter(statistic: &Summarised) -> bool {
     statistic.kind == Kind::Scatter && statistic.variance > 0.0
 }
 
+/// The values of a statistic over the test replicates.
 fn values(reference: &Summary, wanted: &Summarised, test: &Replicates) -> Result<Vec<f64>, ReplicateError> {
-    let value = |statistics: &[super::statistic::Statistic]| {
+    let value = |statistics: &[Statistic]| {
         let value = statistics.iter().find(|statistic| statistic.name == wanted.name)?.value;
         Some(if wanted.logarithm { value.ln() } else { value })
     };
     let values: Option<Vec<f64>> = test.all.iter().map(|replicate| value(&replicate.statistics)).collect();
-    values.ok_or_else(|| ReplicateError::Summary {
-        path: reference.folder.join(super::SUMMARY),
-        what: format!("statistics: `{}` is unknown to this version", wanted.name),
-    })
+    let what = || format!("the statistic `{}` is unknown to this version; summarise the images again", wanted.name);
+    values.ok_or_else(|| ReplicateError::invalid(&reference.folder.join(SUMMARY), what()))
 }
 
-/// `counts`: of the test and of the reference.
+/// Tests one statistic of `n` test replicates against that of `m` reference replicates.
 fn one(reference: &Summarised, values: &[f64], (n, m): (f64, f64), level: f64) -> Judged {
     let (mean, variance) = moments(values);
     let freedom = n + m - 2.0;
@@ -101,7 +76,7 @@ fn one(reference: &Summarised, values: &[f64], (n, m): (f64, f64), level: f64) -
     let (t, p) = significance(reference, mean - reference.mean, error, freedom);
     let sided = if reference.kind == Kind::Noise { level } else { 0.5 * level };
     let limit = student_quantile(sided, freedom);
-    // The t of a true difference scatters more than Student's: by how well the error is known (noncentral t).
+    // The statistic of a true difference has the noncentral t distribution, whose spread includes that of the estimated error.
     let spread = (1.0 + 0.5 * limit * limit / freedom).sqrt();
     let visible = (limit + student_quantile(1.0 - POWER, freedom) * spread) * error;
     let scatter = tests_scatter(reference).then(|| {
@@ -120,12 +95,12 @@ fn one(reference: &Summarised, values: &[f64], (n, m): (f64, f64), level: f64) -
         p,
         visible: relative(reference, visible),
         scatter,
-        // Both written so that what is no number fails.
+        // Both comparisons are written so that NaN fails.
         ok: p >= level && scatter.is_none_or(|scatter| scatter.p >= level),
     }
 }
 
-/// t and its chance. What never varies must be equal, to the rounding of float32 that images have.
+/// The statistic t and its p-value. A statistic that never varies must be equal up to the rounding of float32.
 fn significance(reference: &Summarised, difference: f64, error: f64, freedom: f64) -> (f64, f64) {
     let scale = if reference.logarithm { 1.0 } else { reference.mean.abs() };
     let rounding = f64::from(f32::EPSILON) * scale;
@@ -133,21 +108,23 @@ fn significance(reference: &Summarised, difference: f64, error: f64, freedom: f6
         return if difference.abs() <= rounding { (0.0, 1.0) } else { (f64::INFINITY.copysign(difference), 0.0) };
     }
     let t = difference / error;
-    // Comparisons with what is no number are false, so the tail of an NaN would look like one half.
+    // Guards NaN: comparisons with it are false, so that its tail would look like one half.
     if t.is_nan() {
         return (t, t);
     }
     (t, if reference.kind == Kind::Noise { student_upper(t, freedom) } else { student_two_sided(t, freedom) })
 }
 
+/// A value without the logarithm that the statistic may have.
 fn linear(statistic: &Summarised, value: f64) -> f64 {
     if statistic.logarithm { value.exp() } else { value }
 }
 
+/// A difference relative to the mean of the reference.
 fn relative(statistic: &Summarised, difference: f64) -> f64 {
     match statistic.logarithm {
         true => difference.exp_m1(),
-        // Guards 0/0: nothing has not changed.
+        // Guards 0/0: a mean of zero has not changed.
         false if difference == 0.0 => 0.0,
         false => difference / statistic.mean.abs(),
     }

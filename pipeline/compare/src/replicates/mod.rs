@@ -1,8 +1,8 @@
-//! Are two sets of images the same but for their noise?
+//! Tests whether two sets of images differ by more than their noise.
 //!
-//! All pixels of an image read one cloud and share its error, so neither pixels nor their sample variances are
-//! evidence; images from independent clouds are. A set of them, the *replicates*, is reduced to few statistics each
-//! ([`statistic`]), whose means are compared by Student's t-test ([`mod@judge`]), Šidák's correction over all of them.
+//! All pixels of an image are computed from one cloud and share its error, so neither pixels nor their sample variances are
+//! evidence; images from independent clouds are. Each image of such a set, a *replicate*, is reduced to a few statistics
+//! ([`Kind`]). Their means are compared by Student's t-test ([`judge()`]), with Šidák's correction over all tests.
 
 mod error;
 mod folder;
@@ -12,11 +12,8 @@ mod statistic;
 mod summary;
 
 pub use error::ReplicateError;
-pub use folder::Replicates;
-pub use judge::{FALSE_ALARM_RATE, Judged, Scatter, corrected_level, judge};
-pub use report::NoiseReport;
+pub use folder::{MIN_REPLICATES, Replicates};
+pub use judge::{FALSE_ALARM_RATE, corrected_level, judge};
+pub use report::{Judged, NoiseReport, Scatter};
 pub use statistic::Kind;
 pub use summary::{MEAN_IMAGE, SUMMARY, Summarised, Summary};
-
-/// Fewest replicates of either side: what fewer say of their own scatter is too little.
-pub const FEWEST: usize = 8;

@@ -1,73 +1,86 @@
-//! What was found, as a table for people and as JSON for programs.
+//! The report of the tests, as a table for people and as JSON for programs.
 
 use std::fmt::Write;
 
 use cli::printable;
 use serde::Serialize;
 
-use super::judge::{FALSE_ALARM_RATE, Judged};
-use super::{Kind, Summary};
+use super::statistic::Kind;
 
-/// Changes only when a key of the JSON report changes its meaning or goes.
-const SCHEMA: u32 = 1;
-/// Failures that the verdict names; the table has all.
+/// The version of the keys, which changes only when a key of the JSON report changes its meaning or is removed.
+pub(super) const SCHEMA: u32 = 1;
+/// The verdict names so many failures; the table has all.
 const NAMED: usize = 3;
 
-/// Everything that was tested. Numbers that are not finite become `null` in JSON.
+/// The test of one statistic. Differences are relative to the reference.
+#[derive(Clone, Debug, Serialize)]
+pub struct Judged {
+    /// The layer, the part of it, and the channel.
+    pub name: String,
+    /// What the statistic measures.
+    pub kind: Kind,
+    /// The mean of the reference; it is the geometric mean if logarithms are compared.
+    pub reference: f64,
+    /// The mean of the test images.
+    pub test: f64,
+    /// The relative difference, positive if the test images have more.
+    pub difference: f64,
+    /// Student's t.
+    pub t: f64,
+    /// The degrees of freedom of t.
+    pub freedom: f64,
+    /// The probability of such a t, or one farther out, if nothing has changed.
+    pub p: f64,
+    /// The smallest bias that is found nine times in ten.
+    pub visible: f64,
+    /// The ratio of the variances, if it is tested.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scatter: Option<Scatter>,
+    /// Whether the statistic passed.
+    pub ok: bool,
+}
+
+/// The test of the ratio of the variances.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Scatter {
+    /// The variance of the test images over that of the reference.
+    pub ratio: f64,
+    /// The probability of such a ratio, or a larger one, if nothing has changed.
+    pub p: f64,
+    /// The smallest growth that is found nine times in ten.
+    pub visible: f64,
+}
+
+/// Everything that was tested. Numbers that are not finite are `null` in JSON.
 #[derive(Clone, Debug, Serialize)]
 pub struct NoiseReport {
-    /// Version of the keys.
+    /// The version of the keys.
     pub schema: u32,
-    /// Replicates of the reference.
+    /// The number of replicates of the reference.
     pub reference_replicates: usize,
-    /// Replicates that were judged.
+    /// The number of replicates that were judged.
     pub test_replicates: usize,
-    /// Chance of a false alarm over all folders of the run.
+    /// The probability of a false alarm over all folders of the run.
     pub false_alarm_rate: f64,
-    /// Folders of the run.
+    /// The number of folders of the run.
     pub family: usize,
-    /// Tests in this folder.
+    /// The number of tests in this folder.
     pub tests: usize,
-    /// Level of each after Šidák's correction.
+    /// The significance level of each test after Šidák's correction.
     pub level: f64,
-    /// Samples that are NaN or infinite.
+    /// The number of samples that are NaN or infinite.
     pub not_finite: usize,
-    /// All that was tested.
+    /// The test of each statistic.
     pub statistics: Vec<Judged>,
-    /// Names of what was not tested, with the reason.
+    /// The names of the statistics that were not tested, each with the reason.
     pub left_out: Vec<[String; 2]>,
     /// Whether everything passed.
     pub pass: bool,
 }
 
 impl NoiseReport {
-    pub(super) fn new(
-        reference: &Summary,
-        test_replicates: usize,
-        family: usize,
-        tests: usize,
-        level: f64,
-        statistics: Vec<Judged>,
-        not_finite: usize,
-    ) -> NoiseReport {
-        let left_out = reference.statistics.iter().filter_map(|s| Some([s.name.clone(), s.left_out.clone()?]));
-        NoiseReport {
-            schema: SCHEMA,
-            reference_replicates: reference.count(),
-            test_replicates,
-            false_alarm_rate: FALSE_ALARM_RATE,
-            family,
-            tests,
-            level,
-            not_finite,
-            pass: not_finite == 0 && !statistics.is_empty() && statistics.iter().all(|judged| judged.ok),
-            statistics,
-            left_out: left_out.collect(),
-        }
-    }
-
-    /// The smallest chance among all tests, and whose it is; one that is no number counts as none at all.
-    pub fn least(&self) -> (f64, &str) {
+    /// The smallest p-value of all tests, and the name of its statistic. NaN counts as 0.
+    pub fn min_p(&self) -> (f64, &str) {
         let p = |judged: &Judged| {
             let scatter = judged.scatter.map_or(1.0, |scatter| scatter.p);
             if judged.p.is_nan() || scatter.is_nan() { 0.0 } else { judged.p.min(scatter) }
@@ -76,14 +89,14 @@ impl NoiseReport {
         all.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, "nothing"))
     }
 
-    /// A line per statistic.
+    /// The table, with a line for each statistic.
     pub fn table(&self) -> String {
         let mut table = format!(
             "{} replicates against {} of the reference; {} tests, level {:.2e} each: {:.0e} over {} such folders\n",
             self.test_replicates, self.reference_replicates, self.tests, self.level, self.false_alarm_rate, self.family
         );
         let width = self.statistics.iter().map(|judged| printable(&judged.name).len()).max().unwrap_or(0);
-        // Writing to a string cannot fail, here and below.
+        // Writing to a string cannot fail.
         let _ = writeln!(
             table,
             "{:<width$}{:>12}{:>12}{:>12}{:>8}{:>5}{:>10}{:>10}",
@@ -96,12 +109,12 @@ impl NoiseReport {
             let _ = writeln!(table, "{:<width$}  not tested: {}", printable(name), printable(reason));
         }
         let _ = writeln!(table, "not finite: {} samples of the test images", self.not_finite);
-        table + "visible: the smallest bias that is found nine times in ten; of `noise`, only growth is tested\n"
+        table + "visible is the smallest bias that is found nine times in ten; of `noise`, only growth is tested\n"
     }
 
-    /// One line: `PASS name` with the least chance and what could have been seen, or `FAIL name` with what differs.
+    /// One line: `PASS name` with the smallest p-value and the visible biases, or `FAIL name` with the statistics that differ.
     pub fn verdict(&self, name: &str) -> String {
-        let (p, whose) = self.least();
+        let (p, whose) = self.min_p();
         let (name, whose) = (printable(name), printable(whose));
         if self.pass {
             let sees = self.statistics.iter().filter(|judged| judged.kind == Kind::Scatter);

@@ -1,35 +1,35 @@
-//! What is left of an image: few numbers, large enough to be near to normally distributed.
+//! The statistics of an image: a few means over many pixels, so that they are nearly normally distributed.
 //!
-//! Channel means of every color layer; of the subsurface layer also the brightness and color of nine tiles, because
-//! a fault may brighten one side and darken the other, and because ratios of channels shed the noise that channels
-//! share: the color of skin is known ten times better than its brightness. Last the noise that the image claims.
+//! They are the channel means of every color layer, and the brightness and color of nine tiles of the subsurface layer, because
+//! a fault may brighten one side and darken the other. Ratios of channels do not have the noise that the channels share: the
+//! color of skin is known ten times better than its brightness. The last statistic is the noise that the image claims.
 
 use formats::image::Image;
 use serde::{Deserialize, Serialize};
 
-/// Tiles along each side of the picture.
+/// The number of tiles along each side of the picture.
 const TILES: usize = 3;
-/// The layer of which there are tiles and colors, and whose scatter is tested.
+/// The layer that has tiles and colors, and whose variance between replicates is tested.
 const SCATTERED: &str = "subsurface";
-/// The colors.
+/// The channels of a color layer.
 const RGB: [&str; 3] = ["R", "G", "B"];
 
 /// What a statistic measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
-    /// A mean radiance, W/(m² sr).
+    /// A mean radiance in W/(m² sr).
     Light,
-    /// The same, of the layer whose scatter between replicates is tested too.
+    /// A mean radiance in W/(m² sr) whose variance between replicates is tested too.
     Scatter,
-    /// A ratio of the radiances of two channels. Statistics that were stored before have the British spelling.
+    /// A ratio of the radiances of two channels. Older files have the British spelling.
     #[serde(alias = "colour")]
     Color,
-    /// The mean over pixels of their standard error, W/(m² sr): only its growth is a fault.
+    /// The mean standard error of the pixels in W/(m² sr). Only its growth is a fault.
     Noise,
 }
 
-/// One number of one image.
+/// One statistic of one image.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Statistic {
     pub name: String,
@@ -37,7 +37,7 @@ pub(super) struct Statistic {
     pub value: f64,
 }
 
-/// All statistics of an image, the same names in the same order for all images of the same channels.
+/// The statistics of an image. Images with the same channels have the same names in the same order.
 pub(super) fn statistics(image: &Image) -> Vec<Statistic> {
     let mut found = Vec::new();
     for layer in color_layers(image) {
@@ -55,12 +55,12 @@ pub(super) fn statistics(image: &Image) -> Vec<Statistic> {
     found
 }
 
-/// Which tile a pixel lies in, row after row.
+/// The index of the tile of a pixel; tiles are numbered row after row.
 fn tile_of(image: &Image, x: usize, y: usize) -> usize {
     y * TILES / image.height * TILES + x * TILES / image.width
 }
 
-/// Brightness and color of one tile.
+/// The brightness and color of one tile.
 fn of_tile(image: &Image, layer: &str, tile: usize) -> Vec<Statistic> {
     let means = means(image, layer, |x, y| tile_of(image, x, y) == tile);
     let name = format!("{} tile {},{}", shown(layer), tile % TILES, tile / TILES);
@@ -68,6 +68,7 @@ fn of_tile(image: &Image, layer: &str, tile: usize) -> Vec<Statistic> {
     [light].into_iter().chain(colors(&name, means)).collect()
 }
 
+/// The ratios of the channels.
 fn colors(name: &str, [red, green, blue]: [f64; 3]) -> [Statistic; 2] {
     [("R/G", red / green), ("B/G", blue / green)].map(|(ratio, value)| Statistic {
         name: format!("{name} {ratio}"),
@@ -76,7 +77,7 @@ fn colors(name: &str, [red, green, blue]: [f64; 3]) -> [Statistic; 2] {
     })
 }
 
-/// Means over the pixels of a part of the image.
+/// The channel means over the pixels of a part of the image.
 fn means(image: &Image, layer: &str, inside: impl Fn(usize, usize) -> bool) -> [f64; 3] {
     let pixels: Vec<usize> =
         (0..image.width * image.height).filter(|pixel| inside(pixel % image.width, pixel / image.width)).collect();
@@ -86,7 +87,7 @@ fn means(image: &Image, layer: &str, inside: impl Fn(usize, usize) -> bool) -> [
     })
 }
 
-/// The root tames the few pixels that a lamp's mirror image makes very noisy.
+/// The mean standard errors. The root gives less weight to the few pixels that the mirror image of a lamp makes very noisy.
 fn noise(image: &Image) -> impl Iterator<Item = Statistic> + '_ {
     RGB.iter().filter_map(|channel| {
         let variances = image.channel(&full("variance", channel))?;
@@ -96,7 +97,7 @@ fn noise(image: &Image) -> impl Iterator<Item = Statistic> + '_ {
     })
 }
 
-/// Layers with red, green and blue, in order of name; the picture itself, which has no name, first.
+/// The layers with red, green and blue in order of name. The picture itself has no name and comes first.
 fn color_layers(image: &Image) -> Vec<String> {
     let reds = image.channels.iter().filter_map(|channel| match channel.name.rsplit_once('.') {
         Some((layer, "R")) => Some(layer.to_owned()),
@@ -109,24 +110,26 @@ fn color_layers(image: &Image) -> Vec<String> {
     layers
 }
 
+/// The name of a layer in the report.
 fn shown(layer: &str) -> &str {
     if layer.is_empty() { "beauty" } else { layer }
 }
 
+/// The name of a channel with that of its layer.
 fn full(layer: &str, channel: &str) -> String {
     if layer.is_empty() { channel.to_owned() } else { format!("{layer}.{channel}") }
 }
 
-/// How little of its layer's light a tile may hold and still say something, relative to an even share.
+/// The smallest share of its layer's light with which a tile is tested, relative to an equal share.
 const MIN_SHARE: f64 = 0.25;
 
-/// Whether a statistic is of a tile that is nearly all background; `light` finds the reference's mean by name.
+/// Whether a statistic is of a tile that is nearly all background. `light` finds the mean of the reference by name.
 pub(super) fn is_background(name: &str, light: impl Fn(&str) -> f64) -> bool {
     let Some((layer, rest)) = name.split_once(" tile ") else { return false };
     let tile = rest.split(' ').next().unwrap_or_default();
     let whole: f64 = RGB.iter().map(|channel| light(&format!("{layer} {channel}"))).sum();
     let enough = light(&format!("{layer} tile {tile} R+G+B")) >= MIN_SHARE * whole;
-    // In this order a share that is no number is background.
+    // The comparison is written so that a share of NaN is background.
     !enough
 }
 
@@ -136,7 +139,7 @@ mod tests {
 
     use super::*;
 
-    /// Six by six pixels: red is 1 in the left tiles, 2 in the middle, 3 on the right; green 2; blue 4.
+    /// A picture of six by six pixels: red is 1 in the left tiles, 2 in the middle and 3 on the right, green is 2, blue is 4.
     fn picture() -> Image {
         let red = (0..36).map(|pixel| ((pixel % 6) / 2 + 1) as f32).collect::<Vec<_>>();
         let planes = [red, vec![2.0; 36], vec![4.0; 36]];
@@ -159,7 +162,7 @@ mod tests {
         assert_eq!(found.len(), 3 + 3 + 2 + 27 + 3);
     }
 
-    /// Seen to catch: the attribute left out.
+    /// Seen to catch: the attribute `alias` left out.
     #[test]
     fn statistics_with_the_older_spelling_are_read() {
         let read = |word: &str| serde_json::from_str::<Kind>(word).expect("a kind");

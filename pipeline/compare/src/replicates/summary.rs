@@ -1,32 +1,33 @@
-//! What is kept of a reference: mean and variance of each statistic over many replicates, in one small file.
+//! The summary of a reference: the mean and variance of each statistic over many replicates, in one small file.
 
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::folder::Structure;
-use super::statistic::is_background;
-use super::{FEWEST, Kind, ReplicateError, Replicates};
+use super::error::ReplicateError;
+use super::folder::{MIN_REPLICATES, Replicates};
+use super::statistic::{Kind, is_background};
 use crate::meaning::Meaning;
+use crate::structure::Structure;
 
-/// The file's name in a reference folder.
+/// The name of the file in a reference folder.
 pub const SUMMARY: &str = "statistics.json";
-/// The mean picture's name beside it, for people to look at.
+/// The name of the mean picture beside it, which is for people to look at.
 pub const MEAN_IMAGE: &str = "mean.exr";
 
-/// Changes only when a key changes its meaning or goes.
+/// The version of the keys, which changes only when a key changes its meaning or is removed.
 const SCHEMA: u32 = 1;
-/// A file beyond it is no summary.
+/// The length of the longest file that is read, in bytes.
 const MAX_BYTES: u64 = 16 << 20;
-/// Relative scatter above which a mean is taken as it is and not its logarithm, which would be skewed.
+/// The relative standard deviation below which logarithms are compared. Above it they would be skewed.
 const LOGARITHM_BELOW: f64 = 0.2;
-/// Skewness beyond which a statistic is left out, in standard deviations of the skewness of normal numbers, `√(6/n)`: of
-/// 64 replicates 0.77. Beyond it means of eight would not be near enough to normal, five standard errors out.
+/// The largest skewness of a statistic that is tested, in units of `√(6/n)`, the standard deviation of the skewness of normal
+/// numbers. For 64 replicates it is 0.77. Beyond it, means of eight would not be nearly normal five standard errors out.
 const MAX_SKEWNESS: f64 = 2.5;
-/// The same of the excess kurtosis, `√(24/n)`: of 64 replicates 2.
+/// The largest excess kurtosis, in units of `√(24/n)`. For 64 replicates it is 2.
 const MAX_KURTOSIS: f64 = 3.3;
 
-/// Mean and variance of all statistics of a case.
+/// The mean and variance of all statistics of a set of replicates.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Summary {
@@ -36,10 +37,10 @@ pub struct Summary {
     height: usize,
     window: [i32; 2],
     channels: Vec<String>,
-    /// What headers say beyond the usual about the meaning of the numbers.
+    /// The attributes that decide whether images can be compared.
     #[serde(default, skip_serializing_if = "Meaning::is_usual")]
     meaning: Meaning,
-    /// The beginning of each cloud's hash: as many as there were replicates.
+    /// The beginning of the hash of each replicate's cloud.
     clouds: Vec<String>,
     pub(super) statistics: Vec<Summarised>,
     #[serde(skip)]
@@ -50,23 +51,23 @@ pub struct Summary {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Summarised {
-    /// Layer, part of it, and channel.
+    /// The layer, the part of it, and the channel.
     pub name: String,
-    /// What it measures.
+    /// What the statistic measures.
     pub kind: Kind,
-    /// Whether mean and variance are of its logarithm.
+    /// Whether mean and variance are those of its logarithm.
     pub logarithm: bool,
-    /// Mean over the replicates.
+    /// The mean over the replicates.
     pub mean: f64,
-    /// Variance between replicates, not of their mean.
+    /// The variance between replicates, which is not that of their mean.
     pub variance: f64,
-    /// Why it is not tested, if it is not.
+    /// The reason if it is not tested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub left_out: Option<String>,
 }
 
 impl Summary {
-    /// Of a folder: its summary if there is one, else of the images in it.
+    /// Reads the summary of a folder, or makes it of the images in the folder if there is none.
     pub fn read(folder: &Path) -> Result<Summary, ReplicateError> {
         let path = folder.join(SUMMARY);
         if !path.exists() {
@@ -74,28 +75,30 @@ impl Summary {
         }
         let fail = |source| formats::Error::read(&path, source);
         let facts = std::fs::metadata(&path).map_err(fail)?;
-        let wrong = |what: String| ReplicateError::Summary { path: path.clone(), what };
+        let wrong = |what: String| ReplicateError::invalid(&path, what + "; summarise the images again");
         if !facts.is_file() || facts.len() > MAX_BYTES {
-            return Err(wrong(format!("not a file of at most {MAX_BYTES} bytes")));
+            return Err(wrong(format!("it is not a file of at most {MAX_BYTES} bytes")));
         }
         let bytes = std::fs::read(&path).map_err(fail)?;
-        // Some editors begin a file with a byte order mark.
+        // Guards against a byte order mark, with which some editors begin a file.
         let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
         let summary: Summary = serde_json::from_slice(text).map_err(|error| wrong(error.to_string()))?;
         summary.check().map_err(wrong)?;
         Ok(Summary { folder: folder.to_owned(), ..summary })
     }
 
-    /// The files that [`Summary::read`] reads of a folder.
+    /// The files that [`Summary::read`] reads from a folder.
     pub fn paths(folder: &Path) -> Result<Vec<PathBuf>, ReplicateError> {
         let path = folder.join(SUMMARY);
         if path.exists() { Ok(vec![path]) } else { Replicates::paths(folder) }
     }
 
-    /// Of images in memory; `folder` is for messages.
+    /// Summarises images in memory. Messages contain `folder`.
     pub fn of(replicates: &Replicates, folder: &Path) -> Result<Summary, ReplicateError> {
         if let Some(bad) = replicates.all.iter().find(|replicate| replicate.not_finite > 0) {
-            return Err(ReplicateError::NotFinite { path: bad.path.clone(), count: bad.not_finite });
+            let count = bad.not_finite;
+            let what = format!("{count} samples are not finite, which a reference must not hold; render it again");
+            return Err(ReplicateError::invalid(&bad.path, what));
         }
         let first = &replicates.all[0];
         let names = first.statistics.iter().enumerate();
@@ -106,81 +109,85 @@ impl Summary {
             })
             .collect();
         leave_out_background(&mut statistics, replicates);
-        let Structure { scene, width, height, window, channels, meaning } = first.structure.clone();
+        let Structure { size: [width, height], window, channels, meaning } = first.structure.clone();
+        let scene = first.scene.clone();
         let clouds = replicates.all.iter().map(|replicate| replicate.cloud.clone()).collect();
         let folder = folder.to_owned();
         Ok(Summary { schema: SCHEMA, scene, width, height, window, channels, meaning, clouds, statistics, folder })
     }
 
-    /// Refuses a folder of images: the mean would be taken for one of them, and the summary be read instead of them.
+    /// Refuses a folder of images, where the mean would be taken for a replicate and the summary would be read instead of them.
     pub fn check_target(folder: &Path) -> Result<(), ReplicateError> {
         let images = if folder.is_dir() { Replicates::paths(folder)? } else { Vec::new() };
         match images.into_iter().find(|path| !path.ends_with(MEAN_IMAGE)) {
-            Some(image) => Err(ReplicateError::HoldsImages { folder: folder.to_owned(), image }),
+            Some(image) => Err(ReplicateError::invalid(
+                folder,
+                format!(
+                    "a summary beside images such as {} would be read instead of them; write it into a folder without images",
+                    image.display()
+                ),
+            )),
             None => Ok(()),
         }
     }
 
-    /// Writes the summary and the mean picture into a folder, which is made if it is not there and must hold no images.
+    /// Writes the summary and the mean picture into a folder, which must hold no images and is made if it does not exist.
     pub fn write(&self, replicates: &Replicates, folder: &Path) -> Result<(), ReplicateError> {
         Summary::check_target(folder)?;
         std::fs::create_dir_all(folder).map_err(|source| formats::Error::write(folder, source))?;
         let path = folder.join(SUMMARY);
-        let text = serde_json::to_string_pretty(self)
-            .map_err(|error| ReplicateError::Summary { path: path.clone(), what: error.to_string() })?;
+        let text =
+            serde_json::to_string_pretty(self).map_err(|error| ReplicateError::invalid(&path, error.to_string()))?;
         if !replicates.mean.channels.is_empty() {
             formats::atomic::write(&folder.join(MEAN_IMAGE), &replicates.mean.encode()?)?;
         }
         Ok(formats::atomic::write(&path, (text + "\n").as_bytes())?)
     }
 
-    /// How many replicates it stands for.
+    /// The number of replicates that it was made of.
     pub fn count(&self) -> usize {
         self.clouds.len()
     }
 
+    /// Checks what was read from a file.
     fn check(&self) -> Result<(), String> {
         if self.schema != SCHEMA {
-            return Err(format!("schema {} instead of {SCHEMA}", self.schema));
+            return Err(format!("`schema` is {} instead of {SCHEMA}", self.schema));
         }
-        if self.count() < FEWEST {
-            return Err(format!("clouds: {} of them, but {FEWEST} are the fewest", self.count()));
+        if self.count() < MIN_REPLICATES {
+            return Err(format!("`clouds` has {} entries, but at least {MIN_REPLICATES} are needed", self.count()));
         }
         let sound = |s: &Summarised| s.mean.is_finite() && s.variance.is_finite() && s.variance >= 0.0;
         match self.statistics.iter().find(|statistic| !sound(statistic)) {
-            Some(bad) => Err(format!("statistics: mean or variance of `{}` is no such number", bad.name)),
-            None if self.statistics.is_empty() => Err("statistics: there are none".to_owned()),
+            Some(bad) => Err(format!("the mean or the variance of `{}` is not a valid number", bad.name)),
+            None if self.statistics.is_empty() => Err("`statistics` is empty".to_owned()),
             None => Ok(()),
         }
     }
 
-    /// Whether these replicates may be judged by it.
+    /// Checks whether these replicates can be judged by this summary.
     pub(super) fn fits(&self, test: &Replicates) -> Result<(), ReplicateError> {
         let structure = Structure {
-            scene: self.scene.clone(),
-            width: self.width,
-            height: self.height,
+            size: [self.width, self.height],
             window: self.window,
             channels: self.channels.clone(),
             meaning: self.meaning.clone(),
         };
-        let (first, reference) = (&test.all[0], self.folder.display().to_string());
-        if let Some(what) = first.structure.difference(&structure) {
-            return Err(ReplicateError::Foreign { path: first.path.clone(), what, reference });
-        }
+        test.all[0].check(&structure, &self.scene, &self.folder)?;
         match test.all.iter().find(|replicate| self.clouds.contains(&replicate.cloud)) {
-            Some(twice) => Err(ReplicateError::SameCloud { path: twice.path.clone(), other: reference }),
+            Some(twice) => Err(ReplicateError::same_cloud(&twice.path, &self.folder)),
             None => Ok(()),
         }
     }
 }
 
+/// Reduces the values of a statistic to mean and variance.
 fn summarise(name: String, kind: Kind, values: Vec<f64>) -> Summarised {
     let (mean, variance) = moments(&values);
     let logarithm = values.iter().all(|value| *value > 0.0) && variance.sqrt() < LOGARITHM_BELOW * mean;
     let values: Vec<f64> = if logarithm { values.iter().map(|value| value.ln()).collect() } else { values };
     let (mean, variance) = moments(&values);
-    // A ratio to nothing is no number.
+    // Guards 0/0: the ratio of two black channels.
     if !mean.is_finite() || !variance.is_finite() {
         let left_out = Some("without light".to_owned());
         return Summarised { name, kind, logarithm: false, mean: 0.0, variance: 0.0, left_out };
@@ -189,6 +196,7 @@ fn summarise(name: String, kind: Kind, values: Vec<f64>) -> Summarised {
     Summarised { name, kind, logarithm, mean, variance, left_out }
 }
 
+/// The reason if the values are too far from normally distributed.
 fn too_far_from_normal(values: &[f64], mean: f64, variance: f64) -> Option<String> {
     if variance == 0.0 {
         return None;
@@ -209,7 +217,8 @@ fn leave_out_background(statistics: &mut [Summarised], replicates: &Replicates) 
     }
 }
 
-/// Mean, and variance with n − 1 degrees of freedom. Taken about the first value, so that equal values have none.
+/// The mean, and the variance with n − 1 degrees of freedom. Sums are relative to the first value, so that the variance of equal
+/// values is exactly zero.
 pub(super) fn moments(values: &[f64]) -> (f64, f64) {
     let n = values.len() as f64;
     let first = values.first().copied().unwrap_or(f64::NAN);
@@ -229,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_rare_or_dark_is_left_out() {
+    fn rare_and_black_statistics_are_left_out() {
         let summary = |values: &[f64]| summarise("name".to_owned(), Kind::Light, values.to_vec());
         let even: Vec<f64> = (0..32).map(|i| 1.0 + 0.01 * f64::from(i % 8)).collect();
         assert!(summary(&even).left_out.is_none() && summary(&even).logarithm);

@@ -1,7 +1,7 @@
-//! A new reference: what is copied, what is logged, what is refused.
+//! Tests of `--accept`: what is copied, what is logged, what is refused.
 //!
-//! Planted errors that these tests caught: the log written anew, means of old and new exchanged, acceptance of an image
-//! that is not finite, exit code of the verdict, the image encoded again instead of copied.
+//! Seen to catch: the log overwritten, means of old and new exchanged, an image accepted that is not finite, the exit code of the
+//! verdict, the image encoded again instead of copied.
 
 use std::fs;
 use std::process::Command;
@@ -29,7 +29,7 @@ fn the_reference_becomes_the_test_image_byte_by_byte() {
     let before = bench.read("reference.exr");
     let mut text = bench.path("reference.exr").into_os_string();
     text.push(".log");
-    // A log whose last line was cut off keeps it.
+    // A last line of the log that was cut off is kept.
     fs::write(&text, "{}").unwrap();
     let run = accept(&bench, |image| scale(image, 2.0), &["--max-bias", "0.1"]);
     assert_eq!((run.code(), run.stderr.as_str()), (Some(0), ""), "{}", run.stdout);
@@ -50,7 +50,7 @@ fn the_reference_becomes_the_test_image_byte_by_byte() {
 }
 
 #[test]
-fn what_is_the_reference_already_is_not_logged() {
+fn an_equal_image_is_not_logged() {
     let bench = bench();
     let run = accept(&bench, |_| (), &[]);
     assert_eq!(run.code(), Some(0));
@@ -76,8 +76,8 @@ fn the_time_is_that_of_source_date_epoch() {
     assert_eq!(log(&bench)[0]["time"], 1234);
 }
 
-/// Each of many at once is logged as a change from what the one before it installed. Caught: lines whose `old` was no
-/// other's `new`, and lines that were lost.
+/// Of many acceptances at the same time, each is logged as a change from the one before it. Seen to catch: lines whose `old` is
+/// the `new` of no other, and lost lines.
 #[test]
 fn acceptances_at_once_are_one_chain() {
     let bench = bench();
@@ -115,7 +115,7 @@ fn a_refusal_changes_nothing() {
         assert!(!bench.path("reference.exr.log").exists());
     };
     let hole = |image: &mut Image| image.channels[4].samples[0] = f32::INFINITY;
-    accept(&bench, hole, &[]).cannot_judge(&["not accepted", "1 samples are not finite"]);
+    accept(&bench, hole, &[]).cannot_judge(&["is not accepted", "1 samples are not finite"]);
     unchanged();
     accept(&bench, |image| image.window = [1, 0], &["--ignore-meta"]).cannot_judge(&["data window"]);
     unchanged();
@@ -127,7 +127,7 @@ fn a_refusal_changes_nothing() {
         assert_eq!(bench.compare(|image| scale(image, 2.0), wrong).code(), Some(2));
         unchanged();
     }
-    // A log that cannot be written: no silent update.
+    // If the log cannot be written, the reference is not replaced.
     fs::create_dir(bench.path("reference.exr.log")).unwrap();
     accept(&bench, |image| scale(image, 2.0), &[]).cannot_judge(&["reference.exr.log"]);
     assert_eq!(bench.read("reference.exr"), before);

@@ -1,7 +1,7 @@
-//! Images that the comparison leaves: the signed difference, the heatmap.
+//! Tests of the images that the program writes: the signed difference and the heatmap.
 //!
-//! Planted errors that these tests caught: reference - test, outputs written only on success, the check against inputs
-//! left out for each option, the scale taken from the images.
+//! Seen to catch: reference - test, outputs written only on success, the guard of the inputs left out for each option, the scale
+//! taken from the images.
 
 use std::path::Path;
 
@@ -39,7 +39,7 @@ fn the_difference_is_signed_and_keeps_names_and_window() {
     assert_eq!(["R", "G", "Z"].map(zeroes), [24 * 16, 24 * 16 - 1, 24 * 16 - 1]);
 }
 
-/// Caught: infinities written for finite images, with exit code 0.
+/// Seen to catch: infinities written for finite images, with exit code 0.
 #[test]
 fn a_difference_that_float32_does_not_hold_is_not_written() {
     let bench = bench();
@@ -59,7 +59,7 @@ fn a_difference_that_float32_does_not_hold_is_not_written() {
     assert!(Image::read(&path).unwrap().channel("G").unwrap()[WIDTH + 3] > 3.2e38);
 }
 
-/// Two images with different errors share the scale; its end can be set.
+/// Two images with different errors have the same scale, and its end can be set.
 #[test]
 fn the_heatmap_has_a_fixed_scale() {
     let bench = bench();
@@ -72,7 +72,7 @@ fn the_heatmap_has_a_fixed_scale() {
         };
         bench.compare(change, &[&options("--heatmap", &path), more].concat()).fails("nonfinite 1 > 0");
         let drawn = Picture::read(&path).unwrap();
-        // An image of 24 pixels is enlarged by sixteen, the most.
+        // An image of 24 pixels is enlarged by sixteen, the largest factor.
         assert!(drawn.width == 448 && drawn.height > 16 * 16);
         [0, 1, 2, 3].map(|pixel| drawn.pixels[8 * drawn.width + 16 * pixel + 8])
     };
@@ -87,7 +87,7 @@ fn the_heatmap_has_a_fixed_scale() {
 }
 
 #[test]
-fn the_scale_stands_in_the_file() {
+fn the_file_describes_the_scale() {
     let bench = bench();
     let path = bench.path("heat.png");
     bench.compare(|_| (), &[&options("--heatmap", &path)[..], &["--heatmap-max", "0.25"]].concat()).passes();
@@ -130,7 +130,7 @@ fn an_output_that_cannot_be_written_is_an_error() {
         bench.compare(|_| (), &options(option, &bench.path("no/file"))).cannot_judge(&["no/file", "cannot write"]);
         bench.compare(|_| (), &options(option, bench.folder())).cannot_judge(&["is a folder"]);
     }
-    bench.compare(|_| (), &["--heatmap", "h.png", "--layer", "diffuse"]).cannot_judge(&["no layer `diffuse`"]);
+    bench.compare(|_| (), &["--heatmap", "h.png", "--layer", "diffuse"]).cannot_judge(&["there is no layer `diffuse`"]);
     for wrong in ["0", "-1", "NaN", "inf"] {
         assert_eq!(bench.compare(|_| (), &["--heatmap", "h.png", &format!("--heatmap-max={wrong}")]).code(), Some(2));
     }

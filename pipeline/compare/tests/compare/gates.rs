@@ -1,4 +1,4 @@
-//! Gates of the command line.
+//! Tests of the gates of the command line.
 
 use formats::image::Image;
 
@@ -25,7 +25,7 @@ fn one_per_cent_brighter_is_a_bias() {
     bench.compare(|image| scale(image, 0.99), &["--max-bias", "0.005"]).fails("max-bias 0.0");
 }
 
-/// Red up and blue down keeps the mean of the layer.
+/// If red rises and blue falls, the mean of the layer stays.
 #[test]
 fn a_shift_of_color_is_a_bias() {
     let shift = |image: &mut Image| {
@@ -54,7 +54,7 @@ fn noise_without_bias_is_found() {
 }
 
 #[test]
-fn values_that_are_no_numbers_fail() {
+fn values_that_are_not_finite_fail() {
     let bench = bench();
     let one = |image: &mut Image| image.channels[4].samples[5] = f32::NAN;
     bench.compare(one, &[]).fails("nonfinite 1 > 0");
@@ -102,7 +102,7 @@ fn one_bit_fails_the_bitwise_gate_in_any_layer() {
 }
 
 #[test]
-fn gates_look_at_beauty_unless_told_otherwise() {
+fn gates_judge_beauty_by_default() {
     let bench = bench();
     let deeper = |image: &mut Image| image.channels[3].samples.iter_mut().for_each(|sample| *sample *= 2.0);
     bench.compare(deeper, &["--max-bias", "0.1"]).passes();

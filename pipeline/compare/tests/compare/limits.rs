@@ -1,12 +1,12 @@
-//! Gates of a limits file. What such a file may hold is tested where it is read.
+//! Tests of the gates of a limits file. The unit tests of the library test what such a file may hold.
 //!
-//! Planted errors that these tests caught: the file's gates instead of the command line's, the command line's instead of
-//! the file's, `--layer` moving the file's gates.
+//! Seen to catch: the gates of the file instead of those of the command line, those of the command line instead of those of the
+//! file, `--layer` applied to the gates of the file.
 
 use crate::support::{Compare, Verdict, bench, scale};
 use test_support::{Bench, Run};
 
-/// Writes limits and compares an image that is 1 % brighter.
+/// Compares an image that is 1 % brighter by these limits.
 fn brighter(bench: &Bench, limits: &str, options: &[&str]) -> Run {
     let path = bench.path("limits.json");
     std::fs::write(&path, format!(r#"{{"schema": 1, "limits": [{limits}]}}"#)).unwrap();
@@ -50,7 +50,7 @@ fn limits_keep_their_layer() {
     brighter(&bench, &format!("{}, {}", on("Z"), on("Z")), &[]).cannot_judge(&["limits.json", "limit 2", "twice"]);
 }
 
-/// Caught: refused, though other JSON files are read with it.
+/// Seen to catch: the mark refused, though other JSON files are read with it.
 #[test]
 fn a_byte_order_mark_is_no_fault() {
     let bench = bench();
@@ -65,7 +65,7 @@ fn a_limits_file_that_cannot_be_used_is_named() {
     brighter(&bench, r#"{"gate": "max-bias", "limit": 1e999, "reason": "r"}"#, &[])
         .cannot_judge(&["limits.json", "out of range"]);
     let run = |path: &str| bench.compare(|_| (), &["--limits", path]);
-    run("no/limits.json").cannot_judge(&["no/limits.json", "limits cannot be read"]);
+    run("no/limits.json").cannot_judge(&["no/limits.json", "the limits cannot be read"]);
     run(bench.folder().to_str().unwrap()).cannot_judge(&["not a regular file"]);
     let long = bench.path("long.json");
     std::fs::write(&long, " ".repeat((1 << 20) + 1)).unwrap();

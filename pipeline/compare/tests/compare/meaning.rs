@@ -1,18 +1,18 @@
-//! Every channel of the picture is judged, and what gives its numbers their meaning: what no gate looks at is named.
+//! Tests that every channel of the picture is judged, that layers without a gate are named, and that the attributes that give the
+//! numbers their meaning are compared.
 //!
-//! Errors that these tests caught in the program as it was: alpha 1 against 0, X and Z of a picture of X, Y and Z, chroma
-//! beside luminance, other primaries, another display window, pixels of another shape and a cube for a map of latitude and
-//! longitude passed without a word.
+//! Seen to catch: alpha 1 against 0, X and Z of a picture of X, Y and Z, chroma beside luminance, other primaries, another display
+//! window, pixels of another shape, and a cube for a map of latitude and longitude, all of which passed without a message.
 
 use formats::image::{Attribute, Channel, Image, Window};
 
 use crate::support::{Compare, HEIGHT, Verdict, WIDTH, bench, picture};
 use test_support::Run;
 
-/// The limits that docs/compare.md begins with.
+/// The limits that docs/compare.md recommends to begin with.
 const LIMITS: [&str; 6] = ["--max-bias", "0.002", "--max-relmse", "0.0005", "--max-outliers", "0@0.1"];
 
-/// Compares images of these channels, each of one value in the reference and another in the test image.
+/// Compares images of these channels, each with one value in the reference and one in the test image.
 fn channels(values: &[(&str, f32, f32)], options: &[&str]) -> Run {
     let bench = bench();
     let image = |of: fn(&(&str, f32, f32)) -> f32| {
@@ -29,7 +29,7 @@ fn channels(values: &[(&str, f32, f32)], options: &[&str]) -> Run {
 fn alpha_is_part_of_the_picture() {
     let alpha = [("R", 0.5, 0.5), ("A", 1.0, 0.0)];
     channels(&alpha, &LIMITS).fails("max-bias 1 > 0.002 (A A)");
-    // A layer that was asked for by name is that layer alone.
+    // If a layer is named, it is judged alone.
     let run = channels(&alpha, &[&LIMITS[..], &["--layer", "beauty"]].concat());
     run.passes();
     assert!(run.verdict().ends_with("; different but not judged: A"), "{}", run.verdict());
@@ -41,9 +41,9 @@ fn pictures_without_red_green_and_blue_are_judged_as_a_whole() {
     channels(&[("Y", 0.5, 0.5), ("RY", 0.1, 1.1), ("BY", 0.1, 0.0)], &LIMITS).fails("max-bias");
 }
 
-/// Other layers differ from render to render, so the limits of the picture are not theirs.
+/// Other layers differ from render to render, so the limits of the picture do not apply to them.
 #[test]
-fn layers_that_no_gate_looks_at_are_named() {
+fn layers_that_no_gate_judges_are_named() {
     let bench = bench();
     let change = |image: &mut Image| image.channels[3].samples.iter_mut().for_each(|z| *z += 1.0);
     let json = bench.path("report.json");
@@ -56,7 +56,7 @@ fn layers_that_no_gate_looks_at_are_named() {
     for options in [&["--max-abs", "2", "--layer", "all"][..], &["--max-abs", "2", "--layer", "Z"]] {
         assert!(!bench.compare(change, options).stdout.contains("not judged"));
     }
-    // A limit on depth alone does not look at the picture.
+    // A limit on depth alone does not judge the picture.
     let red = |image: &mut Image| image.channels[0].samples[0] += 1.0;
     assert!(bench.compare(red, &["--max-abs", "2", "--layer", "Z"]).verdict().ends_with("not judged: beauty"));
     assert!(!bench.compare(|_| (), &LIMITS).stdout.contains("not judged"));
@@ -96,7 +96,7 @@ fn numbers_of_another_meaning_cannot_be_judged() {
     assert!(white.stdout.contains("whiteLuminance is in the test image only"), "{}", white.stdout);
 }
 
-/// A difference of images of other primaries has these too.
+/// The difference of images with other primaries has these primaries too.
 #[test]
 fn a_difference_keeps_the_meaning_of_its_numbers() {
     let bench = bench();

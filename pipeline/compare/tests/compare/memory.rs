@@ -1,6 +1,6 @@
-//! Images that do not fit are refused before they are read.
+//! Tests that images that do not fit into the memory are refused before they are read.
 //!
-//! Caught in the program as it was: a run under `ulimit -v` that ended by SIGABRT.
+//! Seen to catch: a run under `ulimit -v` that ended by SIGABRT.
 
 use std::path::Path;
 use std::process::Command;
@@ -20,9 +20,9 @@ fn refused(arguments: &[&Path], words: &[&str]) {
     }
 }
 
-/// The header of a small file says a large image; the file is long enough to hold one that is black.
+/// The header of a small file describes a large image, and the file is long enough for a black image of that size.
 #[test]
-fn what_does_not_fit_is_refused_with_a_sentence() {
+fn images_that_do_not_fit_are_refused_with_a_sentence() {
     let bench = bench();
     let mut bytes = bench.read("reference.exr");
     let mut set = |attribute: &[u8], offset: usize, value: i32| {
@@ -31,9 +31,9 @@ fn what_does_not_fit_is_refused_with_a_sentence() {
     };
     set(b"dataWindow\0box2i\0\x10\0\0\0", 8, 11_999);
     set(b"dataWindow\0box2i\0\x10\0\0\0", 12, 11_999);
-    // Blocks of 16 rows.
+    // A block has 16 rows.
     set(b"chunkCount\0int\0\x04\0\0\0", 0, 750);
-    // 12000 x 12000 x 5 samples need as much to be held possible.
+    // With a shorter file, 12000 x 12000 x 5 samples would be refused as impossible.
     bytes.resize(2 << 20, 0);
     bench.write("large.exr", &bytes);
     let image = bench.path("large.exr");

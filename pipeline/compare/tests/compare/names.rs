@@ -1,13 +1,13 @@
-//! Names come from files. On a terminal they are text, never a command, and never a second line of the verdict.
+//! Tests of names that come from files. On a terminal they are text, never a command or a second line of the verdict.
 //!
-//! Caught in the program as it was: a channel whose name ends the verdict and begins another, `PASS`; escape sequences.
+//! Seen to catch: a channel whose name ends the verdict and begins another, `PASS`; escape sequences.
 
 use formats::image::{Attribute, Image};
 
 use crate::support::{Compare, bench, picture};
 use test_support::Run;
 
-/// What a terminal obeys, or what would end the line.
+/// Whether a text holds nothing that a terminal obeys or that ends a line.
 fn is_text(text: &str) -> bool {
     text.lines().all(|line| !line.chars().any(char::is_control)) && !text.contains(['\u{202e}', '\u{2028}'])
 }

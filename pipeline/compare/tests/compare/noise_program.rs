@@ -1,8 +1,8 @@
-//! `compare --replicates` and `--summarise` as scripts see them.
+//! Tests of `compare --replicates` and `--summarise` as programs.
 //!
-//! Planted errors that these tests caught: the tail of t on one side only, a gate written as `!(p < level)`, samples that
-//! are not finite passing where no statistic holds them, a layer that is no longer black passing, a cloud twice, a cloud of
-//! the reference, too few replicates, another scene, a reference that is not finite, logarithms of one side only.
+//! Seen to catch: one tail of t only, a gate written as `!(p < level)`, samples that are not finite passing because no statistic
+//! holds them, a layer that is no longer black passing, a cloud twice, a cloud of the reference, too few replicates, another
+//! scene, a reference that is not finite, logarithms of one side only.
 
 use formats::image::{Attribute, Image};
 use test_support::{Bench, Run};
@@ -12,7 +12,7 @@ use crate::{
     synthetic::{self, Fault, SOUND, replicate},
 };
 
-/// Folders `reference` (twelve replicates) and `test` (eight).
+/// The folders `reference` with twelve replicates and `test` with eight.
 fn bench(fault: Fault) -> Bench {
     let bench = Bench::new();
     (0..12).for_each(|seed| write(&bench, "reference", seed, &replicate(seed + 1, SOUND)));
@@ -20,7 +20,7 @@ fn bench(fault: Fault) -> Bench {
     bench
 }
 
-/// The same with one of the test images changed.
+/// A bench without a fault, but with one of the test images changed.
 fn changed(change: impl FnOnce(&mut Image)) -> Bench {
     let bench = bench(SOUND);
     let mut image = replicate(101, SOUND);
@@ -65,10 +65,10 @@ fn sound_images_pass_and_brighter_or_darker_ones_fail() {
 }
 
 #[test]
-fn values_that_are_no_numbers_fail() {
+fn values_that_are_not_finite_fail() {
     fails(&judge(&changed(|image| image.channels[3].samples[40] = f32::NAN), &[]), "1 samples are not finite");
     fails(&judge(&changed(|image| image.channels[2].samples[0] = f32::INFINITY), &[]), "not finite");
-    // Depth is no color, and of no statistic.
+    // Depth is no color, and no statistic holds it.
     fails(&judge(&changed(|image| channel(image, "Z").fill(f32::NAN)), &[]), "81 samples are not finite");
     let bench = bench(SOUND);
     let mut image = replicate(1, SOUND);
@@ -77,7 +77,7 @@ fn values_that_are_no_numbers_fail() {
     judge(&bench, &[]).cannot_judge(&["0.exr", "not finite"]);
 }
 
-/// The logarithm of nothing is no number either.
+/// The logarithm of zero is not finite.
 #[test]
 fn a_channel_that_went_black_fails() {
     let bench = bench(SOUND);
@@ -89,7 +89,7 @@ fn a_channel_that_went_black_fails() {
     fails(&judge(&bench, &[]), " G ");
 }
 
-/// The layer without light has no variance either: it must stay black.
+/// The layer without light has no variance, so it must stay black.
 #[test]
 fn a_black_layer_must_stay_black() {
     let bench = bench(SOUND);
@@ -102,24 +102,24 @@ fn a_black_layer_must_stay_black() {
 }
 
 #[test]
-fn replicates_that_are_none_are_refused() {
+fn images_that_are_no_replicates_are_refused() {
     let set = |name: &'static str, value: &'static str| {
         move |image: &mut Image| {
             image.attributes.insert(name.to_owned(), Attribute::Text(value.to_owned()));
         }
     };
-    judge(&changed(set("pcsss/cloud", "0000000000000066")), &[]).cannot_judge(&["same cloud", "1.exr", "--seed"]);
+    judge(&changed(set("pcsss/cloud", "0000000000000066")), &[]).cannot_judge(&["same cloud", "1.exr", "another seed"]);
     judge(&changed(set("pcsss/cloud", "0000000000000005")), &[]).cannot_judge(&["same cloud", "reference"]);
     judge(&changed(set("pcsss/scene", "07435")), &[]).cannot_judge(&["scene", "07435", "5ce4e"]);
     judge(&changed(|image| image.attributes.clear()), &[]).cannot_judge(&["0.exr", "pcsss/scene"]);
-    judge(&changed(|image| image.window = [1, 0]), &[]).cannot_judge(&["[1, 0]", "one size"]);
+    judge(&changed(|image| image.window = [1, 0]), &[]).cannot_judge(&["[1, 0]", "without cropping"]);
     judge(&changed(|image| drop(image.channels.pop())), &[]).cannot_judge(&["0.exr", "channels"]);
     let bench = bench(SOUND);
     write(&bench, "test", 5, &Image { window: [0, 2], ..replicate(106, SOUND) });
     judge(&bench, &[]).cannot_judge(&["5.exr", "[0, 2]", "0.exr"]);
     write(&bench, "test", 5, &replicate(106, SOUND));
     std::fs::remove_file(bench.path("test/3.exr")).unwrap();
-    judge(&bench, &[]).cannot_judge(&["test", "7 replicates", "8 are the fewest"]);
+    judge(&bench, &[]).cannot_judge(&["test", "7 replicates", "at least 8"]);
     run(&bench, "--replicates", ["missing", "test"], &[]).cannot_judge(&["missing"]);
     bench.write("test/3.exr", "garbage");
     judge(&bench, &[]).cannot_judge(&["3.exr", "not an OpenEXR file"]);
@@ -143,7 +143,7 @@ fn a_summary_judges_like_the_images_it_was_made_of() {
     run(&bench, "--replicates", ["golden", "test"], &[]).cannot_judge(&["same cloud", "golden"]);
 }
 
-/// Caught: the mean left among the replicates, so that a second run refused the folder; a summary beside images, which
+/// Seen to catch: the mean written among the replicates, so that a second run refused the folder; a summary beside images, which
 /// would be read instead of them.
 #[test]
 fn a_summary_is_not_written_among_images() {
@@ -153,13 +153,13 @@ fn a_summary_is_not_written_among_images() {
         run(&bench, "--summarise", ["reference", target], &[]).cannot_judge(&[target, ".exr", "without images"]);
     }
     assert_eq!(names(), 12);
-    // Its own mean of an earlier run is no stranger.
+    // The mean of an earlier run may be replaced.
     for _ in 0..2 {
         assert_eq!(run(&bench, "--summarise", ["reference", "golden"], &[]).code(), Some(0));
     }
 }
 
-/// Caught: a replicate that the report was written over.
+/// Seen to catch: a report written over a replicate.
 #[test]
 fn the_report_does_not_replace_a_replicate() {
     let bench = bench(SOUND);
@@ -170,7 +170,7 @@ fn the_report_does_not_replace_a_replicate() {
     }
 }
 
-/// Caught: primaries and display windows that were never looked at.
+/// Seen to catch: primaries and display windows that were not compared.
 #[test]
 fn replicates_of_another_meaning_are_refused() {
     let aces = Attribute::Chromaticities([0.713, 0.293, 0.165, 0.83, 0.128, 0.044, 0.321_68, 0.337_67]);
@@ -209,7 +209,8 @@ fn a_damaged_summary_is_refused() {
     ] {
         assert!(text.contains(from));
         bench.write("golden/statistics.json", text.replacen(from, to, 1));
-        run(&bench, "--replicates", ["golden", "test"], &[]).cannot_judge(&["statistics.json", "--summarise"]);
+        run(&bench, "--replicates", ["golden", "test"], &[])
+            .cannot_judge(&["statistics.json", "summarise the images again"]);
     }
 }
 

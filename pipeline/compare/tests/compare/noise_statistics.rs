@@ -1,8 +1,8 @@
-//! The noise mode on synthetic replicates of known bias and scatter.
+//! Tests of replicates on synthetic images with known bias and variance.
 //!
-//! Planted errors that these tests caught: Šidák's correction left out, or not of all folders; the error of the
-//! reference forgotten; the pooled variance 25 times too small, as pixels would have it; the visible bias without the
-//! quantile of the power, or of another level; variances tested on the wrong side.
+//! Seen to catch: Šidák's correction left out, or not over all folders; the error of the reference left out; a pooled variance 25
+//! times too small, which is that of pixels; the visible bias without the quantile of the power, or of another level; variances
+//! tested on the wrong side.
 
 use std::path::{Path, PathBuf};
 
@@ -21,20 +21,20 @@ fn reference(first: u64, count: u64) -> Summary {
     Summary::of(&group(first, count, SOUND), Path::new(FOLDER)).unwrap()
 }
 
-/// Eight replicates with a fault against sixteen without, all from new clouds.
+/// Tests eight replicates with a fault against sixteen without, all of new clouds.
 fn run(number: u64, fault: Fault) -> NoiseReport {
     let first = 1000 * number;
     judge(&reference(first, 16), &group(first + 500, 8, fault), 1).unwrap()
 }
 
-/// Of the runs in which it was not left out: one in fifty of normally distributed ones looks skewed.
+/// A statistic in all runs in which it was not left out. One in fifty normally distributed statistics looks skewed.
 fn of_all<'a>(reports: &'a [NoiseReport], name: &str) -> Vec<&'a Judged> {
     let found: Vec<&Judged> = reports.iter().flat_map(|r| r.statistics.iter().filter(|j| j.name == name)).collect();
     assert!(found.len() * 10 > reports.len() * 9, "{name}: left out too often");
     found
 }
 
-/// How far a count of a binomial may be from its mean: four standard deviations, 6e-5 by chance, and seeds are fixed.
+/// The tolerance for a binomial count: four standard deviations, which 6e-5 of all counts exceed. Seeds are fixed.
 fn slack(runs: usize, chance: f64) -> f64 {
     4.0 * (runs as f64 * chance * (1.0 - chance)).sqrt()
 }
@@ -51,15 +51,15 @@ fn uniform(name: &str, p: &[f64]) {
 fn false_alarms_are_as_rare_as_promised() {
     const RUNS: u64 = 1000;
     let reports: Vec<NoiseReport> = (0..RUNS).map(|number| run(number, SOUND)).collect();
-    // One statistic at a time: p is uniform, though all pixels share an error.
+    // The p-value of each statistic is uniform, though all pixels share an error.
     for name in ["subsurface R", "subsurface R/G", "subsurface tile 0,1 R+G+B", "noise G"] {
         let p: Vec<f64> = of_all(&reports, name).iter().map(|judged| judged.p).collect();
         uniform(name, &p);
     }
     let scatter = of_all(&reports, "subsurface G");
     uniform("variance", &scatter.iter().map(|judged| judged.scatter.unwrap().p).collect::<Vec<f64>>());
-    // All together, at one in twenty: related statistics make it rarer, never more frequent.
-    let alarms = reports.iter().filter(|r| r.least().0 < 1.0 - 0.95f64.powf(1.0 / r.tests as f64)).count() as f64;
+    // The rate of all tests together is one in twenty; correlations of statistics make it smaller, never larger.
+    let alarms = reports.iter().filter(|r| r.min_p().0 < 1.0 - 0.95f64.powf(1.0 / r.tests as f64)).count() as f64;
     assert!(alarms > 0.0 && alarms < RUNS as f64 * 0.05 + slack(RUNS as usize, 0.05), "{alarms} of {RUNS}");
     let failed = reports.iter().filter(|report| !report.pass).count();
     assert!(failed <= 5, "{failed} of {RUNS} fail where {FALSE_ALARM_RATE} of them should");
@@ -75,7 +75,7 @@ fn the_level_holds_for_all_tests_of_all_folders_together() {
     assert!((report.level / of_three.level - 3.0).abs() < 2e-3);
 }
 
-/// 16 + 8 replicates have 22 degrees of freedom.
+/// Tests of 16 and 8 replicates have 22 degrees of freedom.
 #[test]
 fn the_visible_bias_is_seen_nine_times_in_ten() {
     const RUNS: u64 = 300;
@@ -93,7 +93,7 @@ fn the_visible_bias_is_seen_nine_times_in_ten() {
         assert!(judged.iter().all(|judged| judged.freedom == 22.0));
         let seen = judged.iter().filter(|judged| !judged.ok).count() as f64 / judged.len() as f64;
         println!("{name}: a bias of {visible:.4} is seen in {seen:.3} of the runs");
-        // 4 standard deviations of the share are 0.07; the rest is for the approximation of the noncentral t.
+        // Four standard deviations of the share are 0.07; the rest is for the approximation of the noncentral t.
         assert!((seen - 0.9).abs() < 0.09, "{name}: a bias of {visible} is seen in {seen} of the runs");
     }
 }
@@ -105,24 +105,24 @@ fn noise_that_grew_is_found_and_noise_that_fell_is_not() {
         let reports = (1..=20).map(|number| judge(&reference, &group(1000 * number, 8, fault), 1).unwrap());
         reports.filter(|report| report.statistics.iter().any(|judged| fails(report, judged))).count()
     };
-    // The ratio of variances that is found nine times in ten is about 13; this is 36.
+    // The visible ratio of variances is about 13; this is 36.
     let scatter = |report: &NoiseReport, judged: &Judged| judged.scatter.is_some_and(|s| s.p < report.level);
     assert!(failing(Fault { scatter: 6.0, ..SOUND }, scatter) >= 18);
     assert_eq!(failing(SOUND, scatter), 0);
-    // What images claim is known to a few per cent.
+    // The noise that images claim is known to a few per cent.
     let claimed = |_: &NoiseReport, judged: &Judged| judged.kind == Kind::Noise && !judged.ok;
     assert!(failing(Fault { claimed: 1.5, ..SOUND }, claimed) >= 18);
     assert_eq!(failing(Fault { claimed: 0.1, scatter: 0.1, ..SOUND }, |_, judged| !judged.ok), 0);
 }
 
-/// The cloud's error is four times that of a mean over its 49 pixels with errors of their own, and six standard errors
-/// are visible.
+/// The error of the cloud is four times that of a mean over its 49 pixels with independent errors, and six standard errors are
+/// visible.
 #[test]
 fn pixels_that_share_an_error_are_no_evidence() {
     let report = run(1, SOUND);
     let own = crate::synthetic::OWN / 7.0 * (1.0f64 / 8.0 + 1.0 / 16.0).sqrt();
     let visible = |name: &str| of_all(std::slice::from_ref(&report), name)[0].visible;
     assert!(visible("subsurface R") > 20.0 * own);
-    // Ratios of channels do not have it: it is in both.
+    // Ratios of channels do not have the error of the cloud, which both channels share.
     assert!(visible("subsurface R/G") < 0.5 * visible("subsurface R"));
 }

@@ -1,22 +1,22 @@
-//! `--html` and `--html-index` as scripts see them.
+//! Tests of `compare --html` and `--html-index` as programs.
 //!
-//! Planted errors that these tests caught: the page written only on success, no guard of the inputs, links from the
-//! working folder instead of that of the index, a relMSE that is not finite counted as zero.
+//! Seen to catch: the page written only on success, no guard of the inputs, links from the working folder instead of that of the
+//! index, a relMSE that is not finite counted as zero.
 
 use test_support::{Bench, Run};
 
 use crate::support::flat;
 
-/// A bench with `reference.exr`, a grey picture.
+/// A bench with the gray picture `reference.exr`.
 fn bench() -> Bench {
     let bench = Bench::new();
     bench.write_image("reference.exr", &flat([1.0; 3]));
     bench
 }
 
-/// Compares a picture of this grey with the reference, into a page of this name.
-fn page(bench: &Bench, grey: f32, page: &str, options: &[&str]) -> Option<i32> {
-    bench.write_image("test.exr", &flat([grey; 3]));
+/// Compares a gray picture with the reference, and writes the page of this name.
+fn page(bench: &Bench, gray: f32, page: &str, options: &[&str]) -> Option<i32> {
+    bench.write_image("test.exr", &flat([gray; 3]));
     bench.run("compare", &[&["reference.exr", "test.exr", "--html", page], options].concat()).code()
 }
 
@@ -33,7 +33,7 @@ fn a_page_is_written_also_on_failure() {
     let text = std::fs::read_to_string(bench.path("page.html")).unwrap();
     assert!(text.starts_with("<!DOCTYPE html>") && text.ends_with("</html>\n"));
     assert!(text.contains("FAIL max-bias 0.5 > 0.1 (beauty R)"));
-    // Nothing else was left behind.
+    // No other file was written.
     assert_eq!(bench.files().len(), 3);
 }
 
@@ -61,7 +61,7 @@ fn inputs_are_never_replaced() {
     );
 }
 
-/// Links of the index in its order.
+/// The links of the index in its order.
 fn links(index: &std::path::Path) -> Vec<String> {
     let text = std::fs::read_to_string(index).unwrap();
     let links = text.split("\"link\":\"").skip(1);
@@ -93,16 +93,16 @@ fn the_index_begins_with_the_worst() {
 }
 
 #[test]
-fn what_is_no_report_has_no_index() {
+fn files_that_are_no_reports_have_no_index() {
     let bench = bench();
     page(&bench, 1.0, "page.html", &[]);
     let run = |report: &str| bench.run("compare", &["--html-index", "index.html", report]);
-    refused(&run("reference.exr"), &["reference.exr", "not a report of compare", "--html"]);
+    refused(&run("reference.exr"), &["reference.exr", "not an HTML report of compare"]);
     refused(&run("missing.html"), &["missing.html"]);
     refused(&run("."), &["not a regular file"]);
     let text = std::fs::read_to_string(bench.path("page.html")).unwrap();
     bench.write("other.html", text.replace("\"verdict\"", "\"other\""));
-    refused(&run("other.html"), &["other.html", "not a report of compare"]);
+    refused(&run("other.html"), &["other.html", "not an HTML report of compare"]);
     refused(&bench.run("compare", &["--html-index", "no/index.html", "page.html"]), &["no/index.html"]);
     assert!(!bench.path("index.html").exists());
 }

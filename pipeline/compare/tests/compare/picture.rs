@@ -1,14 +1,14 @@
-//! PSNR, SSIM and FLIP as scripts see them: what is asked for, gates, and the same bytes for any number of threads.
+//! Tests of PSNR, SSIM and FLIP in the program: what is measured, gates, and the same bytes for any number of threads.
 //!
-//! Planted errors that these tests caught: FLIP as the only gate let through, the gate on LDR-FLIP, a pixel that is not
-//! finite with a difference of zero, the picture's finiteness unchecked, sums over one piece for each thread. (The sum of
-//! a map of FLIP alone is nearly always exact in float64, and would not show that.)
+//! Seen to catch: FLIP allowed as the only gate, the gate on LDR-FLIP, a difference of zero at a pixel that is not finite, the
+//! finiteness of the picture unchecked, sums over one piece for each thread. (The sum of a map of FLIP alone is nearly always
+//! exact in float64, and would not show that.)
 
 use formats::image::{Channel, Image};
 use serde_json::Value;
 use test_support::Bench;
 
-/// Wider and higher than a tile of the metrics.
+/// The size of the pictures, which is larger than a tile of the metrics.
 const SIZE: [usize; 2] = [270, 140];
 
 fn picture(noise: f32) -> Image {
@@ -21,7 +21,7 @@ fn picture(noise: f32) -> Image {
     Image { width: SIZE[0], height: SIZE[1], channels, ..Image::default() }
 }
 
-/// A comparison with the picture without noise, and its report, if there is one.
+/// Compares with the picture without noise, and returns exit code, stdout, stderr and the report if there is one.
 fn compare(bench: &Bench, test: &Image, options: &[&str]) -> (Option<i32>, String, String, Value) {
     bench.write_image("reference.exr", &picture(0.0));
     bench.write_image("test.exr", test);
@@ -58,7 +58,7 @@ fn flip_judges_beside_another_gate_only() {
     assert_eq!((code, stdout.as_str(), stderr.lines().count()), (Some(2), "", 1), "{stderr}");
     assert!(["--max-flip", "misses", "--max-bias"].iter().all(|word| stderr.contains(word)), "{stderr}");
     assert_eq!(run(0.0, &["--max-flip", "0", "--max-bias", "0"]).0, Some(0));
-    // From a limits file too.
+    // The same holds for a limits file.
     let text = r#"{"schema": 1, "limits": [{"gate": "max-flip", "limit": 0.5, "reason": "seen"}]}"#;
     bench.write("limits.json", text);
     assert_eq!(run(0.0, &["--limits", "limits.json"]).0, Some(2));

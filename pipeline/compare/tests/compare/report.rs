@@ -1,11 +1,11 @@
-//! The verdict and the JSON report.
+//! Tests of the verdict and of the JSON report.
 
 use formats::image::Image;
 
 use crate::support::{Compare, HEIGHT, Verdict, WIDTH, bench, documented, key_paths, scale};
 
 #[test]
-fn quiet_leaves_the_verdict() {
+fn quiet_prints_the_verdict_alone() {
     let bench = bench();
     let run = bench.compare(|_| (), &["--quiet"]);
     run.passes();
@@ -66,7 +66,7 @@ fn json_never_replaces_an_image_and_needs_its_folder() {
     run("no/report.json").cannot_judge(&["no"]);
 }
 
-/// docs/compare.md shows every key, and no key that is not there.
+/// docs/compare.md shows exactly the keys of the report.
 #[test]
 fn the_documented_report_has_the_keys_of_a_real_one() {
     let bench = bench();

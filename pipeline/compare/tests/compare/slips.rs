@@ -1,6 +1,6 @@
-//! What slips through other tools: the limits of docs/compare.md fail each such image, and pass honest renders.
+//! Tests of faults that other tools do not find: each fails the limits of docs/compare.md, which correct renders pass.
 //!
-//! Planted errors that these tests caught: each of the three limits left out.
+//! Seen to catch: each of the three limits left out.
 
 use formats::image::{Channel, Image};
 
@@ -8,11 +8,11 @@ use crate::support::{Compare, Verdict, documented};
 use test_support::{Bench, Random, Run};
 
 const SIDE: usize = 64;
-/// Error of a pixel of an honest render, and that of its cloud, which all pixels share.
+/// The error of a pixel of a correct render, and the error of its cloud, which all pixels share.
 const NOISE: f64 = 0.005;
 const SHARED: f64 = 0.0005;
 
-/// Colors from 0.2 to 0.8, times `gain`, with noise.
+/// A picture with values from 0.2 to 0.8, times `gain`, with noise.
 fn image(gain: f64, noise: f64, seed: u64) -> Image {
     let mut random = Random(seed);
     let channels = ["R", "G", "B"].into_iter().zip([0.0, 1.0, 2.0]).map(|(name, phase)| {
@@ -23,14 +23,14 @@ fn image(gain: f64, noise: f64, seed: u64) -> Image {
     Image { width: SIDE, height: SIDE, channels: channels.collect(), ..Image::default() }
 }
 
-fn honest(seed: u64) -> Image {
+fn correct(seed: u64) -> Image {
     image(1.0 + SHARED * Random(seed + 1000).normal(), NOISE, seed)
 }
 
-/// The limits of the page without the layer that these images lack.
+/// A bench with the limits of the page, except those of a layer that these images lack.
 fn bench() -> Bench {
     let bench = crate::support::bench();
-    bench.write_image("reference.exr", &honest(0));
+    bench.write_image("reference.exr", &correct(0));
     let mut limits = documented("## Limits file");
     limits["limits"].as_array_mut().unwrap().retain(|limit| limit.get("layer").is_none());
     assert_eq!(limits["limits"].as_array().unwrap().len(), 3);
@@ -44,16 +44,16 @@ fn judge(bench: &Bench, image: &Image) -> Run {
 }
 
 #[test]
-fn honest_renders_pass() {
+fn correct_renders_pass() {
     let bench = bench();
-    (1..=20).for_each(|seed| judge(&bench, &honest(seed)).passes());
+    (1..=20).for_each(|seed| judge(&bench, &correct(seed)).passes());
 }
 
 #[test]
 fn every_fault_fails() {
     let bench = bench();
     let fails = |change: fn(&mut Image), gate: &str| {
-        let mut image = honest(1);
+        let mut image = correct(1);
         change(&mut image);
         let run = judge(&bench, &image);
         run.fails("");
@@ -66,7 +66,7 @@ fn every_fault_fails() {
     fails(|image| *image = self::image(1.0, 0.02, 1), "max-relmse");
 }
 
-/// Each limit is needed: the fault that it is for passes the other two.
+/// Each limit is needed, because its fault passes the other two.
 #[test]
 fn each_fault_fails_by_its_own_limit() {
     let bench = bench();
@@ -77,7 +77,7 @@ fn each_fault_fails_by_its_own_limit() {
     };
     assert_eq!(gates(&image(1.01, NOISE, 1)), ["max-bias"]);
     assert_eq!(gates(&image(1.0, 0.02, 1)), ["max-relmse"]);
-    let mut firefly = honest(1);
+    let mut firefly = correct(1);
     firefly.channels[0].samples[77] += 0.5;
     assert_eq!(gates(&firefly), ["max-outliers"]);
 }

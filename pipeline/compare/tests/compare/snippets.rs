@@ -1,4 +1,4 @@
-//! What docs/ci.md tells others to write into their CI, taken out of the page and run.
+//! Runs the scripts that docs/ci.md gives for a CI.
 
 use std::env;
 use std::fs;
@@ -12,7 +12,7 @@ use crate::support::flat;
 
 const PAGE: &str = include_str!("../../../../docs/ci.md");
 
-/// A bench with the limits, the reference `a` and an image of the same values.
+/// A bench with the limits, the reference `a` and an equal image.
 fn bench() -> Bench {
     let bench = Bench::new();
     let limits = r#"{"schema": 1, "limits": [{"gate": "max-abs", "limit": 0.1, "reason": "of this test"}]}"#;
@@ -22,13 +22,13 @@ fn bench() -> Bench {
     bench
 }
 
-/// A grey image, later than what was there by more than file systems round times to.
-fn write(bench: &Bench, name: &str, grey: f32) {
+/// Writes a gray image so much later than the files before it that their times differ in any file system.
+fn write(bench: &Bench, name: &str, gray: f32) {
     sleep(Duration::from_millis(20));
-    bench.write_image(name, &flat([grey; 3]));
+    bench.write_image(name, &flat([gray; 3]));
 }
 
-/// A program in the folder that finds `compare`, and of the environment nothing else.
+/// Runs a program in the folder, in an environment where it finds `compare` and nothing else is set.
 fn run(bench: &Bench, name: &str, arguments: &[&str]) -> Run {
     let compare = program("compare").parent().unwrap().to_owned();
     let path = env::var_os("PATH").unwrap_or_default();
@@ -38,7 +38,7 @@ fn run(bench: &Bench, name: &str, arguments: &[&str]) -> Run {
     Run::of(command.args(arguments))
 }
 
-/// The script of the step of GitHub's, as GitHub runs it.
+/// Runs the step of GitHub Actions like GitHub.
 fn step(bench: &Bench) -> Run {
     let (_, step) = PAGE.split_once("- name: compare\n").unwrap();
     let (_, script) = step.split_once("run: |\n").unwrap();
@@ -59,7 +59,7 @@ fn ends_with(run: &Run, code: i32) {
     assert_eq!(run.code(), Some(code), "{}{}", run.stdout, run.stderr);
 }
 
-/// Seen to fail where the second run gave the index itself to `--html-index`, which refuses to write over a report.
+/// Seen to catch: a second run that gives the index itself to `--html-index`, which refuses to write over a report.
 #[test]
 fn the_step_runs_again_in_the_same_folder() {
     let bench = bench();
@@ -72,8 +72,8 @@ fn the_step_runs_again_in_the_same_folder() {
     assert!(index.contains("a.html") && index.contains("b.html"));
 }
 
-/// An image that was not rendered has no page: seen to fail where that of the last run stayed and was listed as new. The
-/// verdict on it, 2, is not hidden by a later image that differs, 1.
+/// An image that was not rendered has no page. Its exit code 2 is not hidden by the 1 of a later image that differs. Seen to
+/// catch: a page of the last run that stays and is listed as new.
 #[test]
 fn the_step_shows_no_page_of_an_earlier_run() {
     let bench = bench();
@@ -93,7 +93,7 @@ fn the_step_fails_without_references() {
     ends_with(&step(&bench), 2);
 }
 
-/// Seen to fail where make had nothing to do, and said so with exit code 0.
+/// Seen to catch: exit code 0 of make because it had nothing to do.
 #[test]
 fn the_makefile_fails_without_references() {
     let bench = bench();
@@ -103,9 +103,9 @@ fn the_makefile_fails_without_references() {
     assert!(output.stderr.contains("nothing would be compared"));
 }
 
-/// Seen to fail where the mark of a pass outlived the failure after it.
+/// Seen to catch: the mark of a pass that stays after a later failure.
 #[test]
-fn the_makefile_judges_again_what_is_new() {
+fn the_makefile_judges_new_images_again() {
     let bench = bench();
     let passed = bench.path("out/a.ok");
     ends_with(&make(&bench), 0);

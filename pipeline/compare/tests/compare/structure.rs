@@ -1,7 +1,6 @@
-//! What cannot be judged: images that do not belong together, files that are no images, wrong usage.
+//! Tests of what cannot be judged: images that do not belong together, files that are no images, wrong usage.
 //!
-//! Planted errors that these tests caught: silence about a hash of one image alone, `-` taken for a file, a closed
-//! stdout taken for a failure.
+//! Seen to catch: no message about a hash of one image alone, `-` taken for a file, a closed stdout taken for a failure.
 
 use std::process::Command;
 
@@ -52,9 +51,9 @@ fn wrong_usage_cannot_be_judged() {
     assert_eq!(Run::of(&mut Command::new(env!("CARGO_BIN_EXE_compare"))).code(), Some(2));
 }
 
-/// Attributes of one image alone are no fault, but other inputs would not be noticed.
+/// A hash of one image alone is no fault, but other inputs would not be noticed.
 #[test]
-fn a_hash_of_one_image_alone_is_told() {
+fn a_hash_of_one_image_alone_is_reported() {
     let bench = bench();
     let run = bench.compare(|image| image.attributes.clear(), &[]);
     run.passes();
@@ -83,14 +82,14 @@ fn streams_are_no_images() {
 }
 
 #[test]
-fn one_file_twice_is_told() {
+fn one_file_twice_is_reported() {
     let bench = bench();
     let run = bench.judge("reference.exr", &["--quiet"]);
     assert_eq!((run.code(), run.stderr.as_str()), (Some(0), ""));
     assert!(bench.judge("reference.exr", &[]).stderr.contains("are one file"));
 }
 
-/// A reader that has seen enough does not change the verdict.
+/// The exit code does not change if the reader of stdout ends early.
 #[test]
 fn a_closed_stdout_keeps_the_exit_code() {
     let bench = bench();

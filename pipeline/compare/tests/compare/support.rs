@@ -1,4 +1,4 @@
-//! A picture that tests change, and comparisons with it.
+//! A picture that tests change, and runs of the program that compare with it.
 
 use formats::image::{Attribute, Channel, Image};
 use serde_json::Value;
@@ -8,7 +8,7 @@ use test_support::{Bench, Run};
 pub const WIDTH: usize = 24;
 pub const HEIGHT: usize = 16;
 
-/// Colors, one more layer, depth, and the hash of a scene.
+/// An image with colors, one more layer, depth, and the hash of a scene.
 pub fn picture() -> Image {
     let plane = |shift: usize| (0..WIDTH * HEIGHT).map(|i| 0.25 + ((i * 7 + shift) % 13) as f32 / 8.0).collect();
     let names = ["R", "G", "B", "Z", "variance.R"];
@@ -39,9 +39,9 @@ pub fn bench() -> Bench {
 
 /// Comparisons with `reference.exr`.
 pub trait Compare {
-    /// Of a changed copy of the picture.
+    /// Compares a changed copy of the picture.
     fn compare(&self, change: impl FnOnce(&mut Image), options: &[&str]) -> Run;
-    /// Of an image that is there.
+    /// Compares the image of this name.
     fn judge(&self, test: &str, options: &[&str]) -> Run;
 }
 
@@ -58,7 +58,7 @@ impl Compare for Bench {
     }
 }
 
-/// What scripts see of a comparison.
+/// The outcome of a comparison.
 pub trait Verdict {
     fn verdict(&self) -> &str;
     fn passes(&self);
@@ -99,7 +99,7 @@ pub fn scale(image: &mut Image, factor: f32) {
     image.channels.iter_mut().flat_map(|channel| &mut channel.samples).for_each(|sample| *sample *= factor);
 }
 
-/// The first JSON example of docs/compare.md after these words.
+/// The first JSON example of docs/compare.md that follows these words.
 pub fn documented(words: &str) -> Value {
     let page = include_str!("../../../../docs/compare.md");
     let (_, rest) = page.split_once(words).unwrap();
@@ -107,7 +107,7 @@ pub fn documented(words: &str) -> Value {
     serde_json::from_str(rest.split_once("```").unwrap().0).unwrap()
 }
 
-/// Names of all keys with those above them; items of a list count as one.
+/// The names of all keys with those of the keys above them. The items of a list share their keys.
 pub fn key_paths(value: &Value) -> BTreeSet<String> {
     match value {
         Value::Object(map) => map

@@ -1,32 +1,32 @@
-//! Images as a renderer makes them: all pixels share the error of their cloud, and each has one of its own.
+//! Synthetic renders: all pixels of an image share the error of its cloud, and each pixel has an error of its own.
 
 use formats::image::{Attribute, Channel, Image};
 use test_support::Random;
 
-/// Pixels along each side.
+/// The side of an image in pixels.
 pub const SIZE: usize = 9;
-/// Relative scatter of the cloud's error, which all pixels of a replicate share.
+/// The relative standard deviation of the cloud's error, which all pixels of a replicate share.
 pub const SHARED: f64 = 0.01;
-/// Relative scatter of a pixel's own error.
+/// The relative standard deviation of a pixel's own error.
 pub const OWN: f64 = 0.02;
 /// The hash of the scene.
 const SCENE: &str = "5ce4e";
 
-/// What is wrong with the test images.
+/// A fault of the test images.
 #[derive(Clone, Copy, Debug)]
 pub struct Fault {
-    /// Factor on the light of the subsurface layer's red.
+    /// The factor on the light in red.
     pub red: f64,
-    /// Factor on the scatter between replicates.
+    /// The factor on the standard deviation between replicates.
     pub scatter: f64,
-    /// Factor on the variance that images claim.
+    /// The factor on the variance that images claim.
     pub claimed: f64,
 }
 
-/// Nothing is.
+/// No fault.
 pub const SOUND: Fault = Fault { red: 1.0, scatter: 1.0, claimed: 1.0 };
 
-/// A replicate from the cloud of this seed: a lit object in front of black, and a layer that is black everywhere.
+/// A replicate from the cloud of this seed: a lit object in front of black, and a layer that is black.
 pub fn replicate(seed: u64, fault: Fault) -> Image {
     let mut random = Random(seed.wrapping_mul(0xd134_2543_de82_ef95));
     let shared = 1.0 + fault.scatter * SHARED * random.normal();

@@ -86,7 +86,7 @@ fn a_crop_outside_the_image_is_refused() {
     bench.refuses("gather", &[&own[..], &["--crop", "0,0,1,1", "--target-error", "0.1"]].concat(), &["--target-error"]);
 }
 
-/// The command of docs/large.md, on parts in any order.
+/// The command of docs/guide.md, on parts in any order.
 #[test]
 fn oiiotool_joins_crops_to_the_whole() {
     if Command::new("oiiotool").arg("--version").output().is_err() {

@@ -4,6 +4,7 @@ mod bad_input;
 mod crops;
 mod environment;
 mod faults;
+mod guide;
 mod hostile;
 #[cfg(unix)]
 mod make;

@@ -1,22 +1,22 @@
-// From values to colors.
+// Colors of values and errors.
 
 const BINS = 4096;
 
-/** Linear values from which on the sRGB code is at least 0, 1, ..., 255 when rounded. */
+/** The smallest linear values whose rounded sRGB code is 0, 1, ..., 255. */
 const codeStarts = Float64Array.from({ length: 257 }, (_, code) => {
-  const place = (code - 0.5) / 255;
-  return place <= 0.04045 ? place / 12.92 : ((place + 0.055) / 1.055) ** 2.4;
+  const encoded = (code - 0.5) / 255;
+  return encoded <= 0.04045 ? encoded / 12.92 : ((encoded + 0.055) / 1.055) ** 2.4;
 });
 codeStarts[256] = Infinity;
 
-/** The code at the beginning of each of BINS equal parts of 0 to 1: the search for the code begins there. */
+/** The code at the beginning of each of BINS equal parts of 0 to 1, where the search for a code begins. */
 const binCodes = Uint8Array.from({ length: BINS + 1 }, (_, bin) => {
   let code = 0;
   while (codeStarts[code + 1] <= bin / BINS) code++;
   return code;
 });
 
-/** The sRGB code of a linear value, 1 is white: exactly the curve, rounded. */
+/** The sRGB code of a linear value, of which 1 is white: the exact curve, rounded. */
 function srgbCode(linear) {
   if (!(linear > 0)) return 0;
   if (linear >= 1) return 255;
@@ -25,14 +25,14 @@ function srgbCode(linear) {
   return code;
 }
 
-/** The color at a part, 0 to 1, of a map. */
+/** The color at a part, 0 to 1, of a color map. */
 function mapColor(map, part) {
-  const place = Math.min(Math.max(part, 0), 1) * (map.length - 1);
-  const index = Math.min(Math.floor(place), map.length - 2);
-  return [0, 1, 2].map((i) => Math.round(map[index][i] + (map[index + 1][i] - map[index][i]) * (place - index)));
+  const position = Math.min(Math.max(part, 0), 1) * (map.length - 1);
+  const index = Math.min(Math.floor(position), map.length - 2);
+  return [0, 1, 2].map((i) => Math.round(map[index][i] + (map[index + 1][i] - map[index][i]) * (position - index)));
 }
 
-/** A map in 1024 steps, as red, green and blue one after the other. */
+/** A color map in 1024 steps, with red, green and blue of each step one after the other. */
 function mapTable(map) {
   return Uint8ClampedArray.from(Array.from({ length: 1025 }, (_, i) => mapColor(map, i / 1024)).flat());
 }
@@ -42,8 +42,8 @@ const mapTables = { signed: mapTable(picture.colors.signed), absolute: mapTable(
 const cssColor = (rgb) => `rgb(${rgb.join(" ")})`;
 
 /**
- * How a layer, or one channel of it, is shown: numbers of the channels, and `light` (exposure and sRGB) or a range
- * `low` to `high` from black to white.
+ * How a layer, or one channel of it, is shown: the numbers of the channels, and `light` for exposure and sRGB, or else a range
+ * from `low` to `high` that is shown from black to white.
  */
 function look(layer, channel) {
   const names = layer.channels;
@@ -57,7 +57,7 @@ function look(layer, channel) {
   return { channels, light: false, ...range(layer, channels) };
 }
 
-/** Of the finite values of both images; −1 to 1 where vectors have unit length. */
+/** The range of the finite values of both images. It is −1 to 1 for vectors of unit length. */
 function range(layer, channels) {
   let [low, high] = [Infinity, -Infinity];
   const grid = layer.grids[0];

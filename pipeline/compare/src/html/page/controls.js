@@ -1,4 +1,4 @@
-// What the controls do, and how they follow.
+// The actions of the controls, and how the controls show the state.
 
 function setView(view) {
   state.view = view;
@@ -11,7 +11,7 @@ function setView(view) {
   draw();
 }
 
-/** Layers that were asked for: only the last is shown, whichever is unpacked first. */
+/** The number of layers that were chosen so far. Only the last one is shown, whichever is unpacked first. */
 let asked = 0;
 
 async function chooseLayer(number, channel = -1) {
@@ -54,23 +54,24 @@ function setSplit(split) {
   draw();
 }
 
-/** Zooms by a factor; the place on the stage, in screen pixels, stays where it is. */
-function zoomBy(factor, place = placeOfCursor()) {
-  const [x, y] = toImage(...place);
+/** Zooms by a factor about a point of the stage in screen pixels, which does not move. */
+function zoomBy(factor, point = pointOfCursor()) {
+  const [x, y] = toImage(...point);
   const zoom = Math.min(Math.max(state.zoom * factor, 1 / 64), 256 * density());
   state.centre = [x, y].map((held, i) => held - ((held - state.centre[i]) * state.zoom) / zoom);
   Object.assign(state, { zoom, fitted: false });
   draw();
 }
 
-function placeOfCursor() {
+/** The point of the stage at the pixel that is read, or the middle of the pane if that is outside. */
+function pointOfCursor() {
   const pane = panes()[0];
-  const place = toStage(pane, state.cursor[0] + 0.5, state.cursor[1] + 0.5);
-  const inside = place[0] >= pane.x && place[0] < pane.x + pane.width && place[1] >= 0 && place[1] < pane.height;
-  return inside ? place : [pane.x + pane.width / 2, pane.height / 2];
+  const point = toStage(pane, state.cursor[0] + 0.5, state.cursor[1] + 0.5);
+  const inside = point[0] >= pane.x && point[0] < pane.x + pane.width && point[1] >= 0 && point[1] < pane.height;
+  return inside ? point : [pane.x + pane.width / 2, pane.height / 2];
 }
 
-/** The whole image; pixels of whole size where it is smaller than the stage. */
+/** Shows the whole image. If it is smaller than the stage, the zoom is a whole number. */
 function fit() {
   const pane = panes()[0];
   const zoom = Math.min(pane.width / picture.width, pane.height / picture.height);

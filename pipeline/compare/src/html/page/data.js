@@ -1,9 +1,9 @@
-// The samples: float32, byte-shuffled, deflated, in base64. Each layer is unpacked when it is first looked at.
+// The samples are float32, byte-shuffled, deflated and in base64. Each layer is unpacked when it is first shown.
 
 const report = block("report");
 const picture = block("picture");
 
-/** Promises of layers, by number: the second look waits for the first. */
+/** The promises of the layers, by number, so that no layer is unpacked twice. */
 const layers = [];
 
 function loadLayer(number) {
@@ -25,7 +25,7 @@ async function unpackLayer(layer) {
   return { name: layer.name, channels: layer.channels, grids: await Promise.all(grids) };
 }
 
-/** The block's text goes: samples are not kept twice. */
+/** Unpacks a plane, and removes the text of its block, so that the samples are not kept twice. */
 async function unpackPlane(node) {
   const text = atob(node.textContent);
   node.textContent = "";
@@ -38,13 +38,13 @@ async function unpackPlane(node) {
 function unshuffle(shuffled) {
   const count = shuffled.length / 4;
   const bytes = new Uint8Array(shuffled.length);
-  for (let place = 0; place < 4; place++) {
-    for (let i = 0; i < count; i++) bytes[4 * i + place] = shuffled[place * count + i];
+  for (let byte = 0; byte < 4; byte++) {
+    for (let i = 0; i < count; i++) bytes[4 * i + byte] = shuffled[byte * count + i];
   }
   return new Float32Array(bytes.buffer);
 }
 
-/** The finest grid that covers a pixel, and the number of its block; null outside the image. */
+/** The finest grid that covers a pixel and the index of its block, or null outside the image. */
 function locate(layer, x, y) {
   if (x < 0 || y < 0 || x >= picture.width || y >= picture.height) return null;
   for (let i = layer.grids.length - 1; i >= 0; i--) {

@@ -1,14 +1,14 @@
 "use strict";
-// Elements are made of texts and never of markup: names from files cannot become code.
+// Elements are made of text and never of markup, so that names from files cannot become code.
 
 const byId = (id) => document.getElementById(id);
 
-/** An element with properties or attributes, and children that are nodes or texts. */
+/** An element with listeners or attributes, and children that are nodes or strings. */
 function element(tag, attributes = {}, ...children) {
   return furnish(document.createElement(tag), attributes, children);
 }
 
-/** The same for drawings. */
+/** An SVG element, made in the same way. */
 function shape(tag, attributes = {}, ...children) {
   return furnish(document.createElementNS("http://www.w3.org/2000/svg", tag), attributes, children);
 }
@@ -22,12 +22,12 @@ function furnish(node, attributes, children) {
   return node;
 }
 
-/** The data block of this name. */
+/** The parsed JSON of the data block of this name. */
 function block(id) {
   return JSON.parse(byId(id).textContent);
 }
 
-/** A table of texts or nodes; the first cell of a row is its heading. */
+/** A table of strings or nodes. The first cell of a row is its heading. */
 function table(head, rows) {
   const heading = element("tr", {}, ...head.map((text) => element("th", { scope: "col" }, text)));
   const body = rows.map(({ cells, ...attributes }) =>

@@ -1,13 +1,13 @@
-// Many comparisons, the worst first: the order is that of the data.
+// The list of comparisons, in the order of the data, which is the worst first.
 
 const { rows, heat_range: heatRange } = block("comparisons");
 
-/** Each part of the way is escaped: a name can hold any character. */
+/** The address of a report. Each part of the path is escaped, because a name can contain any character. */
 function address(link) {
   return link.split("/").map((part) => (part === ".." ? part : encodeURIComponent(part))).join("/");
 }
 
-/** `null` is what JSON has for infinity. */
+/** The ratio of value and limit in words. JSON has `null` for infinity. */
 const ratioText = (excess) => (excess === null ? "∞" : excess > 0 ? `${shortText(excess)}×` : "");
 
 function small(source, words) {
@@ -37,7 +37,7 @@ function beginIndex() {
   byId("verdict").textContent = failed ? "FAIL" : "PASS";
   byId("verdict").classList.add(failed ? "fail" : "pass");
   byId("names").textContent = failed ? `${failed} of ${rows.length} comparisons failed` : `${rows.length} comparisons passed`;
-  byId("note").textContent = `First those that failed, by how far beyond a limit; then by relMSE. Error: of the channel that differs most, relative to the reference as in relMSE, the largest of each block; black is ${heatRange[0]} and less, white ${heatRange[1]} and more, equal steps for equal factors; magenta is not finite. Each picture has a white of its own.`;
+  byId("note").textContent = `Comparisons that failed come first, by the ratio to their limit; the others follow by relMSE. The error is the largest of each block, of the channel that differs most, relative to the reference as in relMSE. Its scale is logarithmic: black is ${heatRange[0]} and less, white is ${heatRange[1]} and more; magenta is not finite. Each picture has a white of its own.`;
   const head = ["test", "error", "comparison", "beyond limit", "relMSE"].map((text) => element("th", { scope: "col" }, text));
   byId("rows").tHead.replaceChildren(element("tr", {}, ...head));
   byId("failed-only").addEventListener("change", show);

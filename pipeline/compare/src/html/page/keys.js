@@ -1,20 +1,20 @@
-// The keyboard. Arrows belong to what has the focus; letters work anywhere but in fields that take them.
+// The keyboard. Arrow keys act on the element that has the focus; other keys work everywhere but in input fields.
 
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 const cycle = (number, count, back) => (number + (back ? count - 1 : 1)) % count;
 
-/** Keys with what they do; `back` is whether shift is held. */
+/** The keys with their actions; `back` says whether shift is held. */
 const KEYS = [
   ...VIEWS.map(({ id, name }, i) => ({ keys: [String(i + 1)], words: name, act: () => byId(`view-${id}`).click() })),
   { keys: [" "], name: "Space", words: "Reference or test (flicker)", act: () => { if (state.view !== "flicker") setView("flicker"); swap(); } },
-  { keys: ["t"], words: "Flicker by itself", act: () => { setView("flicker"); setTimed(!byId("timed").checked); } },
+  { keys: ["t"], words: "Timed flicker", act: () => { setView("flicker"); setTimed(!byId("timed").checked); } },
   { keys: ["[", "]"], words: "Split to the left, to the right", act: (back, key) => setSplit(state.split + (key === "[" ? -0.02 : 0.02)) },
   { keys: ["e"], words: "Exposure up; with shift down", act: (back) => setStops(state.stops + (back ? -0.5 : 0.5)) },
-  { keys: ["a"], words: "Exposure, or scale of the error, by itself", act: () => (state.view in mapTables ? setScale(automaticScale()) : setStops(automaticStops())) },
+  { keys: ["a"], words: "Automatic exposure, or scale of the error", act: () => (state.view in mapTables ? setScale(automaticScale()) : setStops(automaticStops())) },
   { keys: ["s"], words: "Scale of the error halved; with shift doubled", act: (back) => setScale(state.scale * (back ? 2 : 0.5)) },
-  { keys: ["l"], words: "Next layer; with shift the one before", act: (back) => chooseLayer(cycle(state.layer, picture.layers.length, back)) },
-  { keys: ["c"], words: "Next channel; with shift the one before", act: nextChannel },
+  { keys: ["l"], words: "Next layer; with shift the previous one", act: (back) => chooseLayer(cycle(state.layer, picture.layers.length, back)) },
+  { keys: ["c"], words: "Next channel; with shift the previous one", act: nextChannel },
   { keys: ["w"], words: "Worst pixel of the next channel", act: nextWorst },
   { keys: ["+", "=", "-"], name: "+ −", words: "Zoom at the pixel", act: (back, key) => { zoomBy(key === "-" ? 0.5 : 2); } },
   { keys: ["f", "0"], words: "Whole picture", act: fit },
@@ -26,7 +26,7 @@ const KEYS = [
 const OTHER_KEYS = [
   ["← ↑ → ↓", "Next pixel (focus on the picture), or move the split (focus on its handle)"],
   ["Shift ← ↑ → ↓", "Move the picture"],
-  ["Ctrl ← ↑ → ↓", "Ten pixels on"],
+  ["Ctrl ← ↑ → ↓", "Move by ten pixels"],
 ];
 
 function nextChannel(back) {

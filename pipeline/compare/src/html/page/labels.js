@@ -1,11 +1,11 @@
-// Values in the pixels, where there is room, and what stands around the stage.
+// Values that are written into large pixels, and the texts around the stage.
 
-/** CSS pixels of an image pixel from which on its values are written. */
-const VALUES_FROM = 52;
+/** The smallest side of an image pixel, in CSS pixels, at which its values are written. */
+const MIN_SIDE_OF_VALUES = 52;
 
 function drawLabels(pane) {
   const css = state.zoom / density();
-  if (css < VALUES_FROM) return;
+  if (css < MIN_SIDE_OF_VALUES) return;
   const channels = pane.kind in mapTables ? shownChannels() : state.look.channels;
   const shown = channels.slice(0, 4);
   const size = Math.min(css / (shown.length + 1), css / 5.2, 15) * density();
@@ -29,13 +29,13 @@ function drawValues(pane, x, y, channels, size) {
   channels.forEach((channel, line) => {
     const [reference, test] = [grid.reference[channel][index], grid.test[channel][index]];
     const value = pane.kind === "reference" ? reference : pane.kind === "test" ? test : test - reference;
-    const place = centre[1] + (line - (channels.length - 1) / 2) * size * 1.25;
+    const baseline = centre[1] + (line - (channels.length - 1) / 2) * size * 1.25;
     context.fillStyle = ink;
-    context.fillText(pixelText(value), centre[0], place);
+    context.fillText(pixelText(value), centre[0], baseline);
   });
 }
 
-/** Six characters or so. */
+/** A value in about six characters. */
 function pixelText(value) {
   if (!Number.isFinite(value)) return float32Text(value);
   const size = Math.abs(value);
@@ -44,9 +44,10 @@ function pixelText(value) {
   return text.replaceAll("-", "−");
 }
 
-/** The codes of a picture, read once. */
+/** The sRGB codes of pictures that were read. */
 const codes = new WeakMap();
 
+/** Black or white, whichever can be read on a pixel of a canvas. */
 function inkOn(canvas, x, y) {
   if (!codes.has(canvas)) codes.set(canvas, canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data);
   const at = 4 * (y * canvas.width + x);
@@ -54,7 +55,7 @@ function inkOn(canvas, x, y) {
   return 0.299 * red + 0.587 * green + 0.114 * blue > 130 ? "#000" : "#fff";
 }
 
-/** Names of the images, the zoom, and the scale under the picture. */
+/** Shows the names of the images, the zoom, and the scale under the picture. */
 function showFrame() {
   const view = state.view;
   byId("tag-left").textContent = view === "flicker" ? state.shown : view === "split" || view === "side" ? "reference" : "";

@@ -1,13 +1,13 @@
-// The page begins here.
+// The start of the page.
 
-/** The canvas has a pixel for each of the screen's. */
+/** Gives the canvas one pixel for each pixel of the screen. */
 function resize() {
   const box = byId("stage-box").getBoundingClientRect();
   const size = [box.width, box.height].map((side) => Math.max(Math.round(side * density()), 1));
   if (size[0] === stage.width && size[1] === stage.height) return;
   [stage.width, stage.height] = size;
   if (state.fitted) fit();
-  // At once: a canvas that was resized is empty.
+  // A resized canvas is empty, so it is drawn at once.
   if (state.data) drawNow();
 }
 

@@ -1,9 +1,9 @@
-// Grids as pictures of one screen pixel a block.
+// Pictures of grids, with one pixel for each block.
 
-/** Pictures by image and kind, with what they were made for. */
+/** The last picture of each kind and grid, with the state that it was made for. */
 const painted = new Map();
 
-/** The picture of a grid: `reference`, `test`, `signed` or `absolute`. */
+/** The picture of a grid; `kind` is `reference`, `test`, `signed` or `absolute`. */
 function paint(grid, kind) {
   const made = JSON.stringify([state.layer, state.channel, state.data.grids.indexOf(grid),
     kind in mapTables ? state.scale : state.stops]);
@@ -29,7 +29,7 @@ function paintAnew(grid, kind) {
   return { canvas, holes };
 }
 
-/** A function that writes the color of a block and says whether it has one: whether all its values are finite. */
+/** A function that writes the color of a block, and returns whether all values of the block are finite. */
 function valueColors(grid, kind) {
   const planes = state.look.channels.map((channel) => grid[kind][channel]);
   const [first, second, third] = planes.length === 3 ? planes : [planes[0], planes[0], planes[0]];
@@ -44,7 +44,7 @@ function valueColors(grid, kind) {
   };
 }
 
-/** The same for errors: of the channel that differs most. */
+/** The same function for the error of the channel that differs most. */
 function errorColors(grid, kind) {
   const pairs = shownChannels().map((channel) => [grid.reference[channel], grid.test[channel]]);
   const [map, scale] = [mapTables[kind], state.scale];
@@ -59,7 +59,7 @@ function errorColors(grid, kind) {
   };
 }
 
-/** Test minus reference of the channel where they differ most; NaN where any is not finite. */
+/** Test minus reference of the channel that differs most, or NaN if any difference is not finite. */
 function largestError(pairs, i) {
   let largest = 0;
   for (const [reference, test] of pairs) {

@@ -1,33 +1,33 @@
-// Mouse, pen and fingers on the picture: moving reads, dragging pans, the wheel and two fingers zoom.
+// Mouse, pen and fingers on the picture: a move reads a pixel, a drag pans, the wheel and two fingers zoom.
 
-/** Places of the pointers that are down, in screen pixels of the stage. */
+/** The points of the stage, in screen pixels, of the pointers that are down. */
 const pointers = new Map();
 
-function placeOf(event) {
+function pointOf(event) {
   const box = stage.getBoundingClientRect();
   return [(event.clientX - box.left) * density(), (event.clientY - box.top) * density()];
 }
 
 function pointerDown(event) {
   stage.setPointerCapture(event.pointerId);
-  pointers.set(event.pointerId, placeOf(event));
-  moveCursor(...toImage(...placeOf(event)));
+  pointers.set(event.pointerId, pointOf(event));
+  moveCursor(...toImage(...pointOf(event)));
 }
 
 function pointerMove(event) {
-  const place = placeOf(event);
+  const point = pointOf(event);
   const before = pointers.get(event.pointerId);
   if (!before) {
-    moveCursor(...toImage(...place));
+    moveCursor(...toImage(...point));
     return;
   }
   const other = [...pointers].find(([id]) => id !== event.pointerId)?.[1];
-  pointers.set(event.pointerId, place);
+  pointers.set(event.pointerId, point);
   if (other) {
     const distance = ([x, y]) => Math.hypot(x - other[0], y - other[1]);
-    if (distance(before) > 0) zoomBy(distance(place) / distance(before), other);
+    if (distance(before) > 0) zoomBy(distance(point) / distance(before), other);
   } else {
-    pan(before[0] - place[0], before[1] - place[1]);
+    pan(before[0] - point[0], before[1] - point[1]);
   }
 }
 
@@ -42,11 +42,11 @@ function pointerUp(event) {
   pointers.delete(event.pointerId);
 }
 
-/** Steps of a wheel and the fine ones of a touch pad alike. */
+/** Zooms by the steps of a wheel or by the finer ones of a touch pad. */
 function wheel(event) {
   event.preventDefault();
   const lines = event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? 1 : 30;
-  zoomBy(2 ** (-Math.min(Math.max(event.deltaY * lines, -400), 400) / 200), placeOf(event));
+  zoomBy(2 ** (-Math.min(Math.max(event.deltaY * lines, -400), 400) / 200), pointOf(event));
 }
 
 function listenToPointer() {

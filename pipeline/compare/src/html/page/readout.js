@@ -1,4 +1,4 @@
-// The values of one pixel, and the way to the worst ones.
+// The values of one pixel, and the buttons of the worst pixels.
 
 function showReadout() {
   const [x, y] = state.cursor;
@@ -13,10 +13,10 @@ function showReadout() {
   });
   byId("readout").tBodies[0].replaceChildren(...rows);
   const { block } = found.grid;
-  byId("pixel-note").textContent = block > 1 ? `Means of ${block} × ${block} pixels; single pixels are there around the worst ones.` : "";
+  byId("pixel-note").textContent = block > 1 ? `These are means of ${block} × ${block} pixels; single pixels are shown around the worst ones.` : "";
 }
 
-/** In float64, six digits: all that it has is in the two values. */
+/** The difference in float64, with six digits; the exact one follows from the two values. */
 function differenceText(reference, test) {
   const difference = test - reference;
   if (!Number.isFinite(difference)) return float32Text(difference);
@@ -25,7 +25,7 @@ function differenceText(reference, test) {
   return difference > 0 ? `+${text}` : text;
 }
 
-/** Moves the pixel that is read. */
+/** Chooses the pixel that is read. */
 function moveCursor(x, y) {
   if (!state.data) return;
   state.cursor = [clamp(Math.floor(x), picture.width), clamp(Math.floor(y), picture.height)];
@@ -37,14 +37,14 @@ function clamp(number, count) {
   return Math.min(Math.max(number, 0), count - 1);
 }
 
-/** So that the pixel lies within the stage. */
+/** Pans so that the pixel that is read lies within the stage. */
 function follow() {
   const all = panes();
   const pane = state.view === "side" ? all[0] : { ...all[0], left: 0, right: stage.width };
-  const place = toStage(pane, state.cursor[0] + 0.5, state.cursor[1] + 0.5);
+  const point = toStage(pane, state.cursor[0] + 0.5, state.cursor[1] + 0.5);
   [[pane.x, pane.x + pane.width], [0, pane.height]].forEach(([low, high], i) => {
     const margin = Math.min(state.zoom, (high - low) / 4);
-    const beyond = place[i] < low + margin ? place[i] - low - margin : place[i] > high - margin ? place[i] - high + margin : 0;
+    const beyond = point[i] < low + margin ? point[i] - low - margin : point[i] > high - margin ? point[i] - high + margin : 0;
     if (beyond) {
       state.centre[i] += beyond / state.zoom;
       state.fitted = false;
@@ -53,7 +53,7 @@ function follow() {
   draw();
 }
 
-/** Buttons to the report's worst pixels of the layer's channels. */
+/** Shows a button for the worst pixel of each channel. */
 function showWorst() {
   const buttons = layerReport().channels.map((channel, number) => {
     const { pixel, error } = channel.max;
@@ -64,11 +64,11 @@ function showWorst() {
   byId("worst").replaceChildren(...buttons);
 }
 
-/** To the worst pixel of a channel, near enough to read its values, and not under the handle of the split. */
+/** Shows the worst pixel of a channel, large enough to read its values, and not under the handle of the split. */
 function goToWorst(number) {
   const { pixel } = layerReport().channels[number].max;
-  const [x, y] = pixel.map((place, i) => place - picture.window[i]);
-  state.zoom = Math.max(state.zoom, (VALUES_FROM + 12) * density());
+  const [x, y] = pixel.map((coordinate, i) => coordinate - picture.window[i]);
+  state.zoom = Math.max(state.zoom, (MIN_SIDE_OF_VALUES + 12) * density());
   const side = state.split > 0.5 ? state.split - 1 : state.split;
   state.centre = [x + 0.5 - (state.view === "split" ? (side / 2) * stage.width / state.zoom : 0), y + 0.5];
   state.fitted = false;

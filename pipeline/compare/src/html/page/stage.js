@@ -1,15 +1,15 @@
-// The canvas: panes of pictures, moved and scaled together.
+// The canvas with its panes, which are panned and zoomed together.
 
 const stage = byId("stage");
 const context = stage.getContext("2d");
 
-/** Screen pixels of one CSS pixel. */
+/** The number of screen pixels of a CSS pixel. */
 const density = () => window.devicePixelRatio || 1;
 
-/** CSS pixels of an image pixel from which on its borders are drawn. */
-const GRID_FROM = 12;
+/** The smallest side of an image pixel, in CSS pixels, at which its borders are drawn. */
+const MIN_SIDE_OF_BORDERS = 12;
 
-/** The rectangles of the stage, in screen pixels, with what they show; `left` and `right` clip. */
+/** The panes: rectangles of the stage in screen pixels, clipped to `left` and `right`, with the kind of picture they show. */
 function panes() {
   const [width, height] = [stage.width, stage.height];
   const pane = (kind, x, paneWidth, left, right) => ({ kind, x, width: paneWidth, height, left, right });
@@ -24,12 +24,12 @@ function panes() {
   return [pane(state.view === "flicker" ? state.shown : state.view, 0, width, 0, width)];
 }
 
-/** Place on the stage of a place in the image. */
+/** The point of the stage, in screen pixels, at a point of the image. */
 function toStage(pane, x, y) {
   return [pane.x + pane.width / 2 + (x - state.centre[0]) * state.zoom, pane.height / 2 + (y - state.centre[1]) * state.zoom];
 }
 
-/** Place in the image of a place on the stage, in screen pixels. */
+/** The point of the image at a point of the stage in screen pixels. */
 function toImage(stageX, stageY) {
   const all = panes();
   const pane = all.find((candidate) => stageX < candidate.right) ?? all[all.length - 1];
@@ -38,7 +38,7 @@ function toImage(stageX, stageY) {
 
 let drawPending = false;
 
-/** Draws with the next frame, however often it is asked for. */
+/** Requests that the next frame is drawn. */
 function draw() {
   if (drawPending) return;
   drawPending = true;
@@ -57,7 +57,7 @@ function drawNow() {
     context.rect(pane.left, 0, pane.right - pane.left, pane.height);
     context.clip();
     state.data.grids.forEach((grid) => drawGrid(pane, grid));
-    if (state.zoom >= GRID_FROM * density()) drawBorders(pane);
+    if (state.zoom >= MIN_SIDE_OF_BORDERS * density()) drawBorders(pane);
     drawLabels(pane);
     drawCursor(pane);
     context.restore();
@@ -65,7 +65,7 @@ function drawNow() {
   showFrame();
 }
 
-/** Only what can be seen: at high zoom the whole would be larger than a canvas can be. */
+/** Draws the visible blocks of a grid only, because at high zoom the whole would exceed the largest canvas. */
 function drawGrid(pane, grid) {
   const { canvas, holes } = paint(grid, pane.kind);
   const [first, last] = [visible(pane, grid, 0), visible(pane, grid, 1)];
@@ -85,18 +85,18 @@ function drawGrid(pane, grid) {
   context.restore();
 }
 
-/** First (`end` 0) or one after the last block (`end` 1) that the pane shows, column and row. */
+/** The column and row of the first visible block (`end` 0), or of the one after the last (`end` 1). */
 function visible(pane, grid, end) {
   const edges = end ? [pane.right, pane.height] : [pane.left, 0];
   const origin = toStage(pane, grid.x, grid.y);
   const limits = [grid.width, grid.height];
   return edges.map((edge, i) => {
-    const place = (edge - origin[i]) / (state.zoom * grid.block);
-    return Math.min(Math.max(end ? Math.ceil(place) : Math.floor(place), 0), limits[i]);
+    const block = (edge - origin[i]) / (state.zoom * grid.block);
+    return Math.min(Math.max(end ? Math.ceil(block) : Math.floor(block), 0), limits[i]);
   });
 }
 
-/** Values that are not finite would vanish in small pictures. */
+/** Enlarges blocks that are not finite, which would vanish in small pictures. */
 function drawHoles(pane, grid, holes) {
   const size = state.zoom * grid.block;
   const side = Math.max(size, 4 * density());
@@ -126,7 +126,7 @@ function drawBorders(pane) {
   context.stroke();
 }
 
-/** A frame that is seen on any color: dark outside, bright inside. */
+/** Draws a frame that is visible on any color: dark outside, bright inside. */
 function drawCursor(pane) {
   const [x, y] = toStage(pane, ...state.cursor);
   const size = Math.max(state.zoom, 7 * density());

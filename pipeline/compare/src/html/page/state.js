@@ -1,4 +1,4 @@
-// What is shown, and where.
+// The state: what is shown, and where.
 
 const VIEWS = [
   { id: "split", name: "Split" },
@@ -10,43 +10,43 @@ const VIEWS = [
 
 const state = {
   view: "split",
-  /** Numbers in `picture.layers` and of the channel; −1 is all channels. */
+  /** The numbers of the layer in `picture.layers` and of the channel; −1 is all channels. */
   layer: 0,
   channel: -1,
-  /** The layer's samples, once they are unpacked. */
+  /** The samples of the layer, once they are unpacked. */
   data: null,
   look: null,
   stops: 0,
-  /** The error that is the end of the color map, in units of the channel. */
+  /** The error at the end of the color map, in units of the channel. */
   scale: 1,
-  /** Which image flicker shows. */
+  /** The image that flicker shows. */
   shown: "reference",
   split: 0.5,
-  /** Screen pixels per image pixel, and the place in the image at the middle of the stage. */
+  /** The number of screen pixels per image pixel, and the point of the image at the middle of the stage. */
   zoom: 1,
   centre: [picture.width / 2, picture.height / 2],
   fitted: true,
-  /** Column and row of the pixel that is read, from the top left of the image. */
+  /** The column and row of the pixel that is read, from the top left of the image. */
   cursor: [Math.floor(picture.width / 2), Math.floor(picture.height / 2)],
 };
 
-/** The report's numbers of the layer that is shown. */
+/** The numbers of the layer that is shown. */
 function layerReport() {
   return report.layers[state.layer];
 }
 
-/** Channels whose errors are shown: of the layer all, or the one that was chosen. */
+/** The numbers of the channels whose errors are shown: all of the layer, or the chosen one. */
 function shownChannels() {
   return state.channel < 0 ? state.data.channels.map((_, i) => i) : [state.channel];
 }
 
-/** 99 of 100 errors of the layer lie within: from the report, so that it is that of the whole image. */
+/** The scale that holds 99 of 100 errors of the layer. It is from the report, which is about the whole image. */
 function automaticScale() {
   const { p99, max } = layerReport();
   return niceAbove(p99 > 0 ? p99 : max && max.error);
 }
 
-/** Stops that bring 99 of 100 values of the reference below white. */
+/** The exposure at which 99 of 100 values of the reference are below white, in stops. */
 function automaticStops() {
   if (!state.look.light) return 0;
   const grid = state.data.grids[0];

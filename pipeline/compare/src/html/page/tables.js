@@ -1,8 +1,8 @@
-// The report's numbers, as they are. Keys that are not known here appear under their own names.
+// The numbers of the report. Keys that are unknown here appear under their own names.
 
 const heading = (key) => key.replaceAll("_", " ");
 
-/** An object's values by `key` or `key key`, so that `max.pixel` is a column too. */
+/** The values of an object by `key` or `key key`, so that `max.pixel` is a column too. */
 function flatten(object, skip = []) {
   const found = new Map();
   for (const [key, value] of Object.entries(object)) {
@@ -16,7 +16,7 @@ function flatten(object, skip = []) {
   return found;
 }
 
-/** A value of the report as text or table. */
+/** A value of the report as text or as a table. */
 function valueNode(value) {
   if (Array.isArray(value) && value.some((item) => item && typeof item === "object" && !Array.isArray(item))) {
     return objectTable(value.map((item) => flatten(item && typeof item === "object" ? item : { value: item })));
@@ -33,14 +33,14 @@ function valueText(value) {
   return typeof value === "string" ? value : shortText(value);
 }
 
-/** A row for each, a column for each key of any. */
+/** A table with a row for each map, and a column for each key of any map. */
 function objectTable(rows, attributes = () => ({})) {
   const keys = [...new Set(rows.flatMap((row) => [...row.keys()]))];
   const cell = (row, key) => (row.has(key) ? valueCell(key, row.get(key)) : "");
   return table(keys.map(heading), rows.map((row, i) => ({ ...attributes(i), cells: keys.map((key) => cell(row, key)) })));
 }
 
-/** Errors with a sign have it written. */
+/** A value of the report; the sign of a bias is always written. */
 function valueCell(key, value) {
   return key === "bias" && typeof value === "number" ? signedText(value) : valueNode(value);
 }
@@ -50,7 +50,7 @@ function showGates() {
     gate, result: ok ? "pass" : "FAIL", layer, channel: channel ?? "", value, limit,
     "value / limit": typeof value === "number" && limit > 0 ? value / limit : "", ...more,
   })));
-  const node = rows.length ? objectTable(rows, (i) => ({ class: report.gates[i].ok ? "pass" : "fail" })) : "No gate was given: nothing is judged but that values are finite.";
+  const node = rows.length ? objectTable(rows, (i) => ({ class: report.gates[i].ok ? "pass" : "fail" })) : "No gate was given, so that only the finiteness of the values is judged.";
   byId("gates").replaceChildren(node);
 }
 
@@ -79,7 +79,7 @@ function showOther() {
   byId("other").replaceChildren(table(["", ""], entries.map(([key, value]) => ({ cells: [heading(key), valueNode(value)] }))));
 }
 
-/** What differs first. */
+/** Shows the attributes; those that differ come first. */
 function showAttributes() {
   const { attributes } = picture;
   byId("attributes-section").hidden = attributes.length === 0;
@@ -95,7 +95,7 @@ function showHead() {
   byId("verdict").textContent = report.pass ? "PASS" : "FAIL";
   byId("verdict").classList.add(report.pass ? "pass" : "fail");
   byId("names").textContent = names[0];
-  const window = picture.window.some((place) => place !== 0) ? `, from ${picture.window.join(", ")}` : "";
+  const window = picture.window.some((coordinate) => coordinate !== 0) ? `, from ${picture.window.join(", ")}` : "";
   byId("facts").replaceChildren(
     element("span", {}, report.verdict ?? ""),
     element("span", {}, `test ${report.test}`), element("span", {}, `reference ${report.reference}`),

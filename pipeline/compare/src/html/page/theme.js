@@ -1,4 +1,4 @@
-// Light or dark as the system has it, until the button says otherwise.
+// The theme is that of the system until the button is pressed.
 
 const systemIsDark = matchMedia("(prefers-color-scheme: dark)");
 let chosenTheme = null;

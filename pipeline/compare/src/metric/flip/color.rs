@@ -1,4 +1,4 @@
-//! Colors: linear sRGB, the opponents that contrast is filtered in, and the space that differences are measured in.
+//! Colors: linear sRGB, the opponent channels in which contrast is filtered, and the space in which differences are measured.
 
 use crate::metric::elementary::power;
 use color::PRIMARIES;
@@ -6,16 +6,16 @@ use color::PRIMARIES;
 /// CIE x and y of D65, with one digit more than sRGB states.
 const WHITE: [f64; 2] = [0.312_71, 0.329_02];
 
-/// From linear R, G, B to X, Y, Z over those of white, and back.
+/// The matrices from linear R, G, B to X, Y, Z relative to white, and back.
 const TO_XYZ: [[f64; 3]; 3] = to_xyz();
 const TO_RGB: [[f64; 3]; 3] = inverse(TO_XYZ);
 
-/// X, Y, Z of a chromaticity with Y = 1.
+/// X, Y, Z of a chromaticity, with Y = 1.
 const fn xyz([x, y]: [f64; 2]) -> [f64; 3] {
     [x / y, 1.0, (1.0 - x - y) / y]
 }
 
-/// The brightness of each primary is such that together they make white.
+/// The brightnesses of the primaries follow from the condition that together they make white.
 const fn to_xyz() -> [[f64; 3]; 3] {
     let (columns, white) = ([xyz(PRIMARIES[0]), xyz(PRIMARIES[1]), xyz(PRIMARIES[2])], xyz(WHITE));
     let mut matrix = [[0.0; 3]; 3];
@@ -42,7 +42,7 @@ const fn multiply(matrix: [[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// By cofactors.
+/// The inverse by cofactors.
 const fn inverse(m: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
     let mut inverse = [[0.0; 3]; 3];
     let mut i = 0;
@@ -66,16 +66,16 @@ fn transform(matrix: &[[f64; 3]; 3], [a, b, c]: [f32; 3]) -> [f32; 3] {
     [row(matrix[0]), row(matrix[1]), row(matrix[2])]
 }
 
-/// Of linear R, G, B in 0..1: Y, X - Y and Y - Z, all over white's. The paper's YCxCz is 116 Y - 16, 500 (X - Y) and
-/// 200 (Y - Z); filters whose weights sum to 1 do the same to both.
+/// The opponent channels Y, X - Y and Y - Z, relative to white, of linear R, G, B in 0..1. The paper's YCxCz is 116 Y - 16,
+/// 500 (X - Y) and 200 (Y - Z); a filter whose weights sum to 1 acts on both in the same way.
 #[inline(always)]
 pub(super) fn opponents(rgb: [f32; 3]) -> [f32; 3] {
     let [x, y, z] = transform(&TO_XYZ, rgb);
     [y, x - y, y - z]
 }
 
-/// Of opponents: R, G, B clamped to what a screen shows, in L*a*b* with Hunt's adjustment, by which colors fade where it
-/// is dark.
+/// L*a*b* of opponent channels, whose R, G, B are clamped to what a screen shows, with Hunt's adjustment, by which colors fade
+/// in the dark.
 #[inline(always)]
 pub(super) fn hunt_lab([y, xy, yz]: [f32; 3]) -> [f32; 3] {
     let [r, g, b] = transform(&TO_RGB, [y + xy, y, y - yz]);
@@ -86,7 +86,7 @@ pub(super) fn hunt_lab([y, xy, yz]: [f32; 3]) -> [f32; 3] {
     [lightness, hunt * 500.0 * (x - y), hunt * 200.0 * (y - z)]
 }
 
-/// CIE 15: the cube root, and a straight line near black.
+/// The compression of CIE 15: a cube root, and a straight line near black.
 #[inline(always)]
 fn compress(t: f32) -> f32 {
     const JOINT: f32 = 6.0 / 29.0;
@@ -95,27 +95,28 @@ fn compress(t: f32) -> f32 {
     if t > JOINT * JOINT * JOINT { root } else { line }
 }
 
-/// HyAB: lightness by itself, the other two together.
+/// The HyAB distance: lightness by itself plus the Euclidean distance of the other two.
 #[inline(always)]
 fn distance(a: [f32; 3], b: [f32; 3]) -> f32 {
     let [l, a, b] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
     l.abs() + (a * a + b * b).sqrt()
 }
 
-/// Large differences count less: the exponent is the paper's q_c. Exactly zero for equal colors.
+/// The distance to the power of 0.7, the paper's q_c, by which large differences count less. It is exactly zero for equal colors.
 #[inline(always)]
 fn compressed_distance(a: [f32; 3], b: [f32; 3]) -> f32 {
     let distance = distance(a, b);
     distance * power(distance, 0.7 - 1.0)
 }
 
-/// The paper's c_max: between pure green and pure blue.
+/// The paper's c_max: the compressed distance of pure green and pure blue.
 pub(super) fn largest_difference() -> f32 {
     let [green, blue] = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|rgb| hunt_lab(opponents(rgb)));
     compressed_distance(green, blue)
 }
 
-/// Of two adjusted colors: 0 to 1. Differences up to 0.4 of the largest, the paper's p_c, take 0.95 of the range, p_t.
+/// The difference, 0 to 1, of two adjusted colors. Distances up to 0.4 of the largest, the paper's p_c, take 0.95 of the range,
+/// its p_t.
 #[inline(always)]
 pub(super) fn difference(a: [f32; 3], b: [f32; 3], largest: f32) -> f32 {
     let (joint, distance) = (0.4 * largest, compressed_distance(a, b));
@@ -143,21 +144,21 @@ mod tests {
     fn white_grey_and_black_have_no_color() {
         for (grey, lightness) in [(0.0, 0.0), (0.001, 0.903_3), (0.184_187, 50.0), (1.0, 100.0)] {
             let [l, a, b] = lab([grey; 3]);
-            // Of 100, in float32.
+            // The tolerance is the rounding of 100 in float32.
             assert!((l - lightness).abs() < 1e-4 && a.abs() < 1e-4 && b.abs() < 1e-4, "{grey}: {l} {a} {b}");
         }
     }
 
     #[test]
-    fn red_is_where_tables_have_it() {
-        // Red of sRGB under D65: L* 53.24, a* 80.09, b* 67.20; adjusted by 0.5324.
+    fn red_has_its_tabulated_value() {
+        // Red of sRGB under D65 has L* 53.24, a* 80.09 and b* 67.20; Hunt's factor is 0.5324.
         let [l, a, b] = lab([1.0, 0.0, 0.0]);
         assert!((l - 53.24).abs() < 0.01 && (a - 42.64).abs() < 0.02 && (b - 35.78).abs() < 0.02, "{l} {a} {b}");
     }
 
     #[test]
     fn differences_of_lightness_alone() {
-        // 10 of lightness: 10^0.7 = 5.0119, of 0.4 * 41.27 for 0.95.
+        // A distance of 10 in lightness is compressed to 10^0.7 = 5.0119, of 0.4 * 41.27 that make 0.95.
         let largest = largest_difference();
         let found = difference([40.0, 0.0, 0.0], [50.0, 0.0, 0.0], largest);
         assert!((found - 0.95 * 5.011_872 / (0.4 * largest)).abs() < 1e-6);

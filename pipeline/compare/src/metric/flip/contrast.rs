@@ -1,35 +1,37 @@
-//! What is too fine to be seen: contrast sensitivity as filters of the opponents, by which color blurs more than light.
+//! Contrast sensitivity: filters of the opponent channels remove what is too fine to be seen. Color blurs more than light.
 
 use std::f64::consts::PI;
 
-use super::PIXELS_PER_DEGREE;
 use crate::metric::convolve::gaussian;
 
-/// The paper's a and b: each Gaussian is a sqrt(pi / b) exp(-pi^2 x^2 / b), x in degrees.
+/// The pixels of the screen in one degree of the visual field.
+pub const PIXELS_PER_DEGREE: f64 = 3840.0 * PI / 180.0;
+
+/// The paper's a and b: each Gaussian is a sqrt(pi / b) exp(-pi^2 x^2 / b) with x in degrees.
 const LIGHT: [f64; 2] = [1.0, 0.0047];
 const RED_GREEN: [f64; 2] = [1.0, 0.0053];
 const BLUE_YELLOW: [[f64; 2]; 2] = [[34.1, 0.04], [13.5, 0.025]];
 
-/// One dimension of a filter, and its weight among those that are added.
+/// A separable filter, with its weight among those that are added.
 #[derive(Clone, Debug)]
 pub(super) struct Blur {
-    /// Along rows.
+    /// The taps along rows.
     pub rows: Vec<f32>,
-    /// Along columns, with the weight.
+    /// The taps along columns, times the weight.
     pub columns: Vec<f32>,
 }
 
-/// The filters of the three opponents.
+/// The filters of the three opponent channels.
 #[derive(Clone, Debug)]
 pub(super) struct Contrast {
     pub light: Blur,
     pub red_green: Blur,
-    /// To be added.
+    /// Two filters whose results are added.
     pub blue_yellow: [Blur; 2],
 }
 
 impl Contrast {
-    /// For the screen of [`PIXELS_PER_DEGREE`].
+    /// The filters for the screen of [`PIXELS_PER_DEGREE`].
     pub fn new() -> Contrast {
         let total: f64 = BLUE_YELLOW.iter().copied().map(volume).sum();
         Contrast {
@@ -40,23 +42,23 @@ impl Contrast {
     }
 }
 
-/// Standard deviation, pixels.
+/// The standard deviation of a Gaussian in pixels.
 fn sigma([_, b]: [f64; 2]) -> f64 {
     (b / (2.0 * PI * PI)).sqrt() * PIXELS_PER_DEGREE
 }
 
-/// Three standard deviations of the widest, for all.
+/// The radius of all filters in pixels: three standard deviations of the widest Gaussian.
 fn radius() -> usize {
     (3.0 * sigma(BLUE_YELLOW[0])).ceil() as usize
 }
 
-/// What a term's weights, cut off at the radius, would sum to over both dimensions.
+/// The sum that the weights of a Gaussian, cut off at the radius, would have over both dimensions.
 fn volume([a, b]: [f64; 2]) -> f64 {
     let middle = gaussian(sigma([a, b]), radius())[0];
     a * (PI / b).sqrt() / (middle * middle)
 }
 
-/// Weights that float32 would not notice beside the others are left out.
+/// A filter without the weights that float32 would not notice beside the others.
 fn blur(term: [f64; 2], weight: f64) -> Blur {
     let taps = gaussian(sigma(term), radius());
     let taps = || taps.iter().copied().filter(|tap| *tap > 1e-9);
@@ -75,7 +77,7 @@ mod tests {
         let whole = |blur: &Blur| sum(&blur.rows) * sum(&blur.columns);
         let colors = contrast.blue_yellow.iter().map(whole).sum();
         for found in [whole(&contrast.light), whole(&contrast.red_green), colors] {
-            // A few roundings of 1.
+            // The tolerance is a few roundings of 1.
             assert!((found - 1.0).abs() < 1e-6, "{found}");
         }
         assert_eq!(radius(), HALO);
@@ -83,13 +85,13 @@ mod tests {
     }
 
     #[test]
-    fn frequencies_are_dimmed_as_the_paper_says() {
-        // The Fourier transform of the filter for light at f cycles per degree: exp(-b f^2), here 8: exp(-0.3008).
+    fn frequencies_fade_as_in_the_paper() {
+        // The Fourier transform of the filter for light at f cycles per degree is exp(-b f^2). At 8 it is exp(-0.3008).
         let taps = Contrast::new().light.rows;
         let phase = |distance: usize| (2.0 * PI * 8.0 * distance as f64 / PIXELS_PER_DEGREE).cos();
         let pairs = taps.iter().enumerate().skip(1).map(|(distance, tap)| 2.0 * f64::from(*tap) * phase(distance));
         let found = f64::from(taps[0]) + pairs.sum::<f64>();
-        // The filter is sampled once per pixel.
+        // The tolerance is for the filter, which is sampled once per pixel.
         assert!((found - (-0.3008f64).exp()).abs() < 1e-3, "{found}");
     }
 }

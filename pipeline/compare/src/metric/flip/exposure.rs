@@ -1,4 +1,4 @@
-//! HDR-FLIP: exposures at which a viewer would look at the reference, and the curve that shows it on a screen.
+//! HDR-FLIP: the exposures at which a viewer would look at the reference, and the tone curve that shows it on a screen.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -10,7 +10,7 @@ use crate::metric::select;
 const ACES: [f32; 5] = single(color::tone::ACES);
 const ACES_SCALE: f64 = 0.6;
 
-/// The curve's value of the brightest pixel at the first exposure, and of the median at the last.
+/// The value that the curve gives the brightest pixel at the first exposure, and the median pixel at the last.
 const SHOWN: f64 = 0.85;
 
 const LUMINANCE: [f32; 3] = single(color::LUMINANCE);
@@ -25,40 +25,40 @@ const fn single<const N: usize>(numbers: [f64; N]) -> [f32; N] {
     single
 }
 
-/// How linear light is shown.
+/// How linear light is shown on a screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Tone {
-    /// Clamped to 0..1.
+    /// Light is clamped to 0..1.
     Clamp,
-    /// Times this, then by the ACES curve, clamped.
+    /// Light is scaled by this factor, then mapped by the ACES curve and clamped.
     Aces(f32),
 }
 
 impl Tone {
-    /// Light that is shown, 0 to 1, of light that is finite and not negative.
+    /// The light that the screen emits, 0 to 1, for light that is finite and not negative.
     #[inline(always)]
     pub fn show(self, light: f32) -> f32 {
         let Tone::Aces(scale) = self else { return light.min(1.0) };
         let [a, b, c, d, e] = ACES;
-        // The curve has passed 1 long before; beyond, squares would become infinite.
+        // The curve is above 1 from far below this value on; beyond it, squares would become infinite.
         let x = (light * scale).min(1e4);
         ((x * (a * x + b)) / (x * (c * x + d) + e)).min(1.0)
     }
 }
 
-/// Exposures at equal distances, in stops: each doubles the light.
+/// Evenly spaced exposures in stops, each of which doubles the light.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Exposures {
-    /// The brightest pixel of the reference is just not burnt out.
+    /// The first exposure, at which the brightest pixel of the reference is just below saturation.
     pub start: f64,
-    /// The median pixel is just as bright.
+    /// The last exposure, at which the median pixel is as bright as that.
     pub stop: f64,
-    /// How many, both ends included.
+    /// The number of exposures, both ends included.
     pub count: usize,
 }
 
 impl Exposures {
-    /// Of the reference.
+    /// The exposures for the reference.
     pub fn of(picture: &Picture<'_>) -> Exposures {
         let [r, g, b] = picture.reference;
         let luminance = |i: usize| {
@@ -68,13 +68,13 @@ impl Exposures {
         };
         let median = select::select(r.len(), r.len() / 2, luminance);
         let brightest = (0..r.len()).into_par_iter().map(luminance).reduce(|| 0.0, f32::max);
-        // Black pixels would want an infinite exposure.
+        // Guards the division by zero: a black pixel would need an infinite exposure.
         let stops = |luminance: f32| (light_shown() / f64::from(luminance.max(f32::EPSILON))).log2();
         let (start, stop) = (stops(brightest), stops(median));
         Exposures { start, stop, count: ((stop - start).ceil() as usize).max(2) }
     }
 
-    /// Ends that fall together are one tone.
+    /// The tones of the exposures. If both ends are equal, they are one tone.
     pub(super) fn tones(&self) -> Vec<Tone> {
         let step = (self.stop - self.start) / (self.count - 1) as f64;
         let exposure = |i: usize| self.start + i as f64 * step;
@@ -85,7 +85,7 @@ impl Exposures {
     }
 }
 
-/// The light of which the curve makes [`SHOWN`]: the positive root of the quadratic.
+/// The light that the curve maps to [`SHOWN`]: the positive root of the quadratic.
 fn light_shown() -> f64 {
     let [a, b, c, d, e] = ACES.map(f64::from);
     let (square, linear, constant) = (a - SHOWN * c, b - SHOWN * d, -SHOWN * e);
@@ -115,10 +115,10 @@ mod tests {
 
     #[test]
     fn stops_of_the_brightest_and_the_median() {
-        // 2.118872 is shown as 0.85: 2.51 * 0.36 x^2 + 0.018 x = 0.85 (2.43 * 0.36 x^2 + 0.354 x + 0.14).
+        // 2.118872 is shown as 0.85 because 2.51 * 0.36 x^2 + 0.018 x = 0.85 (2.43 * 0.36 x^2 + 0.354 x + 0.14).
         let stops = |light: f64| (2.118_872 / light).log2();
         let Exposures { start, stop, count } = exposures(&[16.0, 0.5, 4.0, 1.0, f32::NAN, -3.0]);
-        // Sorted: 0, 0, 0.5, 1, 4, 16; of an even number the upper of both in the middle.
+        // Sorted they are 0, 0, 0.5, 1, 4, 16; the median of an even number is the upper of the two in the middle.
         assert!((start - stops(16.0)).abs() < 1e-6 && (stop - stops(1.0)).abs() < 1e-6, "{start} {stop}");
         assert_eq!(count, 4);
         assert_eq!(exposures(&[16.0, 0.5, 4.0, 1.0]).tones().len(), 2);
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn an_even_or_black_picture_has_one_tone() {
+    fn a_uniform_or_black_picture_has_one_tone() {
         assert_eq!((exposures(&[0.5; 3]).count, exposures(&[0.5; 3]).tones().len()), (2, 1));
         let black = exposures(&[0.0; 4]);
         assert!(black.start.is_finite() && black.start == black.stop);

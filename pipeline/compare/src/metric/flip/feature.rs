@@ -1,24 +1,24 @@
-//! Edges and points, which are seen even where their color differs little: first and second derivatives of light.
+//! Edges and points, which are seen even where their color differs little, as first and second derivatives of light.
 
-use super::PIXELS_PER_DEGREE;
+use super::contrast::PIXELS_PER_DEGREE;
 use crate::metric::convolve::gaussian;
 
-/// Width of the detectors, degrees: the paper's w.
+/// The width of the detectors in degrees, the paper's w.
 const WIDTH: f64 = 0.082;
 
-/// The detectors, weights of one dimension each.
+/// The taps of the detectors along one dimension.
 #[derive(Clone, Debug)]
 pub(super) struct Detectors {
-    /// Across the direction of the derivative; sums to 1.
+    /// The taps across the direction of the derivative. They sum to 1.
     pub smooth: Vec<f32>,
-    /// First derivative: one side sums to 1.
+    /// The taps of the first derivative. Each side sums to 1.
     pub edge: Vec<f32>,
-    /// Second derivative: positive weights of both sides sum to 1, negative ones with the middle to -1.
+    /// The taps of the second derivative. The positive ones of both sides sum to 1, the others with the middle to -1.
     pub point: Vec<f32>,
 }
 
 impl Detectors {
-    /// For the screen of [`PIXELS_PER_DEGREE`].
+    /// The detectors for the screen of [`PIXELS_PER_DEGREE`].
     pub fn new() -> Detectors {
         let sigma = 0.5 * WIDTH * PIXELS_PER_DEGREE;
         let smooth = gaussian(sigma, (3.0 * sigma).ceil() as usize);
@@ -37,7 +37,7 @@ impl Detectors {
     }
 }
 
-/// Of the edges and points of reference and test at a pixel: 0 to 1, by the paper's exponent q_f of a half.
+/// The difference, 0 to 1, of the edges and points of reference and test at a pixel. The paper's exponent q_f is a half.
 #[inline(always)]
 pub(super) fn difference(edges: [f32; 2], points: [f32; 2]) -> f32 {
     let largest = (edges[0] - edges[1]).abs().max((points[0] - points[1]).abs());
@@ -50,7 +50,7 @@ mod tests {
     use crate::metric::tile::HALO;
 
     #[test]
-    fn weights_are_normalised() {
+    fn weights_are_normalized() {
         let Detectors { smooth, edge, point } = Detectors::new();
         assert_eq!(smooth.len(), 10);
         assert!(smooth.len() <= HALO + 1);

@@ -2,9 +2,11 @@
 //!
 //! LDR-FLIP is Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild, *FLIP: A Difference Evaluator for
 //! Alternating Images*, 2020; HDR-FLIP is Andersson, Nilsson, Shirley and Akenine-Möller, *Visualizing Errors in Rendered
-//! High Dynamic Range Images*, 2021. Constants are the papers'. The viewer sits 0.7 m from a screen 0.7 m wide with 3840
-//! columns. Negative light counts as none. A pixel that is not finite in one of the images is NaN in the map, so that the
-//! mean is too; for its neighbours it is black.
+//! High Dynamic Range Images*, 2021. All constants are those of the papers. The viewer sits 0.7 m from a screen that is 0.7 m
+//! wide and has 3840 columns. Negative light counts as no light. A pixel that is not finite in one of the images is NaN in the
+//! map, and so is the mean; the filters of its neighbors take it as black.
+
+use std::fmt;
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -15,63 +17,82 @@ mod exposure;
 mod feature;
 mod look;
 
+pub use contrast::PIXELS_PER_DEGREE;
 pub use exposure::Exposures;
 
+use super::gate_kind::{GateKind, GateValue};
 use super::picture::Picture;
 use super::select;
-use super::tile::{HALO, MARGIN, PITCH, Plane, SIDE, Tile, plane};
+use super::tile::{HALO, MARGIN, PITCH, Plane, SIDE, Tile, planes};
 use exposure::Tone;
 use look::{Eye, Look, Work};
 
-/// Pixels per degree of the visual field.
-pub const PIXELS_PER_DEGREE: f64 = 3840.0 * std::f64::consts::PI / 180.0;
+pub(super) const GATE: GateKind = GateKind {
+    name: "max-flip",
+    help: "Largest mean of HDR-FLIP of R, G and B, 0 to 1; never the only limit",
+    value: GateValue::Picture("flip_hdr"),
+};
 
-/// A map's values in short. The keys of the JSON report.
+/// The distribution of the values of a map. The names are the keys of the JSON report.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Flip {
-    /// Over all pixels.
+    /// The mean over all pixels.
     pub mean: f64,
-    /// Half of the pixels do not exceed it.
+    /// The value that half of the pixels do not exceed.
     pub median: f64,
-    /// 99 of 100 pixels do not exceed it.
+    /// The value that 99 of 100 pixels do not exceed.
     pub p99: f64,
-    /// The largest.
+    /// The largest value.
     pub max: f64,
 }
 
-/// Of HDR-FLIP. The keys of the JSON report.
+impl fmt::Display for Flip {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Flip { mean, median, p99, max } = self;
+        write!(f, "mean {mean:.5}, median {median:.5}, p99 {p99:.5}, max {max:.5}")
+    }
+}
+
+/// HDR-FLIP. The names are the keys of the JSON report.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HdrFlip {
-    /// The map's values.
+    /// The distribution of the values of its map.
     #[serde(flatten)]
     pub flip: Flip,
-    /// What the pictures were shown at.
+    /// The exposures that the pictures were shown at.
     pub exposures: Exposures,
 }
 
-/// LDR-FLIP of display values in short.
+impl fmt::Display for HdrFlip {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Exposures { start, stop, count } = self.exposures;
+        write!(f, "{} ({count} exposures from {start:+.2} to {stop:+.2} stops)", self.flip)
+    }
+}
+
+/// Measures LDR-FLIP.
 pub fn ldr(picture: &Picture<'_>) -> Flip {
     summary(&ldr_map(picture))
 }
 
-/// HDR-FLIP in short.
+/// Measures HDR-FLIP.
 pub fn hdr(picture: &Picture<'_>) -> HdrFlip {
     let (map, exposures) = hdr_map(picture);
     HdrFlip { flip: summary(&map), exposures }
 }
 
-/// LDR-FLIP of each pixel, row after row, of display values: exposure 0, clamped to 0..1, sRGB.
+/// The LDR-FLIP of each pixel, row after row, of display values: exposure 0, clamped to 0..1, sRGB.
 pub fn ldr_map(picture: &Picture<'_>) -> Vec<f32> {
     map(picture, &[Tone::Clamp])
 }
 
-/// HDR-FLIP of each pixel, row after row, and the exposures of which it is the largest LDR-FLIP.
+/// The HDR-FLIP of each pixel, row after row, and the exposures over which it is the largest LDR-FLIP.
 pub fn hdr_map(picture: &Picture<'_>) -> (Vec<f32>, Exposures) {
     let exposures = Exposures::of(picture);
     (map(picture, &exposures.tones()), exposures)
 }
 
-/// The largest difference among the tones.
+/// The largest difference of each pixel over the tones.
 fn map(picture: &Picture<'_>, tones: &[Tone]) -> Vec<f32> {
     let [width, height] = picture.size;
     let (eye, limit) = (Eye::new(), color::largest_difference());
@@ -94,7 +115,7 @@ fn map(picture: &Picture<'_>, tones: &[Tone]) -> Vec<f32> {
     map
 }
 
-/// What a tile needs.
+/// The memory that one thread needs for a tile.
 struct Scratch {
     linear: [[Box<Plane>; 3]; 2],
     looks: [Look; 2],
@@ -104,17 +125,13 @@ struct Scratch {
 
 impl Default for Scratch {
     fn default() -> Scratch {
-        Scratch {
-            linear: std::array::from_fn(|_| std::array::from_fn(|_| plane())),
-            looks: [Look::default(), Look::default()],
-            work: Work::default(),
-            largest: plane(),
-        }
+        let [largest] = planes();
+        Scratch { linear: [planes(), planes()], looks: [planes(), planes()], work: planes(), largest }
     }
 }
 
 impl Scratch {
-    /// False if both images are the same here: their difference is zero.
+    /// Loads the tile of both images. Returns false if they are equal there, so that the difference is zero.
     fn load(&mut self, picture: &Picture<'_>, tile: Tile) -> bool {
         let [reference, test] = &mut self.linear;
         for color in 0..3 {
@@ -132,7 +149,7 @@ impl Scratch {
     }
 }
 
-/// The pixels of a tile to their places in the band's rows.
+/// Copies the pixels of a tile into the rows of its band.
 fn copy(tile: Tile, from: &Plane, rows: &mut [f32]) {
     let [columns, _] = tile.size();
     for (row, line) in rows.chunks_mut(tile.picture[0]).enumerate() {
@@ -141,16 +158,21 @@ fn copy(tile: Tile, from: &Plane, rows: &mut [f32]) {
     }
 }
 
-/// A map that holds NaN has no mean; NaN ranks as the largest value.
+/// The distribution of a map. If the map holds NaN, the mean is NaN; NaN ranks as the largest value.
 fn summary(map: &[f32]) -> Flip {
     const CHUNK: usize = 1 << 16;
     let sum = |values: &[f32]| values.iter().copied().map(f64::from).sum::<f64>();
     let sums: Vec<f64> = map.par_chunks(CHUNK).map(sum).collect();
-    let rank = |share: usize| {
-        let rank = (map.len() * share).div_ceil(100).saturating_sub(1);
+    let percentile = |percent: usize| {
+        let rank = (map.len() * percent).div_ceil(100).saturating_sub(1);
         f64::from(select::select(map.len(), rank, |i| map[i]))
     };
-    Flip { mean: sums.iter().sum::<f64>() / map.len() as f64, median: rank(50), p99: rank(99), max: rank(100) }
+    Flip {
+        mean: sums.iter().sum::<f64>() / map.len() as f64,
+        median: percentile(50),
+        p99: percentile(99),
+        max: percentile(100),
+    }
 }
 
 #[cfg(test)]
@@ -166,7 +188,7 @@ mod tests {
         let light: Vec<f32> = (0..140 * 30).map(|i| (i * 7 % 97) as f32 / 20.0).collect();
         let mut zero = Flip { mean: 0.0, median: 0.0, p99: 0.0, max: 0.0 };
         assert_eq!(with([140, 30], &light, &light, ldr), zero);
-        // One pixel at the right end: the tile on the left is still the same, and nothing is without a difference there.
+        // One pixel at the right end differs: the tile on the left is still equal, and its difference is zero.
         let mut other = light.clone();
         other[139] += 0.5;
         let map = with([140, 30], &light, &other, ldr_map);
@@ -187,14 +209,14 @@ mod tests {
     }
 
     #[test]
-    fn even_pictures_on_paper() {
-        // L* is 50 and 60, without color, edges or points: 10^0.7 in the part of the scale that ends at 0.95.
+    fn uniform_pictures_on_paper() {
+        // L* is 50 and 60, without color, edges or points. The difference is 10^0.7, below the joint at 0.95.
         let (dark, light) = ([0.184_186_5; 9], [0.281_233_2; 9]);
         let expected = 0.95 * 10f64.powf(0.7) / (0.4 * f64::from(color::largest_difference()));
         let found = with([3, 3], &dark, &light, ldr);
         assert!((found.mean - expected).abs() < 1e-5, "{found:?} {expected}");
         assert_eq!(found.max, found.median);
-        // A reference of one brightness is shown as 0.85, L* 93.88; half of it as 0.6853, L* 86.27.
+        // A uniform reference is shown as 0.85, which is L* 93.88; half of it is shown as 0.6853, which is L* 86.27.
         let found = with([3, 3], &[7.0; 9], &[3.5; 9], hdr);
         let shown = 2.118_872 / 2.0 * 0.6;
         let half: f64 = shown * (2.51 * shown + 0.03) / (shown * (2.43 * shown + 0.59) + 0.14);

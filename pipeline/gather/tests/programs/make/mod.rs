@@ -29,11 +29,15 @@ impl Tree {
     fn new() -> Tree {
         let tree = Tree { bench: Bench::new() };
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-        for folder in ["crates/formats", "target/release", "tests/check"] {
+        for folder in ["crates/formats", "make", "target/release", "tests/check"] {
             fs::create_dir_all(tree.path(folder)).expect("makes a folder");
         }
         for file in ["Makefile", "crates/formats/cloud-version", "tests/check/planted.sh"] {
             fs::copy(root.join(file), tree.path(file)).expect("copies");
+        }
+        for file in fs::read_dir(root.join("make")).expect("lists") {
+            let file = file.expect("an entry");
+            fs::copy(file.path(), tree.path("make").join(file.file_name())).expect("copies");
         }
         for name in ["sample-surface", "gather", "compare"] {
             symlink(program(name), tree.path("target/release").join(name)).expect("links");

@@ -1,0 +1,60 @@
+//! Identity of a scene: what clouds are known by.
+
+use crate::scene::Scene;
+use std::{collections::BTreeMap, sync::Arc};
+
+impl Scene {
+    /// Identity of the file's lights, as a BLAKE3 digest. The environment has one of its own.
+    pub fn light_digest(&self) -> [u8; 32] {
+        let mut hasher = blake3::Hasher::new();
+        self.file_lights.iter().for_each(|light| light.hash_into(&mut hasher));
+        *hasher.finalize().as_bytes()
+    }
+
+    /// Identity of the geometry, of which material covers which triangle, and of its colors and holes, as a BLAKE3 digest.
+    pub fn geometry_digest(&self) -> [u8; 32] {
+        let mut hasher = blake3::Hasher::new();
+        let mut put = |bytes: &[u8]| {
+            hasher.update(bytes);
+        };
+        self.origin.to_array().iter().for_each(|x| put(&x.to_le_bytes()));
+        for v in self.mesh.positions.iter().chain(&self.mesh.normals) {
+            v.to_array().iter().for_each(|x| put(&x.to_le_bytes()));
+        }
+        for t in &self.mesh.triangles {
+            t.vertices.iter().for_each(|i| put(&i.to_le_bytes()));
+            put(&t.material.to_le_bytes());
+        }
+        for m in &self.materials {
+            put(&(m.name.len() as u64).to_le_bytes());
+            put(m.name.as_bytes());
+        }
+        self.put_colors(&mut put);
+        *hasher.finalize().as_bytes()
+    }
+
+    /// Gives `put` all that colors and holes depend on: they light and shadow the samples.
+    fn put_colors(&self, put: &mut impl FnMut(&[u8])) {
+        // A picture of several materials is put once, and referred to by its number afterwards.
+        let mut numbers = BTreeMap::new();
+        for material in &self.materials {
+            let cutoff = material.cutoff.map_or(f64::INFINITY, f64::from);
+            material.base_color.to_array().iter().chain([&cutoff]).for_each(|x| put(&x.to_le_bytes()));
+            let Some(texture) = &material.base_texture else { continue };
+            let [along, down] = texture.wrap.map(|w| w as u8);
+            let next = numbers.len() as u64;
+            let number = *numbers.entry(Arc::as_ptr(&texture.picture)).or_insert(next);
+            let known = number < next;
+            put(&[1 + u8::from(known), along, down, u8::from(texture.nearest)]);
+            if known {
+                put(&number.to_le_bytes());
+                continue;
+            }
+            put(&(texture.picture.width as u64).to_le_bytes());
+            put(&(texture.picture.texels.len() as u64).to_le_bytes());
+            put(texture.picture.texels.as_flattened());
+        }
+        self.mesh.coordinates.as_flattened().iter().for_each(|x| put(&x.to_le_bytes()));
+        self.mesh.colors.as_flattened().iter().for_each(|x| put(&x.to_le_bytes()));
+    }
+}

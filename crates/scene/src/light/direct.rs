@@ -1,0 +1,73 @@
+//! Light that arrives at a surface point straight from the lights, by one routine for both phases.
+
+use super::{
+    choice::{LightChoice, Pick},
+    contract::{Illumination, Light},
+    receiver::ReceiverBounds,
+    tree::{LightTree, MAX_FLAT},
+};
+use crate::{mesh::SurfacePoint, rays::Rays};
+use glam::DVec3;
+
+/// What became of one attempt to light a point.
+#[derive(Clone, Copy, Debug)]
+pub enum Lit {
+    /// Direction towards the light, and its irradiance over the share of the choice, W/m².
+    Light { direction: DVec3, irradiance: DVec3 },
+    /// Every light is behind the surface, or the point lies outside its cone or range.
+    FacingAway,
+    /// The chosen light is hidden.
+    Shadowed,
+}
+
+/// Picks one light by importance, then a direction, and tests whether it is visible (method.md 6.4). Light must come
+/// from above the triangle, whatever normal the cosine is taken with. `shadow_rays` counts the rays traced.
+pub fn light_at(choice: &LightChoice, rays: &Rays, at: &SurfacePoint, xi: [f64; 3], shadow_rays: &mut u64) -> Lit {
+    let Some(Pick { light, share, .. }) = choice.pick(at, xi[0]) else {
+        return Lit::FacingAway;
+    };
+    let Some(arriving) = arriving(light, at, [xi[1], xi[2]]) else {
+        return Lit::FacingAway;
+    };
+    *shadow_rays += 1;
+    if !rays.visible(at.position, arriving.direction, arriving.distance, Some(at.triangle)) {
+        return Lit::Shadowed;
+    }
+    Lit::Light { direction: arriving.direction, irradiance: arriving.irradiance / share }
+}
+
+/// Number of nodes in the list from which the lights of a single point are picked.
+const NODES_PER_POINT: usize = 128;
+
+/// Irradiance for surfaces that are lit once a path. Up to [`MAX_FLAT`] lights are all sampled, one direction each, since
+/// the choice of one would be noise; of more, as many are picked. Each call of `xi` gives two uniform numbers.
+pub fn all_light_at(
+    lights: &LightTree,
+    rays: &Rays,
+    at: &SurfacePoint,
+    mut xi: impl FnMut() -> [f64; 2],
+    shadow_rays: &mut u64,
+) -> DVec3 {
+    let mut visible = |light: &dyn Light, xi: [f64; 2]| {
+        let Some(arriving) = arriving(light, at, xi) else { return DVec3::ZERO };
+        *shadow_rays += 1;
+        let clear = rays.visible(at.position, arriving.direction, arriving.distance, Some(at.triangle));
+        if clear { arriving.irradiance } else { DVec3::ZERO }
+    };
+    if lights.lights.len() <= MAX_FLAT {
+        return lights.lights.iter().map(|light| visible(*light, xi())).sum();
+    }
+    let choice = LightChoice::new(lights, &ReceiverBounds::point(at), NODES_PER_POINT);
+    let [shift, _] = xi();
+    let one = |k: usize| {
+        let picked = choice.pick(at, (k as f64 + shift) / MAX_FLAT as f64);
+        picked.map_or(DVec3::ZERO, |p| visible(p.light, xi()) / p.share)
+    };
+    (0..MAX_FLAT).map(one).sum::<DVec3>() / MAX_FLAT as f64
+}
+
+/// Light from above the triangle.
+fn arriving(light: &dyn Light, at: &SurfacePoint, xi: [f64; 2]) -> Option<Illumination> {
+    let arriving = light.illuminate(at, xi)?;
+    (arriving.direction.dot(at.geometric_normal) > 0.0 && arriving.irradiance != DVec3::ZERO).then_some(arriving)
+}

@@ -1,0 +1,81 @@
+//! The scene as it is imported.
+
+use crate::{
+    error::LostVolumes,
+    light::{Environment, Light},
+    material::Material,
+    mesh::Mesh,
+    unhonoured::Unhonoured,
+    view::Camera,
+};
+use glam::DVec3;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::PathBuf,
+};
+
+/// An imported scene, checked: indices are in range, every number is finite, and every triangle has an area.
+pub struct Scene {
+    /// Every file that was read to make the scene, each once: its own, then buffers and pictures in the order of reading.
+    pub files: Vec<PathBuf>,
+    pub mesh: Mesh,
+    pub materials: Vec<Material>,
+    /// Lights and emitting materials of the file; [`Scene::lights`] gives the environment as well.
+    pub file_lights: Vec<Box<dyn Light>>,
+    /// Light from all around, black unless it was set: glTF has none.
+    pub environment: Environment,
+    pub cameras: Vec<Camera>,
+    /// World position of the mesh's center, m.
+    pub origin: DVec3,
+    /// What was left out or looks wrong, one line each.
+    pub warnings: Vec<String>,
+    /// For each material, how many triangles were left out because they have no area.
+    pub degenerate_triangles: BTreeMap<u16, u64>,
+    /// How many of those have an area until positions are rounded to float32.
+    pub rounded_triangles: BTreeMap<u16, u64>,
+    /// For each material, how many triangles were left out because another of the same material has the same corners.
+    pub duplicate_triangles: BTreeMap<u16, u64>,
+    /// Materials that a primitive of the scene names, though it may have no triangle left.
+    pub(crate) claimed: BTreeSet<u16>,
+    /// What the file asks for and the image does not show.
+    pub(crate) unhonoured: Vec<Unhonoured>,
+}
+
+impl Scene {
+    /// All lights: those of the file, then the environment unless it is black.
+    pub fn lights(&self) -> impl Iterator<Item = &dyn Light> {
+        let environment = Some(&self.environment as &dyn Light).filter(|_| !self.environment.is_black());
+        self.file_lights.iter().map(|light| &**light).chain(environment)
+    }
+
+    /// Indices of the materials whose surfaces bound media by default: those that the file marks as volumes or, if it marks
+    /// none, all that do not emit, with `true` for the latter. Only materials that cover a triangle count. It is an error
+    /// if the file marks materials and none of them covers a triangle.
+    pub fn translucent(&self) -> Result<(Vec<u16>, bool), LostVolumes> {
+        let mut used = vec![false; self.materials.len()];
+        self.mesh.triangles.iter().for_each(|t| used[t.material as usize] = true);
+        let select = |accept: fn(&Material) -> bool| -> Vec<u16> {
+            (0..used.len()).filter(|k| used[*k] && accept(&self.materials[*k])).map(|k| k as u16).collect()
+        };
+        let marked = select(|m| m.volume);
+        if !marked.is_empty() {
+            return Ok((marked, false));
+        }
+        let lost = self.lost_volumes();
+        if lost.is_empty() { Ok((select(|m| !m.emits()), true)) } else { Err(self.lost(&lost)) }
+    }
+
+    /// Indices of the materials that the file marks as volumes and uses, and that cover no triangle.
+    pub fn lost_volumes(&self) -> Vec<u16> {
+        let mut lost = self.claimed.clone();
+        lost.retain(|k| self.materials.get(usize::from(*k)).is_some_and(|m| m.volume));
+        self.mesh.triangles.iter().for_each(|t| _ = lost.remove(&t.material));
+        lost.into_iter().collect()
+    }
+
+    fn lost(&self, materials: &[u16]) -> LostVolumes {
+        let names: Vec<&str> = materials.iter().map(|k| self.materials[usize::from(*k)].name.as_str()).collect();
+        let sum = |counts: &BTreeMap<u16, u64>| materials.iter().filter_map(|k| counts.get(k)).sum::<u64>();
+        LostVolumes::new(&names, sum(&self.degenerate_triangles), sum(&self.rounded_triangles))
+    }
+}

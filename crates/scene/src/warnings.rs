@@ -1,0 +1,79 @@
+//! Warnings of what a file asks for and the image does not show.
+
+use crate::{
+    scene::Scene,
+    unhonoured::{Holder, quoted, rest},
+};
+use std::collections::HashMap;
+
+/// The number of properties that the warning names, and of holders for each.
+const MAX_PROPERTIES: usize = 12;
+const MAX_HOLDERS: usize = 3;
+
+impl Scene {
+    /// Adds one warning that names every property that the image does not show, though something visible or a light has
+    /// it. What counts for a material depends on whether it is `translucent`.
+    pub fn warn_of_unhonoured(&mut self, translucent: impl Fn(u16) -> bool) {
+        let mut found: Vec<(String, Vec<&Holder>)> = Vec::new();
+        let mut known = HashMap::new();
+        for one in &self.unhonoured {
+            let is_translucent = matches!(&one.holder, Some(Holder::Material(k)) if translucent(*k));
+            let Some(taken) = one.on[usize::from(is_translucent)] else { continue };
+            let property = format!("{}{}", one.property, taken_as(taken));
+            let index = *known.entry(property).or_insert_with_key(|property| {
+                found.push((property.clone(), Vec::new()));
+                found.len() - 1
+            });
+            found[index].1.extend(&one.holder);
+        }
+        if !found.is_empty() {
+            let named: Vec<String> =
+                found.iter().take(MAX_PROPERTIES).map(|(p, holders)| self.named(p, holders)).collect();
+            let more = rest(found.len() - named.len());
+            let named = named.join(", ");
+            self.warnings.push(format!("not honoured: {named}{more}; docs/scenes.md says what is"));
+        }
+    }
+
+    /// Adds a warning for each translucent material whose texture, alpha or vertex colors are not used.
+    pub fn warn_of_colors(&mut self, translucent: impl Fn(u16) -> bool) {
+        let mut colored = vec![false; self.materials.len()];
+        for t in &self.mesh.triangles {
+            colored[t.material as usize] |= t.vertices.iter().any(|i| self.mesh.vertex_color(*i) != [1.0; 4]);
+        }
+        for (k, material) in self.materials.iter().enumerate() {
+            let unused = [
+                (material.base_texture.is_some(), "base color texture"),
+                (material.cutoff.is_some(), "alphaMode MASK"),
+                (colored[k], "vertex colors"),
+            ];
+            let unused: Vec<&str> = unused.iter().filter(|u| u.0).map(|u| u.1).collect();
+            if translucent(k as u16) && !unused.is_empty() {
+                let (name, what) = (&material.name, unused.join(", "));
+                self.warnings.push(format!("material `{name}`: not used on a translucent surface: {what}"));
+            }
+        }
+    }
+
+    /// A property with its holders.
+    fn named(&self, property: &str, holders: &[&Holder]) -> String {
+        if holders.is_empty() {
+            return property.to_owned();
+        }
+        let name = |holder: &&Holder| match holder {
+            Holder::Material(k) => quoted(self.materials.get(usize::from(*k)).map_or("", |m| &m.name)),
+            Holder::Named(name) => quoted(name),
+            Holder::Numbered(k) => k.to_string(),
+        };
+        let first: Vec<String> = holders.iter().take(MAX_HOLDERS).map(name).collect();
+        format!("{property} ({}{})", first.join(", "), rest(holders.len() - first.len()))
+    }
+}
+
+fn taken_as(numbers: &[f64]) -> String {
+    match numbers {
+        [] => String::new(),
+        [first, others @ ..] if others.iter().all(|x| x == first) => format!(" taken as {first}"),
+        all => format!(" taken as {all:?}"),
+    }
+}

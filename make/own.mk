@@ -1,0 +1,71 @@
+# Your own scene: `make SCENE=path.glb MEDIUM=marble` renders one image for each camera of the file. Offers the target own,
+# and the variables
+#   VIEWS='path/*.json'       one image for each of these view files, or several for one that holds a list of views
+#   MEDIUM=name|file.json     the medium of all translucent surfaces; with an empty MEDIUM= the file's own media
+#   ENVIRONMENT=sky.exr|R,G,B light from all around
+#   TRANSLUCENT='Wax Skin'    the translucent materials, by name
+#   EXPOSURE=1                brightness of the previews, in stops
+
+.PHONY: own
+
+ifneq ($(and $(SCENE),$(CHECKED)),)
+MEDIUM ?= marble
+OWN := $(OUT)/$(notdir $(basename $(SCENE)))/$(RUN_NAME)
+OWN_IMAGES := $(OWN)/$(or $(notdir $(basename $(MEDIUM))),own)-$(MODEL)
+$(eval $(call settings,$(OWN),$$(strip $$(ENVIRONMENT) $$(TRANSLUCENT)),$(SCENE) $(wildcard $(ENVIRONMENT))))
+
+ifdef VIEWS
+VIEW_FILES := $(foreach v,$(VIEWS),$(or $(wildcard $(v)),$(error no view at $(v))))
+VIEW_NAMES := $(basename $(notdir $(VIEW_FILES)))
+$(foreach v,$(VIEW_FILES),$(call check_name,VIEWS,$(v)))
+$(if $(filter-out %.json,$(VIEW_FILES)),$(error VIEWS: not a .json file: $(filter-out %.json,$(VIEW_FILES))))
+$(if $(filter-out $(words $(sort $(VIEW_NAMES))),$(words $(VIEW_NAMES))),$(error VIEWS: two files of one name: $(VIEW_FILES)))
+# LISTS are the view files that hold a list of views, which gather tells from the others: it must be built by now.
+ifeq ($(wildcard $(GATHER)),)
+include $(BIN)/built.mk
+endif
+$(BIN)/built.mk: | build
+	@touch $@
+LISTS := $(shell for view in $(VIEW_FILES); do \
+  case $$($(GATHER) --list-images --quiet --view $$view -o image.exr 2>/dev/null) in (image.*.exr) echo $$view; esac; done)
+# The images of a list NAME.json are NAME.VIEW.exr. NAME.views is written when all of them are there, and lists them.
+$(foreach l,$(basename $(notdir $(LISTS))),$(if $(filter $(l).%,$(VIEW_NAMES)),$(error VIEWS: an image of the list $(l).json could \
+  have the name of that of $(firstword $(filter $(l).%,$(VIEW_NAMES))).json; rename one of them)))
+picture_of = $(OWN_IMAGES)/$(notdir $(basename $(1))).$(if $(filter $(1),$(LISTS)),views,exr)
+OWN_PICTURES := $(foreach v,$(VIEW_FILES),$(call picture_of,$(v)))
+else
+# gather lists the cameras of the file. Make writes that list first, and then reads it.
+include $(OWN).cameras
+OWN_PICTURES := $(CAMERAS:%=$(OWN_IMAGES)/camera%.exr)
+endif
+
+own: $(OWN_PICTURES)
+	@echo "The pictures are in $(OWN_IMAGES)/: one .png and one OpenEXR image for each view."
+
+$(OWN).cameras: $(SCENE) $(OWN).settings | $(GATHER)
+	@$(GATHER) --list-cameras --quiet '$<' > $@.list
+	@sed -e 1d -e 's/ .*//' -e 's/^/CAMERAS += /' $@.list > $@
+	@rm $@.list
+	@test -s $@ || { echo "$<: it has no camera; give VIEWS='path/*.json'" >&2; exit 2; }
+
+$(OWN).cloud: $(SCENE) $(OWN).settings crates/formats/cloud-version | $(SAMPLE)
+	$(SUBMIT) $(SAMPLE) --threads $(THREADS) --seed $(SEED) --samples $(SAMPLES) $(foreach t,$(TRANSLUCENT),--translucent $(call quoted,$(t))) \
+	  $(if $(ENVIRONMENT),--environment $(ENVIRONMENT)) '$<' -o $@
+
+# $(call lost_of_list,NAME.views) remakes a list of which an image or a preview is missing.
+lost_of_list = $(shell cd $(dir $(1)) 2>/dev/null && while IFS= read -r image; do [ -e "$$image" ] && [ -e "$${image%.exr}.png" ] || \
+  echo .FORCE; done 2>/dev/null < $(notdir $(1)))
+
+# $(1) image, or the .views file of a list; $(2) view file, if it has one; $(3) option that chooses the camera. A medium may
+# be one of the built-in media, which are those of data/media.
+define own_picture
+$(call settings,$(basename $(1)),--spp $$(SPP) --exposure $$(EXPOSURE) --medium $$(MEDIUM) $(3),$(wildcard $(MEDIUM) data/media/$(MEDIUM).json) $(2))
+$(1): $(OWN).cloud $(OWN).settings $(basename $(1)).settings $(if $(filter %.views,$(1)),$(call lost_of_list,$(1)),$(call \
+  unless_there,$(basename $(1)).png)) | $(GATHER)
+	$$(SUBMIT) $(GATHER) --threads $$(THREADS) --seed $$(SEED) --spp $$(SPP) --bssrdf $$(MODEL) $$(if $$(MEDIUM),--medium $$(MEDIUM)) $(3) \
+	  $$(if $$(ENVIRONMENT),--environment $$(ENVIRONMENT)) --preview $$(basename $$@).png --exposure $$(or $$(EXPOSURE),0) $$< '$$(SCENE)' -o $$(basename $$@).exr
+	$(if $(filter %.views,$(1)),@$(GATHER) --list-images --quiet $(3) -o $$(basename $$(@F)).exr > $$@)
+endef
+$(foreach c,$(CAMERAS),$(eval $(call own_picture,$(OWN_IMAGES)/camera$(c).exr,,--camera index:$(c))))
+$(foreach v,$(VIEW_FILES),$(eval $(call own_picture,$(call picture_of,$(v)),$(v),--view $(v))))
+endif

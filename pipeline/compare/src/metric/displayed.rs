@@ -1,0 +1,77 @@
+//! Metrics of the picture as a screen displays it: tile by tile, of display values.
+
+use rayon::prelude::*;
+use simd::Kernel;
+
+use super::display::display;
+use super::picture::Picture;
+use super::tile::{Plane, SIDE, Tile, planes};
+
+/// A metric of display values that is made of a sum over tiles and channels.
+#[derive(Debug)]
+pub(super) struct DisplayedMetric {
+    /// Its key in the JSON report.
+    pub key: &'static str,
+    /// What a channel of a tile adds to the sum. The planes `reference` and `test` must stay as they are.
+    pub sum: fn(Tile, &mut Scratch) -> f64,
+    /// The metric of a picture of this size in pixels as a function of the sum over all tiles and the three channels, or why
+    /// there is none.
+    pub value: fn(f64, [usize; 2]) -> Result<f64, String>,
+    /// The metric in words.
+    pub words: fn(f64) -> String,
+}
+
+/// The memory that one thread needs for one channel of a tile.
+pub(super) struct Scratch {
+    /// Display values of the reference.
+    pub reference: Box<Plane>,
+    /// Display values of the test image.
+    pub test: Box<Plane>,
+    /// Intermediate results of a metric.
+    pub work: [Box<Plane>; 7],
+}
+
+impl Default for Scratch {
+    fn default() -> Scratch {
+        let [reference, test] = planes();
+        Scratch { reference, test, work: planes() }
+    }
+}
+
+/// The sum of each metric over the tiles and the three channels of a finite picture.
+pub(super) fn sums(metrics: &[DisplayedMetric], picture: &Picture<'_>) -> Vec<f64> {
+    let band = |scratch: &mut Scratch, band| {
+        let mut sums = vec![0.0; metrics.len()];
+        for tile in Tile::of_band(picture.size, band) {
+            for (reference, test) in picture.reference.iter().zip(&picture.test) {
+                tile.load(reference, &mut scratch.reference);
+                tile.load(test, &mut scratch.test);
+                simd::dispatch(Display { planes: [&mut scratch.reference, &mut scratch.test] });
+                for (sum, metric) in sums.iter_mut().zip(metrics) {
+                    *sum += (metric.sum)(tile, scratch);
+                }
+            }
+        }
+        sums
+    };
+    let bands: Vec<Vec<f64>> =
+        (0..picture.size[1].div_ceil(SIDE)).into_par_iter().map_init(Scratch::default, band).collect();
+    (0..metrics.len()).map(|metric| bands.iter().map(|sums| sums[metric]).sum()).collect()
+}
+
+struct Display<'a> {
+    planes: [&'a mut Plane; 2],
+}
+
+impl Kernel for Display<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for plane in self.planes {
+            for value in plane {
+                *value = display(*value);
+            }
+        }
+    }
+}
