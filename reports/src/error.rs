@@ -1,22 +1,22 @@
-//! What can go wrong while measuring.
+//! Errors of a measurement.
 
 use std::{
     fmt, io,
     path::{Path, PathBuf},
 };
 
-/// Why a measurement ended.
+/// The reason why a measurement ended.
 #[derive(Debug)]
 pub enum Error {
-    /// The command line, or what it names, is no use.
+    /// The command line, or what it names, cannot be used.
     Usage(String),
     /// A file or folder could not be read or written.
     File { path: PathBuf, source: io::Error },
     /// A program could not be started.
     Start { program: PathBuf, source: io::Error },
-    /// A program ended with another exit code than 0; none if a signal ended it.
+    /// A program ended with an exit code other than 0; none if a signal ended it.
     Failed { program: PathBuf, arguments: Vec<String>, code: Option<i32>, message: String },
-    /// A program wrote something that is not what it should be.
+    /// A program wrote an invalid file.
     Unreadable { path: PathBuf, message: String },
 }
 

@@ -1,5 +1,5 @@
-//! Measures what the models and the programs are worth, and writes it to `docs/reports`. `make accuracy`, `make curve`,
-//! `make curve-full` and `make scale` are its users.
+//! Measures the error of the models and the speed of the programs, and writes it to `docs/reports`. Called by `make
+//! accuracy`, `make curve`, `make curve-full` and `make scale`.
 
 mod accuracy;
 mod error;
@@ -16,7 +16,7 @@ use std::{
     process::ExitCode,
 };
 
-/// Measures what the models and the programs are worth
+/// Measures the error of the models and the speed of the programs
 #[derive(Parser)]
 struct Arguments {
     /// Folder that the report is written to
@@ -45,7 +45,7 @@ enum Report {
         #[arg(long, conflicts_with = "full")]
         tiny: bool,
     },
-    /// What sizes cost, and what that says of farms: scale.md
+    /// Cost of clouds and images of many sizes, and a forecast for farms: scale.md
     Scale {
         /// Folder of sample-surface and gather
         #[arg(long)]

@@ -1,4 +1,4 @@
-//! Tables in Markdown, and numbers and amounts as they stand in them.
+//! Tables in Markdown, and the numbers in them.
 
 /// A table in Markdown.
 pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
@@ -9,7 +9,7 @@ pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
     text
 }
 
-/// Three significant digits.
+/// A number with three significant digits.
 pub fn three(x: f64) -> String {
     if x == 0.0 || !x.is_finite() {
         return format!("{x}");
@@ -23,7 +23,7 @@ pub fn three(x: f64) -> String {
     }
 }
 
-/// A share as per cent, two significant digits and more.
+/// A share in per cent, with three significant digits.
 pub fn percent(x: f64) -> String {
     format!("{} %", three(100.0 * x))
 }

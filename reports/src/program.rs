@@ -1,4 +1,4 @@
-//! The two programs as child processes, with what they cost.
+//! The two programs as child processes, and their cost.
 
 use crate::error::Error;
 use serde_json::Value;
@@ -9,19 +9,20 @@ use std::{
     time::Instant,
 };
 
-/// What one process cost, from its start to its end, and what it says of itself.
+/// Cost of one process, from its start to its end, and its statistics.
 #[derive(Clone, Debug)]
 pub struct Spent {
-    /// Seconds on the wall's clock.
+    /// Seconds of wall clock time.
     pub wall: f64,
-    /// User and system seconds of the whole process; the wall's where the system does not tell (right for one thread).
+    /// User and system seconds of the whole process; wall clock time where the system does not report them (correct
+    /// for one thread).
     pub cpu: f64,
     /// The contents of `--stats`.
     pub statistics: Value,
 }
 
 impl Spent {
-    /// Seconds of one step, as the program says.
+    /// Seconds of one step, from the statistics.
     pub fn step(&self, name: &str) -> f64 {
         self.statistics["seconds"][name].as_f64().unwrap_or(0.0)
     }
@@ -39,7 +40,7 @@ pub struct Program {
 }
 
 impl Program {
-    /// A program of a folder; an error says how to build it.
+    /// Finds a program in a folder; the error says how to build it.
     pub fn of(folder: &Path, name: &str) -> Result<Program, Error> {
         let path = folder.join(name);
         match fs::metadata(&path) {
@@ -48,12 +49,12 @@ impl Program {
         }
     }
 
-    /// Runs the program to its end; `statistics` is where it may put a file for a moment.
+    /// Runs the program to its end; `statistics` is the file for its statistics.
     pub fn run(&self, arguments: &[String], statistics: &Path) -> Result<Spent, Error> {
         self.run_list(arguments, statistics, statistics)
     }
 
-    /// The same where it writes statistics of each image: `last` is the file that is read.
+    /// The same for a program that writes statistics of each image: `last` is the file that is read.
     pub fn run_list(&self, arguments: &[String], statistics: &Path, last: &Path) -> Result<Spent, Error> {
         let mut command = Command::new(&self.path);
         command.args(arguments).arg("--stats").arg(statistics).args(["--quiet", "--progress", "none"]);
@@ -73,13 +74,13 @@ impl Program {
     }
 }
 
-/// User and system seconds of all children that have ended, where the system tells: fields 16 and 17 of
+/// User and system seconds of all children that have ended, where the system reports them: fields 16 and 17 of
 /// /proc/self/stat, in ticks of 10 ms on every Linux (proc(5); USER_HZ is part of its interface).
 fn children_cpu_seconds() -> Option<f64> {
     children_ticks(&fs::read_to_string("/proc/self/stat").ok()?).map(|ticks| ticks / 100.0)
 }
 
-/// The name of the process may hold spaces and brackets: fields are counted from its last bracket.
+/// Fields are counted from the last bracket, because the name of the process may hold spaces and brackets.
 fn children_ticks(text: &str) -> Option<f64> {
     let (_, rest) = text.rsplit_once(')')?;
     let mut fields = rest.split_whitespace().skip(13);

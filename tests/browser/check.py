@@ -1,4 +1,4 @@
-"""One line for each thing that was looked at."""
+"""Prints one line for each check."""
 
 failures = []
 

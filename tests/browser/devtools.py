@@ -1,4 +1,4 @@
-"""Chromium without a window, spoken to by the DevTools protocol over a pipe: no port, no package."""
+"""Headless Chromium, controlled by the DevTools protocol over a pipe: no port, no package."""
 
 import base64
 import json
@@ -19,7 +19,7 @@ def find():
 
 
 class Browser:
-    """A browser with one page; `complaints` is what it said that no good page makes it say."""
+    """A browser with one page; `complaints` are the errors and warnings of its console."""
 
     def __init__(self, program, width=1280, height=900):
         self.folder = tempfile.TemporaryDirectory()
@@ -45,7 +45,7 @@ class Browser:
         self.folder.cleanup()
 
     def call(self, method, **parameters):
-        """Result of a command; what happens meanwhile is noted."""
+        """Result of a command; events that arrive meanwhile are recorded."""
         self.last += 1
         message = {"id": self.last, "method": method, "params": parameters}
         if self.session:
@@ -84,14 +84,14 @@ class Browser:
             self.requests.append(event["request"]["url"])
 
     def run(self, script):
-        """Value of a script in the page; promises are waited for."""
+        """Value of a script in the page; promises are awaited."""
         result = self.call("Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True)
         if "exceptionDetails" in result:
             raise RuntimeError(result["exceptionDetails"].get("exception", {}).get("description", script))
         return result["result"].get("value")
 
     def wait(self, condition, seconds=20):
-        """Until a script is true in the page."""
+        """Waits until a script is true in the page."""
         end = time.monotonic() + seconds
         while not self.run(condition):
             if time.monotonic() > end:
@@ -104,7 +104,7 @@ class Browser:
         self.settle()
 
     def settle(self):
-        """Until what was asked for is drawn."""
+        """Waits until the page is drawn."""
         self.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done))))")
 
     def resize(self, width, height, density=1):

@@ -13,7 +13,7 @@ def float32(value):
 
 
 def exr(channels, attributes, width=WIDTH, height=HEIGHT, window=WINDOW):
-    """The bytes of a file: uncompressed float32 scan lines. `channels` are rows after each other, by name."""
+    """The bytes of a file: uncompressed float32 scan lines. `channels` are rows one after the other, by name."""
     names = sorted(channels)
     text = lambda value: value.encode() + b"\0"
     box = struct.pack("<4i", *window, window[0] + width - 1, window[1] + height - 1)
@@ -36,12 +36,12 @@ def exr(channels, attributes, width=WIDTH, height=HEIGHT, window=WINDOW):
 
 
 def number(x, y):
-    """Place of a pixel, in coordinates of the data window, in its channel."""
+    """Index of a pixel, given in coordinates of the data window, in its channel."""
     return (y - WINDOW[1]) * WIDTH + x - WINDOW[0]
 
 
 def pair():
-    """Channels of reference and test. Blue is 0.1 brighter in the test image, but for what is said below."""
+    """Channels of reference and test. Blue is 0.1 brighter in the test image, except for the pixels changed below."""
     count = WIDTH * HEIGHT
     plane = lambda shift: [0.05 + ((i * 7 + shift) % 13) / 16 for i in range(count)]
     reference = {"R": plane(0), "G": plane(3), "B": plane(5), "Z": [1 + i % WIDTH / 4 for i in range(count)], HOSTILE + ".Y": plane(1),

@@ -1,4 +1,4 @@
-"""Light and dark, narrow and wide; and the index of several reports."""
+"""Themes and widths of the page, and the index of several reports."""
 
 import check
 
@@ -18,7 +18,7 @@ CONTRAST = """(() => {
   return low;
 })()"""
 
-# What can be scrolled by itself may be wider, and the handle of the split is by half its width.
+# Elements that scroll by themselves may be wider, and the handle of the split overhangs by half its width.
 OUTSIDE = """[...document.querySelectorAll('body *')].filter((node) => node.checkVisibility() && !node.closest('.scroll, svg') && node.id !== 'split'
   && node.getBoundingClientRect().right > innerWidth + 1).map((node) => `${node.tagName} ${node.id}`)"""
 

@@ -1,4 +1,4 @@
-"""What the report of two images does, with the mouse and with keys."""
+"""The report of two images, operated by mouse and keys."""
 
 import math
 
@@ -10,7 +10,7 @@ MAGENTA = [255, 0, 212, 255]
 
 
 def srgb(linear):
-    """The standard's curve, IEC 61966-2-1, as an eight-bit code."""
+    """The sRGB curve (IEC 61966-2-1) as an eight-bit code."""
     linear = min(max(linear, 0.0), 1.0)
     curve = 12.92 * linear if linear <= 0.0031308 else 1.055 * linear ** (1 / 2.4) - 0.055
     return math.floor(255 * curve + 0.5)
@@ -27,13 +27,13 @@ class Report:
         return self.browser.run(f"document.querySelector({selector!r}).textContent")
 
     def place(self, x, y):
-        """Where the middle of a pixel lies on the screen; it may be outside the window."""
+        """Screen coordinates of the middle of a pixel; they may be outside the window."""
         return self.browser.run(f"""(() => {{ const box = stage.getBoundingClientRect(); const pane = panes().at(-1);
             const [x, y] = toStage(pane, {x - WINDOW[0] + 0.5}, {y - WINDOW[1] + 0.5});
             return [box.left + x / density(), box.top + y / density()]; }})()""")
 
     def color(self, x, y, shift=0.25):
-        """What the canvas shows in a pixel, beside its middle, where no value is written."""
+        """Color of the canvas in a pixel, beside its middle, where no value is written."""
         return self.browser.run(f"""(() => {{ const pane = panes().at(-1);
             const place = toStage(pane, {x - WINDOW[0]} + {shift}, {y - WINDOW[1]} + {shift}).map(Math.round);
             const one = new OffscreenCanvas(1, 1).getContext('2d', {{ willReadFrequently: true }});

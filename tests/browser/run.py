@@ -20,7 +20,7 @@ import looks
 import report
 from images import HOSTILE, exr, pair
 
-# A name that a file can have: quotes, markup, and what an address would take for something else.
+# A valid file name with quotes, markup, and characters that have a meaning in addresses.
 HOSTILE_FILE = "a'\"<b>&#%?.exr"
 
 

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# Runs `make check` under new seeds again and again, and counts how often it fails.
+# Runs `make check` repeatedly with new seeds, and counts its failures.
 #
-#     tests/check/alarms.sh [RUNS]      200 unless said otherwise; the result goes to standard output
+#     tests/check/alarms.sh [RUNS]      200 by default; the result goes to standard output
 #
-# OUT/alarms.log keeps what each run said: started again, it goes on where it was.
+# OUT/alarms.log keeps the output of each run, so that a second start continues.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 runs=${1:-200}
-# Seeds below are those of the reference and of `make check` itself.
+# Smaller seeds are those of the reference and of `make check` itself.
 first=2000
 out=${OUT:-out}
 log=$out/alarms.log
@@ -24,8 +24,8 @@ for ((run = 0; run < runs; run++)); do
     rm -rf "$out/check/s$seed-n8"
 done
 
-# Of each run the least chance of all its tests, corrected for their number: uniform, or rather larger, as tests of one
-# image are related.
+# The smallest p-value of each run, corrected for the number of its tests: uniform, or somewhat larger, since the tests of one
+# image are correlated.
 awk -v runs="$runs" '
     $2 == "FAIL" { failed[$1] = 1 }
     $2 == "PASS" {

@@ -1,4 +1,4 @@
-//! The first values of every random stream: changing them is a deliberate act.
+//! The first values of every random stream: they may change only on purpose.
 
 use gather::estimator::random_bits;
 use scene::{
@@ -6,7 +6,7 @@ use scene::{
     sequence::Sequence,
 };
 
-/// Changing these changes every cloud and image: a new cloud version, and new golden images.
+/// If these change, every cloud and image changes, which takes a new cloud version and new golden statistics.
 #[test]
 fn first_random_numbers_are_pinned() {
     let bits = |stream: Stream, item: u64| [0, 1, 2, 3].map(|d| stream.item(item).bits(d));
@@ -38,14 +38,14 @@ fn seeds_of_shards_are_pinned() {
     assert_eq!(seeds, [0xc8ff_7482_f64a_b898, 0xffa3_aca3_3bcd_be3c, 0xec43_d485_926f_625a, 0x2685_e3c5_3263_b668]);
 }
 
-/// The roulette's own bits: changing these changes images, not clouds.
+/// The random bits of the roulette: if these change, images change, but not clouds.
 #[test]
 fn first_bits_of_the_roulette_are_pinned() {
     let values = [(1, 0), (0, 1 << 32), (7, 0x0123_4567_89ab_cdef)].map(|(index, key)| random_bits(index, key));
     assert_eq!(values, [0x58f5_4975, 0x6889_90c0, 0xc4fb_e3e2]);
 }
 
-/// The scrambled sequences that samples and camera rays are spread by: changing them changes every cloud and image.
+/// The scrambled sequences that spread samples and camera rays: if these change, every cloud and image changes.
 #[test]
 fn first_points_of_the_sequences_are_pinned() {
     let stream = Stream::new(0, Purpose::Scramble);

@@ -15,7 +15,7 @@ use test_support::{
     planted::stored,
 };
 
-/// Two bodies, three kinds of light, shadows.
+/// Two objects, three kinds of light, shadows.
 pub fn still_life() -> World {
     let lights = [
         Light::Directional { towards: DVec3::new(0.48, 0.6, 0.64), irradiance: DVec3::new(1.0, 0.8, 0.5) },
@@ -50,9 +50,9 @@ fn clouds_have_the_same_bytes_for_any_number_of_threads() {
     }
 }
 
-/// Other samples in both halves, not one of them in common; and so has another pattern, and another shard.
+/// A different seed, pattern or shard gives different samples in both halves, without a common one.
 ///
-/// Seen to catch: a seed that the pattern does not heed.
+/// Seen to catch: a seed that the pattern ignores.
 #[test]
 fn another_seed_gives_other_samples() {
     let world = still_life();

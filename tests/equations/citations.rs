@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The sources under a folder.
+/// All source files below a folder.
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).expect("lists") {
         let path = entry.expect("an entry").path();
@@ -17,7 +17,7 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The numbers that follow a citation: `5.8`, `(6.7)`, `5.2, 5.3`, `9.1 to 9.5`, `5.10 by 9.5`.
+/// The equation numbers that follow a citation: `5.8`, `(6.7)`, `5.2, 5.3`, `9.1 to 9.5`, `5.10 by 9.5`.
 fn numbers(after: &str) -> Vec<&str> {
     let end = after.find(|c: char| !(c.is_ascii_digit() || " .,()\n/!tobyand".contains(c))).unwrap_or(after.len());
     let words = after[..end].split(|c: char| !(c.is_ascii_digit() || c == '.')).map(|word| word.trim_matches('.'));
@@ -54,7 +54,7 @@ fn every_equation_that_is_cited_is_in_the_document() {
     assert!(cited > 40, "only {cited} citations were found");
 }
 
-/// docs/architecture.md names only files that exist, and says of every equation of the note where it is in the code.
+/// docs/architecture.md names only files that exist, and says where in the code every equation of the note is.
 ///
 /// Seen to catch: a file that was renamed, a label without its row, a row with another file.
 #[test]

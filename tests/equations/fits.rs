@@ -1,11 +1,11 @@
-//! The published fits of the interface against the integrals that they stand for.
+//! The published fits of Fresnel moments against the integrals that they approximate.
 
 use bssrdf::{Interface, fresnel};
 use std::f64::consts::PI;
 use test_support::quadrature::integrate;
 
-/// `∫₀¹ f(c) dc` where f has a root's cusp at the critical angle of an interface to `eta_ratio`: split there, with the
-/// root taken out by squaring the variable.
+/// `∫₀¹ f(c) dc` where f has a cusp of a square root at the critical angle of an interface of ratio `eta_ratio`: the
+/// interval is split there, and squaring the variable removes the root.
 fn over_cosine(eta_ratio: f64, f: impl Fn(f64) -> f64) -> f64 {
     let critical = if eta_ratio < 1.0 { (1.0 - eta_ratio * eta_ratio).sqrt() } else { 0.0 };
     let beyond = 1.0 - critical;
@@ -19,7 +19,7 @@ fn moment(n: f64, power: i32) -> f64 {
     over_cosine(1.0 / n, |c| (1.0 - fresnel::transmittance(c, 1.0 / n)) * c.powi(power))
 }
 
-/// How far the fits are off: by about 10⁻⁴ at most below 1; above, most where the branches meet at 1.
+/// Errors of the fits: at most about 10⁻⁴ below an index of 1; above, largest where the branches meet at 1.
 #[test]
 fn fresnel_moments_are_as_close_as_published() {
     for (low, high, first, second) in [(0.5, 0.99, 8e-5, 1.3e-4), (1.0, 1.25, 4.5e-3, 7e-3), (1.3, 2.5, 1.5e-3, 7e-3)] {
@@ -34,8 +34,8 @@ fn fresnel_moments_are_as_close_as_published() {
     }
 }
 
-/// `C_φ(η)/C_φ(1/η)`, which the radiance of the models is in proportion to, near equal indices: beside η = 1 the published
-/// branches are off by 0.41 % either way; where they are led over to each other, by a tenth of that.
+/// `C_φ(η)/C_φ(1/η)`, to which the radiance of the models is proportional, near equal indices: beside η = 1 the
+/// published branches are off by 0.41 % in either direction; where ours blends them, by a tenth of that.
 #[test]
 fn moments_of_almost_equal_indices() {
     let mut worst = [0.0f64; 2];
@@ -56,7 +56,7 @@ fn moments_of_almost_equal_indices() {
     }
 }
 
-/// The fit of Egan and Hilgeman is one of `2C₁` too, to three digits.
+/// The fit of Egan and Hilgeman approximates `2C₁` as well, to three digits.
 #[test]
 fn diffuse_reflectance_is_the_first_moment() {
     for (low, high, allowed) in [(0.6, 0.98, 2e-3), (1.04, 2.0, 2e-3)] {
@@ -77,7 +77,7 @@ fn transmitted_lobe_has_the_norm_of_the_exit() {
         let lobe = 2.0 * PI * over_cosine(eta, |c| fresnel::transmittance(c, eta) * c);
         let (exact, fit) = (PI * (1.0 - 2.0 * moment(1.0 / eta, 1)), PI * Interface::new(eta).exit_norm);
         assert!((lobe / exact - 1.0).abs() < 1e-10, "{eta}: {lobe} for {exact}");
-        // The fit's error of 2C₁ below 1.
+        // The error of the fit of 2C₁ below an index of 1.
         assert!((lobe - fit).abs() < PI * 8e-5, "{eta}: {lobe} for {fit}");
     }
 }

@@ -34,13 +34,13 @@ fn media_have_their_tabulated_reflectance() {
     }
 }
 
-/// A medium from the color that it is to show, mm.
+/// A medium from its diffuse color; lengths in mm.
 fn colored(color: [f64; 3], radius: [f64; 3], rest: &str) -> Result<Medium, MediumError> {
     Medium::from_json(&format!(r#"{{"name":"test","unit":"mm","color":{color:?},"radius":{radius:?}{rest}}}"#))
 }
 
-/// The half-space of that medium reflects the color asked for: by the closed form (3.5), and by the integral of the
-/// model itself over a plane. Planted: one index for all media (10 % in a dark color).
+/// A half-space of that medium reflects the color: by the closed form (3.5), and by the integral of the model itself
+/// over a plane. Planted: one index for all media (10 % in a dark color).
 #[test]
 fn a_medium_shows_the_color_asked_for() {
     for (eta, g) in [(1.0, 0.0), (1.3, 0.0), (1.5, 0.8), (0.7, -0.5)] {
@@ -60,7 +60,7 @@ fn a_medium_shows_the_color_asked_for() {
     }
 }
 
-/// `σ_t = 1/mean free path`, shared out by the albedo.
+/// `σ_t = 1/mean free path`, divided by the albedo.
 #[test]
 fn a_medium_by_albedo_and_mean_free_path() {
     let text = r#"{"name":"test","unit":"m","albedo":[0.75,0,1],"mean_free_path":[0.5,4,0.125],"g":0.5}"#;
@@ -95,7 +95,7 @@ fn fields_of_two_ways_to_give_a_medium_do_not_mix() {
     assert!(message([0.5; 3], [1.0, 0.0, 1.0]).contains("`radius`: 0 is not a length above zero"));
 }
 
-/// The checks of the drafts' own text, and the ends of the range for every `g`.
+/// The examples in the text of the drafts, and the ends of the range for every `g`.
 #[test]
 fn the_albedo_of_the_gltf_drafts() {
     assert!((single_scattering_albedo(0.5, 0.0) - 0.9117).abs() < 5e-5);
@@ -107,14 +107,14 @@ fn the_albedo_of_the_gltf_drafts() {
     assert!((single_scattering_albedo(0.5, 0.5) - 0.9117 / (1.0 - 0.5 * 0.0883)).abs() < 1e-4);
 }
 
-/// What the drafts' formula is for: without a reflecting boundary, the medium shows the color under light from all
-/// around, to the 1 % that the fit is good for. Random walks, false alarms 1 in 10⁵. Planted: the albedo 2 % too low.
+/// The purpose of the formula of the drafts: without a reflecting boundary, the medium shows the color under a
+/// constant environment, to the 1 % of the fit. Random walks, false alarms 1 in 10⁵. Planted: the albedo 2 % too low.
 #[test]
 fn the_drafts_color_is_that_of_random_walks() {
     let walks = if cfg!(feature = "slow") { 1_000_000 } else { 50_000 };
     for color in [0.1, 0.5, 0.9] {
         let matter = Matter { albedo: single_scattering_albedo(color, 0.0), asymmetry: 0.0, eta: 1.0 };
-        // Light from all around has cosines of density 2c: their middles by tenths.
+        // Under a constant environment cosines have the density 2c: the centres of ten strata.
         let tenths = (0..10u64).map(|k| {
             let cosine = ((k as f64 + 0.5) / 10.0).sqrt();
             slab(&matter, f64::INFINITY, cosine, walks / 10, k).reflected
@@ -170,7 +170,7 @@ fn without_absorption_values_are_finite() {
     }
 }
 
-/// A file in 1/mm is the same medium as one in 1/m with numbers 1000 times larger.
+/// A file in 1/mm gives the same medium as one in 1/m with numbers 1000 times larger.
 #[test]
 fn units_are_converted_once() {
     let file = |unit: &str, s: f64| {

@@ -8,8 +8,8 @@ use test_support::{
     quadrature::{Extent, plane_integral},
 };
 
-/// Far and near enough for five digits: S is flat within 10⁻⁴ mean free paths, and e^{−40} or, without absorption, the
-/// tail of r⁻³ is left out.
+/// Limits that are good for five digits: S is constant within 10⁻⁴ mean free paths, and the part beyond is e^{−40}
+/// or, without absorption, the tail of r⁻³.
 fn extent(medium: &Medium) -> Extent {
     let c = medium.channels[0];
     let (path, transport) = (1.0 / c.reduced_extinction(), c.transport().min(c.grosjean_transport()));
@@ -50,7 +50,8 @@ fn entries() -> Vec<ReferenceValue> {
     file["entries"].as_array().expect("a list").iter().map(read).collect()
 }
 
-/// The table claims five digits and has nine; the light of the radially symmetric models does not depend on the angle.
+/// The table claims five digits and has nine; for the radially symmetric models the integral does not depend on the
+/// angle.
 #[test]
 fn plane_integrals_agree_with_the_table() {
     let mut worst = 0.0f64;
@@ -108,7 +109,7 @@ fn total_reflectance_has_its_closed_form() {
     println!("worst error {worst:.1e}");
 }
 
-/// With no absorption the surface gives back what enters, but for the exit normalisation that the model lacks.
+/// Without absorption the surface returns what enters, up to the exit normalization that the model lacks.
 #[test]
 fn the_standard_dipole_of_a_white_medium_reflects_everything() {
     assert!((standard_closed_form(&grey(0.0, 5.0, 0.0, 1.3)) - 1.0).abs() < 1e-15);

@@ -1,7 +1,7 @@
 //! `S`, `S_gather`, `S_bare`, the transmittances and the refracted direction at the reference vectors, in float64 and
 //! in float32.
 //!
-//! Lengths and coefficients go in as they stand: one unit of length is called a metre here, so that no conversion
+//! Lengths and coefficients are used as they are: one unit of length is called a metre here, so that no conversion
 //! rounds the inputs.
 
 use bssrdf::{
@@ -59,7 +59,7 @@ fn vectors() -> Vec<Vector> {
     vectors
 }
 
-/// Relative error, where zero is expected 0 or infinite.
+/// Relative error; where zero is expected, 0 or infinite.
 fn relative(value: f64, expected: f64) -> f64 {
     if value == expected { 0.0 } else { (value / expected - 1.0).abs() }
 }
@@ -92,7 +92,7 @@ fn interface_agrees_with_the_reference() {
         let out = v.exitant.normal.dot(v.exitant.direction);
         for (cosine, expected) in [(inward, v.transmittances[0]), (out, v.transmittances[1])] {
             let value = fresnel::transmittance(cosine, eta);
-            // Without an entry nothing leaves, and the vectors then give no T21.
+            // Where no light enters, none leaves, and the vectors give no T21.
             let unused = expected == 0.0 && v.refracted.is_none();
             assert!(unused || relative(value, expected) < 1e-13, "{}: T = {value:e} for {expected:e}", v.tag);
         }
@@ -106,7 +106,7 @@ fn interface_agrees_with_the_reference() {
     }
 }
 
-/// `S_bare` of one configuration in float32, the difference of positions formed in float64 as `gather` forms it.
+/// `S_bare` of one configuration in float32, with the difference of positions in float64 as in `gather`.
 fn bare_in_float32(model: Model, v: &Vector, refracted: DVec3) -> f64 {
     let lanes = |v: DVec3| v.as_vec3().to_array().map(|x| [x; LANES]);
     let offset = lanes(v.exitant.position - v.incident.position);
@@ -128,7 +128,7 @@ fn float32_agrees_with_the_reference() {
     for v in vectors() {
         let Some(refracted) = v.refracted else { continue };
         for (model, (expected, condition)) in MODELS.into_iter().zip(v.expected) {
-            // At |μ0| < 10⁻⁵ the branch of d_r, and with it a factor of S, hangs on the rounding of n_o and ω12.
+            // At |μ0| < 10⁻⁵ the branch of d_r, and with it a factor of S, depends on the rounding of n_o and ω12.
             let undecided = model == Model::DirectionalDipole && v.mu0.is_some_and(|mu0| mu0.abs() < 1e-5);
             if undecided {
                 continue;

@@ -1,4 +1,4 @@
-//! Scenes whose picture was looked at and kept: a mirrored instance, a node under a stretched parent, two media.
+//! Scenes whose pictures were inspected and stored: a mirrored instance, a node under a stretched parent, two media.
 
 use crate::{
     figure::{FIGURE, Figure},
@@ -14,13 +14,14 @@ use test_support::{
     pipeline::{cloud, settings, stratified},
 };
 
-/// Pixels of a block's side; blocks are compared by their means.
+/// Side of a block, pixels; blocks are compared by their means.
 const BLOCK: usize = 4;
 
-/// As a share of the brightest block: functions of the system's mathematics library differ in their last digits.
+/// Tolerance as a share of the brightest block: functions of the mathematics library of the system differ in their
+/// last digits.
 const TOLERANCE: f64 = 1e-3;
 
-/// The figure's mesh once more, with this transform.
+/// Adds an instance of the mesh of the figure with this transform.
 fn with_instance(figure: Figure, transform: Value) -> Figure {
     let mut node = transform;
     node["mesh"] = json!(0);
@@ -31,7 +32,7 @@ fn mirrored_instance() -> Figure {
     with_instance(Figure::read(), json!({ "translation": [0.02, 0.0, 0.03], "scale": [-0.5, 0.5, 0.5] }))
 }
 
-/// Turned about the view's axis below a parent that is wider than high: the two together shear.
+/// An instance turned about the view axis below a parent that is wider than high: together they shear.
 fn nested_parents() -> Figure {
     let mut figure = Figure::read();
     let turned = json!({ "mesh": 0, "rotation": [0.0, 0.0, 0.258_819_05, 0.965_925_83], "scale": [0.4, 0.4, 0.4] });
@@ -61,7 +62,7 @@ fn picture(world: &World, media: &[&str]) -> Image {
     gather::film::image(&gather::render(&input, &settings, |_| ()).pixels, SIZE, SIZE)
 }
 
-/// Means of the scattered light over blocks, row after row, red, green, blue.
+/// Means of the subsurface layer over blocks, row after row, red, green, blue.
 fn blocks(image: &Image) -> Vec<f64> {
     let across = SIZE / BLOCK;
     let mut means = vec![0.0; 3 * across * across];
@@ -74,8 +75,7 @@ fn blocks(image: &Image) -> Vec<f64> {
     means
 }
 
-/// Seen to catch: the winding of mirrored meshes left as it is; the
-/// media of two materials exchanged.
+/// Seen to catch: the winding of mirrored meshes left as it is; the media of two materials exchanged.
 #[test]
 fn pictures_that_were_looked_at() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("reference/pictures.json");

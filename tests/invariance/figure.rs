@@ -1,4 +1,4 @@
-//! The figure's glTF document, and what can be done to it.
+//! The glTF file of the figure, and edits of it.
 
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
@@ -14,10 +14,10 @@ pub const FIGURE: usize = 0;
 /// Primitives of this material are opaque.
 pub const FLOOR: usize = 1;
 
-/// Radiance of a panel that lights the figure as the other lights do, W/(m² sr).
+/// Radiance of a panel that lights the figure about as much as the other lights do, W/(m² sr).
 pub const PANEL: f64 = 4.0;
 
-/// The figure's file, as it is in the repository or changed.
+/// The file of the figure, unchanged or edited.
 #[derive(Clone)]
 pub struct Figure(pub Asset);
 
@@ -45,7 +45,7 @@ impl Figure {
         imported(&self.0, metres_per_unit, environment)
     }
 
-    /// Everything, lights and cameras too, below a new node with this transform.
+    /// Puts everything, lights and cameras too, below a new node with this transform.
     pub fn under(mut self, transform: Value) -> Figure {
         let mut parent = transform;
         parent["children"] = self.0.json["scenes"][0]["nodes"].take();
@@ -54,7 +54,7 @@ impl Figure {
         self
     }
 
-    /// Every light with this many times the power.
+    /// Multiplies the power of every light.
     pub fn brighter(mut self, factor: f64) -> Figure {
         for light in list(&mut self.0.json["extensions"]["KHR_lights_punctual"]["lights"]) {
             light["intensity"] = json!(number(&light["intensity"]) * factor);
@@ -62,7 +62,7 @@ impl Figure {
         self
     }
 
-    /// Without the lights of these nodes.
+    /// Removes the lights of these nodes.
     pub fn unlit_by(mut self, names: &[&str]) -> Figure {
         for name in names {
             self.node(name)["extensions"] = json!({});
@@ -70,7 +70,7 @@ impl Figure {
         self
     }
 
-    /// One more light in the place of a node's light, with a color of its own.
+    /// Adds a light in the place of a node's light, with a color of its own.
     pub fn with_copy_of(mut self, name: &str, color: DVec3) -> Figure {
         let node = self.node(name).clone();
         let index = index_of(&node["extensions"]["KHR_lights_punctual"]["light"]);
@@ -80,27 +80,27 @@ impl Figure {
         self
     }
 
-    /// One more node at the root.
+    /// Adds a node at the root.
     pub fn with_node(mut self, node: Value) -> Figure {
         self.0.node(node);
         self
     }
 
-    /// One more light at the root: a point light with this intensity, W/sr.
+    /// Adds a point light at the root; intensity in W/sr.
     pub fn with_lamp(mut self, position: DVec3, intensity: f64) -> Figure {
         let node = json!({ "name": "lamp", "translation": position.to_array() });
         self.0.light(json!({ "type": "point", "intensity": intensity }), node);
         self
     }
 
-    /// One more mesh, without normals, at the root.
+    /// Adds a mesh without normals at the root.
     pub fn with_mesh(mut self, mesh: &Mesh, material: usize) -> Figure {
         let primitive = self.primitive(mesh, material);
         let index = self.0.push("meshes", json!({ "primitives": [primitive] }));
         self.with_node(json!({ "mesh": index }))
     }
 
-    /// A glowing square behind the figure, in view.
+    /// Adds an emissive square behind the figure, in view.
     pub fn with_panel(mut self, radiance: f64) -> Figure {
         let strength = json!({ "KHR_materials_emissive_strength": { "emissiveStrength": radiance } });
         let material = json!({ "name": "Panel", "emissiveFactor": [1.0, 0.75, 0.5], "extensions": strength });
@@ -121,7 +121,7 @@ impl Figure {
         &mut self.0.json["meshes"][0]["primitives"]
     }
 
-    /// The figure's positions and triangles, its normals left out.
+    /// Positions and triangles of the figure, without its normals.
     pub fn mesh(&self) -> Mesh {
         let primitive = &self.0.json["meshes"][0]["primitives"][0];
         let indices: Vec<u32> = self.words(index_of(&primitive["indices"])).collect();
@@ -129,13 +129,13 @@ impl Figure {
         Mesh { positions: self.vectors(index_of(&primitive["attributes"]["POSITION"])), triangles }
     }
 
-    /// The vectors of one of the file's own accessors.
+    /// The vectors of one of the file's accessors.
     pub fn vectors(&self, accessor: usize) -> Vec<Vec3> {
         let floats: Vec<f32> = self.words(accessor).map(f32::from_bits).collect();
         floats.chunks_exact(3).map(Vec3::from_slice).collect()
     }
 
-    /// The buffer view of an accessor, which has all of it.
+    /// The words of an accessor, which has a buffer view to itself.
     fn words(&self, accessor: usize) -> impl Iterator<Item = u32> {
         let view = index_of(&self.0.json["accessors"][accessor]["bufferView"]);
         let view = &self.0.json["bufferViews"][view];
@@ -144,14 +144,14 @@ impl Figure {
         words.map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
     }
 
-    /// The figure with another mesh, without normals.
+    /// Replaces the mesh of the figure by one without normals.
     pub fn remeshed(mut self, mesh: &Mesh) -> Figure {
         let primitive = self.primitive(mesh, FIGURE);
         *self.primitives() = json!([primitive]);
         self
     }
 
-    /// A primitive for a mesh, without normals, whose numbers are added to the buffer.
+    /// A primitive for a mesh without normals, whose numbers are added to the buffer.
     fn primitive(&mut self, mesh: &Mesh, material: usize) -> Value {
         let corners: Vec<[f32; 3]> = mesh.positions.iter().map(Vec3::to_array).collect();
         let positions = self.0.vectors(&corners);

@@ -10,21 +10,21 @@ use serde_json::json;
 
 const SKY: DVec3 = DVec3::new(0.5, 0.75, 1.0);
 
-/// All lights, the panel and the sky twice as strong: every number of light has one bit more in its exponent, in all layers, and
-/// nothing else changes. The lights' probabilities do not, nor do the random decisions.
+/// All lights, the panel and the sky twice as strong: every radiometric number has one bit more in its exponent, in
+/// all layers, and nothing else changes: neither the probabilities of the lights nor the random decisions.
 ///
 /// Seen to catch: flux limited to a largest value; the sky's radiance limited to 1 where it is seen.
 #[test]
 fn twice_the_light_is_twice_the_image() {
     let figure = |panel: f64| {
         let mut figure = Figure::read().with_panel(panel);
-        figure.node("Floor")["scale"] = json!([0.03, 1.0, 0.03]); // does not fill the view
+        figure.node("Floor")["scale"] = json!([0.03, 1.0, 0.03]); // the floor does not fill the view
         figure
     };
     let once = figure(PANEL).world_under(SKY);
     let twice = figure(2.0 * PANEL).brighter(2.0).world_under(2.0 * SKY);
     for estimator in [Estimator::Exhaustive, Estimator::Roulette(Rule::Mixture)] {
-        let shot = Shot { estimator, ..Shot::new(9).scaled(100.0) }; // thin enough to see through
+        let shot = Shot { estimator, ..Shot::new(9).scaled(100.0) }; // so thin that the sky is seen through it
         let images = [shot.of(&once), shot.of(&twice)];
         assert_multiple("twice the light", &images[0], &images[1], 2.0);
         for layer in ["emission.G", "transmission.G", "subsurface.G", "specular.G", "diffuse.G"] {
@@ -36,8 +36,8 @@ fn twice_the_light_is_twice_the_image() {
     }
 }
 
-/// A sample picks one light, and stands for all: only means add up. Opaque surfaces take all lights at once, so that
-/// their layer adds up pixel by pixel, to the rounding of its float32.
+/// A sample picks one light to stand for all, so only means add up. Opaque surfaces sum all lights, so that their
+/// layer adds up pixel by pixel, to the rounding of its float32.
 ///
 /// Seen to catch: irradiance not divided by the probability of the light's choice; lights picked alike whatever their
 /// importance, but divided by its share; division by the number of stored samples.
@@ -62,7 +62,7 @@ fn lights_add_up() {
     }
 }
 
-/// White, and its three channels as three lights in the same place.
+/// A white light, and its three channels as three lights in the same place.
 ///
 /// Seen to catch: irradiance not divided by the probability of the light's choice.
 #[test]

@@ -1,8 +1,8 @@
-//! A scene in a mirror: scaled by −1 along X, with lights and cameras, it gives the mirror image.
+//! The mirror image of a scene: scaled by −1 along X, with lights and cameras, it gives the mirrored image.
 //!
-//! The samples of phase one are no mirror images: to face outward again a mirrored triangle is wound the other way,
-//! which exchanges two corners, and the same random numbers put the point elsewhere on it. So phase two is compared
-//! pixel by pixel with the mirror image of a cloud, phase one by its mean.
+//! The samples of the mirrored scene are no mirror images: to face outward again a mirrored triangle is wound the
+//! other way, which exchanges two corners, and the same random numbers put the point elsewhere on it. So gathering is
+//! compared pixel by pixel on the mirror image of a cloud, and sampling by its mean.
 
 use crate::{
     figure::{Figure, PANEL},
@@ -25,7 +25,7 @@ fn mirrored() -> World {
     Figure::read().with_panel(PANEL).under(json!({ "scale": MIRROR.to_array() })).world()
 }
 
-/// A medium with the index 1: no path is reflected, whatever its random numbers, which belong to the pixel.
+/// A medium with the index 1: no path is reflected, whatever the random numbers, which belong to the pixel.
 fn matched(medium: &Medium) -> Medium {
     test_support::pipeline::medium(medium.channels, 1.0)
 }
@@ -59,7 +59,8 @@ fn the_mirror_image_of_a_cloud_gives_the_mirror_image() {
     }
 }
 
-/// Cloud by cloud, since the same numbers choose the same triangles: most of the noise cancels.
+/// The means are compared cloud by cloud: the same numbers choose the same triangles, so that most of the noise
+/// cancels.
 ///
 /// Seen to catch: the winding of mirrored meshes left as it is; interpolated normals, or the axes of spot lights, not
 /// mirrored.

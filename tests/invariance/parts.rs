@@ -9,8 +9,8 @@ use serde_json::{Value, json};
 use std::ops::Range;
 use test_support::meshes::World;
 
-/// Primitives with some of the triangles each, in their order: alternately by indices into the figure's own buffers, and
-/// with vertices of their own and no indices.
+/// Primitives with some of the triangles each, in their order: alternately by indices into the buffers of the figure,
+/// and by vertices of their own without indices.
 fn portions(figure: &mut Figure, count: usize) -> Vec<Value> {
     let triangles = figure.mesh().triangles.len();
     let range = |k: usize| k * triangles / count..(k + 1) * triangles / count;
@@ -40,7 +40,7 @@ fn soup(figure: &mut Figure, triangles: Range<usize>) -> Value {
     json!({ "attributes": attributes, "material": FIGURE })
 }
 
-/// Same samples, same tree, same sums: one and the same image.
+/// Fails unless the images agree to the last bit: the samples, the tree and the sums must be the same.
 fn assert_same_image(what: &str, parts: &World) {
     let whole = Figure::read().world();
     assert_eq!(whole.scene.mesh.triangles.len(), parts.scene.mesh.triangles.len());
@@ -64,9 +64,10 @@ fn primitives_of_one_mesh() {
     assert_same_image("seven primitives", &figure.world());
 }
 
-/// Nodes below a node whose scale they undo: powers of two, which change no digit.
+/// Nodes below a node whose scale they undo, with powers of two, which change no digit.
 ///
-/// Seen to catch: what the test above catches; a child's transform applied without its parent's; children visited in reverse order.
+/// Seen to catch: the errors of the test above; the transform of a child applied without that of its parent; children
+/// visited in reverse order.
 #[test]
 fn nodes_of_one_material() {
     let mut figure = Figure::read();
@@ -82,7 +83,7 @@ fn nodes_of_one_material() {
     assert_same_image("five nodes", &figure.world());
 }
 
-/// No vertex is shared.
+/// A mesh in which no vertex is shared.
 ///
 /// Seen to catch: vertices without indices taken in threes from the second one on.
 #[test]

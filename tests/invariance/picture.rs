@@ -14,12 +14,12 @@ use test_support::{
     z_test::{Estimate, assert_mean},
 };
 
-/// Width and height, pixels: about 200 of them show the figure.
+/// Width and height, pixels; about 200 of the pixels show the figure.
 pub const SIZE: usize = 24;
-/// Clouds for a mean.
+/// Number of clouds in a mean.
 pub const SEEDS: u64 = 24;
 
-/// The channels of what the cloud lights.
+/// Channels of the light that comes from the cloud.
 pub const SUBSURFACE: [&str; 3] = ["subsurface.R", "subsurface.G", "subsurface.B"];
 /// The channels of what lights light.
 pub const DIFFUSE: [&str; 3] = ["diffuse.R", "diffuse.G", "diffuse.B"];
@@ -35,7 +35,7 @@ pub struct Shot {
 }
 
 impl Shot {
-    /// For pixels: the whole sum over a cloud of 8000 samples, interpolated normals.
+    /// For pixels: the exhaustive sum over a cloud of 8000 samples, with interpolated normals.
     pub fn new(seed: u64) -> Shot {
         Shot {
             sampling: by_area(8000, seed),
@@ -46,8 +46,8 @@ impl Shot {
         }
     }
 
-    /// For means: in a medium four times thinner the standard dipole spreads light over a centimetre, so that hundreds of
-    /// samples light a pixel and clouds differ little.
+    /// For means: in a medium four times thinner the standard dipole spreads light over a centimetre, so that
+    /// hundreds of samples light a pixel and clouds differ little.
     pub fn smooth(seed: u64) -> Shot {
         let shot = Shot::new(seed).scaled(4.0);
         let sampling = Sampling { samples: 12_000 * EFFORT, ..shot.sampling };
@@ -63,7 +63,7 @@ impl Shot {
         Shot { sampling: Sampling { choice, ..self.sampling }, ..self }
     }
 
-    /// A medium of the same look in an object that is so many times larger.
+    /// A medium that looks the same in an object that is so many times larger.
     pub fn scaled(self, size: f64) -> Shot {
         let channel = |c: Coefficients| Coefficients { sigma_a: c.sigma_a / size, sigma_s: c.sigma_s / size, ..c };
         let scaled = medium(self.medium.channels.map(channel), self.medium.eta);
@@ -105,7 +105,8 @@ pub fn lit(image: &Image) -> usize {
     channel(image, SUBSURFACE[1]).iter().filter(|x| **x > 0.0).count()
 }
 
-/// Fails unless `scaled` of the first image's numbers are the other's, bit for bit, in all channels of light.
+/// Fails unless `scaled` turns the numbers of the first image into those of the other, bit for bit, in all channels
+/// of light.
 pub fn assert_multiple(what: &str, a: &Image, b: &Image, factor: f32) {
     let light = a.channels.iter().filter(|c| !["N.", "P.", "Z", "var"].iter().any(|start| c.name.starts_with(start)));
     for c in light {
@@ -115,8 +116,8 @@ pub fn assert_multiple(what: &str, a: &Image, b: &Image, factor: f32) {
     assert!(lit(a) > 100, "{what}: {} pixels show the figure", lit(a));
 }
 
-/// Fails unless the pixels of the scattered light agree within a relative `tolerance`, but for `exceptions` of them;
-/// `pixel` says where the first image's pixel is in the other.
+/// Fails unless the pixels of the subsurface layer agree within a relative `tolerance`, except for `exceptions` of
+/// them; `pixel` maps a pixel of the first image to one of the other.
 pub fn assert_close_at(
     what: &str,
     [a, b]: [&Image; 2],
@@ -145,9 +146,9 @@ pub fn assert_close(what: &str, images: [&Image; 2], tolerance: f64, exceptions:
     assert_close_at(what, images, tolerance, exceptions, |k| k);
 }
 
-/// Fails unless two numbers that each cloud gives, by the same random numbers, have one mean in each channel: within four
-/// standard errors of the difference, in which the noise that the two share cancels. The test is worth something only
-/// if that error is a small share of the mean, `roughest`.
+/// Fails unless two numbers that each cloud gives with the same random numbers have one mean in each channel, within
+/// four standard errors of the difference, in which the shared noise cancels. The test says something only if that
+/// error is a small share of the mean, at most `roughest`.
 pub fn assert_paired(what: &str, first: u64, roughest: f64, pair: impl Fn(u64) -> [DVec3; 2] + Send + Sync) {
     let runs: Vec<[DVec3; 2]> = (first..first + SEEDS).into_par_iter().map(pair).collect();
     let mean = runs.iter().map(|[a, _]| a).sum::<DVec3>() / SEEDS as f64;

@@ -1,4 +1,4 @@
-//! A scene anywhere: the figure with its lights and cameras far from the origin, and turned.
+//! The figure, its lights and its cameras far from the origin, and turned.
 
 use crate::{
     figure::{Figure, PANEL},
@@ -16,14 +16,15 @@ use test_support::{
     planted::{Halves, planted},
 };
 
-/// Ten thousand times the figure's height: exactly representable with all of its digits, or with none of them.
+/// Translations of ten thousand times the height of the figure: one that float32 holds exactly, and one that it does
+/// not.
 const FAR: [[f64; 3]; 3] = [[512.0, -256.0, 1024.0], [571.3, 0.0, 0.0], [-333.1, 571.3, 87.654_321]];
 
-/// World positions are float64 until they are made relative to the centre of the mesh: rounding there is 10⁻¹³ m, six
-/// orders below a coordinate's float32. A few coordinates in ten thousand round to the next float32, which moves light
-/// by 10⁻⁷ at most; the roulette decides in float64 and keeps its decisions.
+/// World positions are float64 until the centre of the mesh is subtracted: rounding there is 10⁻¹³ m, six orders
+/// below the float32 of a coordinate. A few coordinates in ten thousand round to the next float32, which changes
+/// light by 10⁻⁷ at most; the roulette decides in float64 and keeps its decisions.
 ///
-/// Seen to catch: the centre taken off after rounding to float32; a light, or the camera, left in the world's frame.
+/// Seen to catch: the centre subtracted after rounding to float32; a light, or the camera, left in world coordinates.
 #[test]
 fn far_from_the_origin_the_image_is_the_same() {
     let original = Figure::read().with_panel(PANEL).world();
@@ -40,14 +41,14 @@ fn far_from_the_origin_the_image_is_the_same() {
     }
 }
 
-/// The figure, turned.
+/// The figure turned about an axis.
 fn turned(figure: Figure, axis: DVec3, angle: f64) -> World {
     let rotation = DQuat::from_axis_angle(axis.normalize(), angle);
     figure.under(json!({ "rotation": rotation.to_array() })).world()
 }
 
-/// A cloud of `world` whose samples lie where phase one puts them on `original`: triangles are chosen in the order of a
-/// curve through a grid of the axes, which is another order for what is turned.
+/// A cloud of `world` whose samples lie where sampling puts them on `original`: triangles are chosen in the order of
+/// a curve through a grid along the axes, which differs for the turned figure.
 fn placed_as(original: &World, world: &World, shot: &Shot) -> Cloud {
     let (mesh, sampling) = (&original.scene.mesh, &shot.sampling);
     let facts = sampled_with(world, sampling, shot.normals).meta;
@@ -67,13 +68,13 @@ fn placed_as(original: &World, world: &World, shot: &Shot) -> Cloud {
     filed(&planted(&facts, &[halves]))
 }
 
-/// Turned, every coordinate rounds anew (10⁻⁶ of a mean free path), and normals and directions of samples, stored
-/// within 5·10⁻⁵ rad, round to other codes: S and the entry transmittance of one sample change by 10⁻⁴, of the many that
-/// light a pixel by less. The sum of all pixels changes by less still. Left as room: a sample or two of thousands may
-/// be shadowed that was lit before, which shows in the pixels around it.
+/// In the turned scene every coordinate rounds anew (10⁻⁶ of a mean free path), and normals and directions of
+/// samples, stored within 5·10⁻⁵ rad, round to other codes: S and the entry transmittance of one sample change by
+/// 10⁻⁴, those of the many that light a pixel by less, and the sum of all pixels by less still. The tolerance leaves
+/// room for a sample or two of thousands that is now shadowed, which shows in the pixels around it.
 ///
-/// Seen to catch: spot lights whose axis is not turned; interpolated normals not turned; a wrong sign in the stored code
-/// of normals that point down.
+/// Seen to catch: spot lights whose axis is not turned; interpolated normals not turned; a wrong sign in the stored
+/// code of normals that point down.
 #[test]
 fn turned_the_image_is_the_same() {
     let original = Figure::read().world();
@@ -92,8 +93,8 @@ fn turned_the_image_is_the_same() {
     }
 }
 
-/// Phase one whole: other samples, and the panel's importance comes from the box around it, which is not the turned box.
-/// Only means are the same.
+/// With sampling included the samples differ, and the importance of the panel comes from its bounding box, which is
+/// not the turned box. Only means agree.
 ///
 /// Seen to catch: irradiance not divided by the probability of the light's choice.
 #[test]

@@ -9,17 +9,17 @@ use sample_surface::Choice;
 use serde_json::json;
 use test_support::{meshes::World, pipeline::MODELS};
 
-/// The figure before a panel, whose radiance does not depend on the scale.
+/// The figure before a panel; radiance does not depend on the scale.
 fn figure() -> Figure {
     Figure::read().with_panel(PANEL)
 }
 
-/// The figure so many times larger, by a node above everything.
+/// The figure enlarged by a node above everything.
 fn larger(scale: f64) -> World {
     figure().under(json!({ "scale": [scale, scale, scale] })).brighter(scale * scale).world()
 }
 
-/// Powers of two change no digit of any length, area, intensity or coefficient: every number of light has the same
+/// Powers of two change no digit of any length, area, intensity or coefficient: every radiometric number has the same
 /// bits, for all models, with and without roulette, in all layers.
 ///
 /// Seen to catch: a ray that must go 1 µm before it hits; triangles below 10⁻¹² m² dropped; a camera not scaled with
@@ -44,14 +44,14 @@ fn powers_of_two_give_the_same_bits() {
     }
 }
 
-/// Other factors round every coordinate anew to float32, by 3·10⁻⁸ of 0.05 m, which is 10⁻⁶ of a mean free path: light
-/// changes by that much where one sample outshines the others, less where many add up. The uniform choice picks the
-/// same triangles; the choice by area can take a neighbour where the sum of areas rounds across the number drawn.
-/// Pixels that one sample outshines are the few exceptions; with this seed no sum of areas rounds across, which would
-/// change many. Samples that the floor lights have the light of where their ray ends, which moves with the rounding of where it
-/// starts: they are some of the exceptions.
+/// Other factors round every coordinate anew to float32, by 3·10⁻⁸ of 0.05 m, which is 10⁻⁶ of a mean free path:
+/// light changes by that much where one sample outshines the others, and by less where many add up. The uniform
+/// choice picks the same triangles; the choice by area can take a neighbour where the running sum of areas rounds
+/// across the number drawn. Pixels that one sample outshines are the few exceptions; with this seed no sum of areas
+/// rounds across, which would change many. Samples that the floor lights carry the light of the point where their ray
+/// ends, which moves with the rounding of its origin: they are some of the exceptions.
 ///
-/// Seen to catch: the same.
+/// Seen to catch: the errors of the test above.
 #[test]
 fn other_factors_give_the_same_image() {
     let original = figure().world();

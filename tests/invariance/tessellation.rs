@@ -1,6 +1,6 @@
 //! The same surface in other triangles: split, listed from another corner, in another order.
 //!
-//! Normals are the triangles' own: interpolated ones are not the same in between once a triangle is split.
+//! Normals are geometric: interpolated ones change inside a triangle that is split.
 
 use crate::{
     figure::Figure,
@@ -16,7 +16,7 @@ use test_support::{
 
 const RULES: [Choice; 2] = [Choice::Area, Choice::Uniform];
 
-/// Every triangle in four, by the middles of its edges, in its place in the list.
+/// Splits every triangle in four at the middles of its edges, in its place in the list.
 fn split(mesh: &Mesh) -> Mesh {
     let mut positions = mesh.positions.clone();
     let mut middles = HashMap::new();
@@ -35,7 +35,7 @@ fn split(mesh: &Mesh) -> Mesh {
     Mesh { positions, triangles }
 }
 
-/// Some triangles in four, those on one side: the uniform choice then puts its samples there.
+/// Splits the triangles of one side in four: the uniform choice then puts its samples there.
 fn half_split(mesh: &Mesh) -> Mesh {
     let left = |t: &[u32; 3]| t.iter().map(|i| mesh.positions[*i as usize].x).sum::<f32>() < 0.0;
     let (split_ones, kept): (Vec<_>, Vec<_>) = mesh.triangles.iter().partition(|t| left(t));
@@ -44,12 +44,12 @@ fn half_split(mesh: &Mesh) -> Mesh {
     half
 }
 
-/// The triangles listed from their second corner.
+/// Lists the triangles from their second corner.
 fn turned(mesh: &Mesh) -> Mesh {
     Mesh { triangles: mesh.triangles.iter().map(|[a, b, c]| [*b, *c, *a]).collect(), ..mesh.clone() }
 }
 
-/// The triangles in random order.
+/// Puts the triangles in random order.
 fn shuffled(mesh: &Mesh) -> Mesh {
     let mut random = Random(11);
     let mut triangles = mesh.triangles.clone();
@@ -74,7 +74,7 @@ fn assert_same_mean(what: &str, first: u64, roughest: f64, worlds: &[World; 2]) 
     }
 }
 
-/// The same number chooses the same triangle, or a quarter of it.
+/// The same random number chooses the same triangle, or a quarter of it.
 ///
 /// Seen to catch: the uniform density without N.
 #[test]
@@ -91,16 +91,16 @@ fn triangles_of_one_side_split_in_four() {
     assert_same_mean("half split", 1200, 2e-2, &pair(half_split));
 }
 
-/// The same triangles are chosen, other points on them.
+/// The same triangles are chosen, with other points on them.
 ///
-/// Seen to catch: the point's first number taken without its root.
+/// Seen to catch: the square root of the point's first number left out.
 #[test]
 fn triangles_listed_from_another_corner() {
     assert_same_mean("turned", 1400, 5e-3, &pair(turned));
 }
 
-/// Triangles are chosen in the order of a curve through space, which the list's order does not change: one and the same
-/// image of independent samples, and the same mean of well-spread ones.
+/// Triangles are chosen in the order of a curve through space, which does not depend on their order in the file: the
+/// image of independent samples is the same, and so is the mean of stratified ones.
 ///
 /// Seen to catch: triangles chosen in the order of the list.
 #[test]

@@ -1,4 +1,4 @@
-//! What neither the figure nor the camera can see changes nothing.
+//! Objects and lights that neither the figure nor the camera sees change nothing.
 
 use crate::{
     figure::{FLOOR, Figure},
@@ -18,13 +18,13 @@ fn box_at(centre: Vec3) -> Mesh {
     mesh
 }
 
-/// An opaque box on the floor behind the camera, in nobody's light. In the first place it leaves the scene's bounds as
-/// they are, and the scattered light keeps its bits. In the second one it moves the centre, 0.13 m up: coordinates of
-/// the figure are then rounded to float32 at that height, by up to 8·10⁻⁹ m: 10⁻⁵ of a mean free path, and areas of
-/// triangles 0.4 mm across change by 4·10⁻⁵, and their samples' flux. The uniform choice keeps the triangles; a sample or
-/// two may be shadowed that was lit before.
+/// An opaque, unlit box on the floor behind the camera. In its first position it leaves the bounds of the scene as
+/// they are, and the subsurface layer keeps its bits. In the second it moves the centre up by 0.13 m: coordinates of
+/// the figure are then rounded to float32 at that height, by up to 8·10⁻⁹ m or 10⁻⁵ of a mean free path, areas of
+/// triangles 0.4 mm across change by 4·10⁻⁵, and so does the flux of their samples. The uniform choice keeps the
+/// triangles; a sample or two may become shadowed.
 ///
-/// Seen to catch: triangles of all materials chosen from, and those of opaque ones dropped afterwards.
+/// Seen to catch: triangles chosen from all materials, with those of opaque ones dropped afterwards.
 #[test]
 fn a_box_out_of_view() {
     let without = Figure::read().world();
@@ -43,8 +43,8 @@ fn a_box_out_of_view() {
     }
 }
 
-/// A strong lamp below the floor: samples that face down pick it, most of the time, and find it hidden. The mean stays,
-/// and so does all light of the floor itself.
+/// A strong lamp below the floor: samples that face down pick it most of the time and find it hidden. The mean stays,
+/// and so does the layer of the floor.
 ///
 /// Seen to catch: irradiance not divided by the probability of the light's choice; lights picked alike, but divided by
 /// their share of importance; division by the number of stored samples.

@@ -20,12 +20,12 @@ PACKAGES = ["scikit-image==0.26.0", "flip-evaluator==1.7", "OpenEXR==3.5.3", "nu
 PAIRS = [("base", test) for test in ("base", "noise", "blur", "firefly", "brighter", "negative")]
 PAIRS += [("firefly", "base"), ("negative", "base"), ("grey", "grey-tinted")]
 PAIRS += [(size, f"{size}-noise") for size in ("17x13", "7x40", "1x1", "140x20", "20x140")]
-# The requirement's for SSIM and FLIP; that of PSNR is dB.
+# Tolerances; that of PSNR is in dB.
 TOLERANCE = {"psnr": 1e-4, "ssim": 1e-4, "flip_ldr": 1e-3, "flip_hdr": 1e-3, "start": 1e-4, "stop": 1e-4, "count": 0}
 
 
 def enter(environment, arguments):
-    """Runs this script again in its virtual environment, which is made first if it is not there."""
+    """Runs this script again in its virtual environment, which is made if it does not exist."""
     python = environment / "bin" / "python"
     if pathlib.Path(sys.prefix).resolve() == environment.resolve():
         return
@@ -55,7 +55,7 @@ def display(linear):
 
 
 def peers(reference, test):
-    """The figures of the other implementations; null where there is none."""
+    """Values of the other implementations; null where there is none."""
     import flip_evaluator
     import numpy
     from skimage.metrics import peak_signal_noise_ratio, structural_similarity
@@ -69,7 +69,7 @@ def peers(reference, test):
     result["ssim"] = None if similarity is None else float(similarity)
     single = [numpy.ascontiguousarray(picture, numpy.float32) for picture in shown]
     result["flip_ldr"] = float(flip_evaluator.evaluate(*single, "LDR", applyMagma=False)[1])
-    # There is no negative light, and flip-evaluator asks for none.
+    # flip-evaluator requires radiance that is not negative.
     single = [numpy.ascontiguousarray(numpy.maximum(p, 0), numpy.float32) for p in (reference, test)]
     _, mean, used = flip_evaluator.evaluate(*single, "HDR", applyMagma=False)
     result["flip_hdr"] = float(mean)

@@ -1,4 +1,4 @@
-//! Cameras in odd places, and rays that meet edges and vertices. The body is clear and the sky the same all around: every
+//! Cameras in unusual places, and rays that meet edges and vertices. The object is clear and the sky constant: every
 //! path must show exactly the sky, or it was lost at an interface.
 
 use crate::scenes::{Clear, aimed_at, assert_invisible, channel, render};
@@ -20,8 +20,8 @@ fn one_pixel() -> Settings {
     Settings { paths_per_pixel: 4, ..settings(Model::DirectionalDipole, 1, 1) }
 }
 
-/// The first interface is met from inside without one before it: the way to it lies in the medium. Near enough to the
-/// centre for no total reflection.
+/// The camera is inside: the first interface is met from within, without one before it, and the way to it lies in the
+/// medium. The camera is close enough to the centre to avoid total reflection.
 #[test]
 fn camera_inside_a_clear_medium() {
     let body = body(sphere(1.0, 3));
@@ -37,7 +37,8 @@ fn camera_inside_a_clear_medium() {
     }
 }
 
-/// The same through an absorbing medium of index 1: `e^{−σ_a s}` from the centre, by roulette, each path all or nothing.
+/// The same through an absorbing medium of index 1: `e^{−σ_a s}` from the centre, by roulette, so that each path
+/// carries all or nothing.
 #[test]
 fn camera_inside_an_absorbing_medium() {
     let body = body(sphere(1.0, 4));
@@ -52,8 +53,8 @@ fn camera_inside_an_absorbing_medium() {
     assert_eq!(rendered.counts.gathers, 0, "nothing is gathered from inside");
 }
 
-/// Rays along every edge of a box, exactly and with rounding: two faces are seen edge-on, and the others met at a corner.
-/// At an index of 1.2 what the grazing interface lets in is not trapped by total reflection.
+/// Rays along every edge of a box, exactly and with rounding: two faces are seen edge-on, and the others are met at a
+/// corner. At an index of 1.2, total reflection does not trap what the grazing interface lets in.
 #[test]
 fn camera_ray_along_an_edge() {
     let body = body(slab(DVec3::ONE, 1));
@@ -74,8 +75,8 @@ fn camera_ray_along_an_edge() {
     }
 }
 
-/// Rays through vertices from all sides, into the body and past it: no face may let through what its neighbours do not
-/// know of. (A ray that only touches the body, in a vertex, may leave it unseen and is counted.)
+/// Rays through vertices from all sides, into the object and past it: no ray may pass between neighbouring faces. (A
+/// ray that touches the object only in a vertex may miss it, and is counted.)
 #[test]
 fn camera_ray_through_a_vertex() {
     let mut random = Random(3);
@@ -93,7 +94,7 @@ fn camera_ray_through_a_vertex() {
     }
 }
 
-/// cos θ = 10⁻⁷: the light is mirrored, all but for 6·10⁻⁷, and what the ray met has a finite place.
+/// cos θ = 10⁻⁷: the light is reflected, except for 6·10⁻⁷, and the hit point is finite.
 #[test]
 fn grazing_view() {
     let body = body(quad(0.5, 0.0, 4));
@@ -109,8 +110,8 @@ fn grazing_view() {
     }
 }
 
-/// A camera in the surface itself, on a face or in a vertex, and one so far that its ray has no digits for the body. At an
-/// index of 1.2 no way through a box is trapped by total reflection.
+/// A camera on a face or in a vertex, and one so far away that its ray has no digits for the object. At an index of
+/// 1.2, total reflection traps no path in a box.
 #[test]
 fn camera_on_the_surface_and_far_away() {
     let body = body(slab(DVec3::ONE, 1));
@@ -123,7 +124,8 @@ fn camera_on_the_surface_and_far_away() {
     }
 }
 
-/// The depth limit cuts both branches of every path that meets the body, counts them, and shows nothing in their place.
+/// The depth limit ends both branches of every path that meets the object, counts them, and shows nothing in their
+/// place.
 #[test]
 fn depth_of_one() {
     let body = body(sphere(1.0, 3));

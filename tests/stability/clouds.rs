@@ -1,4 +1,4 @@
-//! Clouds that a tree can make little of: hardly any samples, all of them in one place, on a line, in one half.
+//! Clouds that are hard on a tree: hardly any samples, all of them at one point, on a line, or in one half.
 
 use crate::{
     evaluate::assert_is,
@@ -20,7 +20,7 @@ use test_support::{
     random::Random,
 };
 
-/// What the program renders with if it is told nothing.
+/// The default estimator of the program.
 fn default_settings(model: Model) -> Settings {
     let estimator = Estimator::Cut { accuracy: 0.01 };
     Settings { estimator, paths_per_pixel: 16, filter: Filter::Box, ..settings(model, 8, 8) }
@@ -35,8 +35,8 @@ fn sunny_slab() -> World {
     world(&[Part::translucent(slab(DVec3::new(5e-3, 5e-3, 2e-3), 2))], &[sun], SKY)
 }
 
-/// K = 1, 2, 3 by the defaults of both programs: every image is fit for a file, lit where a sample is, and says how little
-/// it knows. Half of the cloud may be empty, or hold all of it.
+/// K = 1, 2, 3 with the defaults of both programs: every image can be written, is lit where a sample is, and states
+/// how uncertain it is. Half of the cloud may be empty or hold everything.
 #[test]
 fn one_two_and_three_samples() {
     let world = sunny_slab();
@@ -52,8 +52,8 @@ fn one_two_and_three_samples() {
     }
 }
 
-/// The mean of many cuts is close to the whole sum: an error of half of it, which the looser cut is asked for, is 0.035 in
-/// the mean of 200, and `room` is three or more of that.
+/// The mean of many cuts is close to the exhaustive sum: an error of one half, which the looser cut is asked for, is
+/// 0.035 in the mean of 200, and `room` is at least three times that.
 fn assert_sums(what: &str, halves: &Halves, points: &[Point], room: f64) {
     let cloud = cloud_of(halves);
     for model in MODELS {
@@ -82,8 +82,8 @@ fn sample(position: Vec3, flux: f32) -> Sample {
     Sample { position, normal: DVec3::Z, direction, flux: Vec3::splat(flux) }
 }
 
-/// A node of no extent: the guards are its radius and spread of 0, at a distance of 0 from it too. Equal samples make every
-/// pick right.
+/// A node of no extent: the guards are its radius and spread of 0, also at a distance of 0 from it. With equal
+/// samples every pick is exact.
 #[test]
 fn all_samples_in_one_point() {
     let at = Vec3::new(1e-3, -2e-3, 0.0);
@@ -95,7 +95,8 @@ fn all_samples_in_one_point() {
     assert_sums("uneven samples in a point", &uneven, &around(at.as_dvec3()), 0.1);
 }
 
-/// Boxes without a second side, evenly and ever more crowded: nodes whose middle is far from most of their samples.
+/// Samples along a line, evenly spaced and increasingly crowded: nodes whose centre is far from most of their
+/// samples.
 #[test]
 fn all_samples_on_a_line() {
     let at = |x: f32| sample(Vec3::new(x, 0.0, 0.0), 1.0);
@@ -105,14 +106,14 @@ fn all_samples_on_a_line() {
     assert_sums("crowded on a line", &crowded, &around(DVec3::ZERO), 0.2);
 }
 
-/// Places on a square of 8 mm.
+/// Points on a square of 8 mm.
 fn scattered(count: usize) -> Vec<Sample> {
     let mut random = Random(8);
     let mut place = || Vec3::new(random.between(-4e-3, 4e-3) as f32, random.between(-4e-3, 4e-3) as f32, 0.0);
     (0..count).map(|_| sample(place(), 1.0)).collect()
 }
 
-/// The point is a sample's own, to the last digit, in the middle of others.
+/// The exitant point coincides with a sample to the last digit, amid others.
 #[test]
 fn exit_point_exactly_at_a_sample_of_many() {
     let samples = scattered(3000);
@@ -121,7 +122,8 @@ fn exit_point_exactly_at_a_sample_of_many() {
     assert_sums("at a sample", &alternating(samples), &points, 0.1);
 }
 
-/// All samples in one of the halves: the paths of the other see nothing, and the pixel half of what they do.
+/// All samples lie in one of the halves: the paths of the other half gather nothing, and the pixel is the mean of
+/// both.
 ///
 /// Seen to catch: the other half taken where one is empty.
 #[test]
@@ -146,10 +148,10 @@ fn all_samples_in_one_half() {
     }
 }
 
-/// Light stronger or weaker by a power of two gives the same sum times that, to the last bit, of the same samples.
+/// Flux scaled by a power of two scales the sum by it, to the last bit and with the same samples.
 ///
-/// Seen to catch: errors that are squared as they are, which float32 has no room for: beyond, every sample is summed, and
-/// below, far too few are.
+/// Seen to catch: squared errors that leave float32: where they overflow every sample is summed, where they underflow
+/// far too few are.
 #[test]
 fn strong_and_weak_light_is_cut_as_finely() {
     let lit = scattered(3000);
@@ -173,7 +175,7 @@ fn strong_and_weak_light_is_cut_as_finely() {
     }
 }
 
-/// A tree and samples that nobody has checked, or that are changed while they are read: no sum of them panics or hangs.
+/// A tree and samples that were not verified, or that change while they are read: no sum over them panics or hangs.
 ///
 /// Seen to catch: a threshold below 0, for which leaves beyond the last tile are opened.
 #[test]

@@ -1,5 +1,5 @@
-//! The smallest glTF scene with everything a number can be wrong in: a triangle with normals, three kinds of light, two
-//! kinds of camera.
+//! The smallest glTF scene with every kind of number that can be wrong: a triangle with normals, three kinds of
+//! light, two kinds of camera.
 
 use scene::{Scene, SceneError};
 use serde_json::{Value, json};
@@ -63,14 +63,14 @@ pub fn document() -> Value {
     })
 }
 
-/// A folder with the binary.
+/// A folder that holds the buffer.
 pub fn bench(binary: &[u8]) -> Bench {
     let bench = Bench::new();
     bench.write("scene.bin", binary);
     bench
 }
 
-/// Imports a document together with the binary that lies there.
+/// Imports a document with the buffer of that folder.
 pub fn import(bench: &Bench, document: &str) -> Result<Scene, SceneError> {
     Scene::import(&bench.write("scene.gltf", document), &OPTIONS)
 }

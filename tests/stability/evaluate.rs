@@ -17,7 +17,7 @@ use test_support::{
     planted::{alternating, cloud_of},
 };
 
-/// What one model gives, R, G, B; 1/(m² sr).
+/// Value of one model, R, G, B; 1/(m² sr).
 #[derive(Clone, Copy, Debug)]
 pub struct Value {
     pub model: Model,
@@ -81,13 +81,13 @@ fn lanes<M: LaneModel>(medium: &Medium, s: &Separation) -> DVec3 {
 }
 
 thread_local! {
-    /// The cloud of the sample, and the scatterers of the medium, that were asked for last: sweeps ask for the same ones
-    /// again and again.
+    /// Caches the last cloud of one sample and the last scatterers of a medium: sweeps ask for the same ones again
+    /// and again.
     static CLOUD: RefCell<Option<(Sample, Rc<Cloud>)>> = const { RefCell::new(None) };
     static SCATTERERS: RefCell<Option<(Medium, Rc<[Scatterer; 3]>)>> = const { RefCell::new(None) };
 }
 
-/// The value that is kept under this key, or a new one.
+/// The cached value of this key, or a new one.
 fn kept<K: Clone + PartialEq, V>(last: &RefCell<Option<(K, Rc<V>)>>, key: &K, make: impl FnOnce() -> V) -> Rc<V> {
     match &mut *last.borrow_mut() {
         Some((k, value)) if k == key => value.clone(),
@@ -99,9 +99,9 @@ fn kept<K: Clone + PartialEq, V>(last: &RefCell<Option<(K, Rc<V>)>>, key: &K, ma
     }
 }
 
-/// `S_gather` by the three models, as a cloud of one sample gives it to the whole sum. The cut, which has nothing to
-/// choose from, must give exactly that. Every rule of the roulette must give it over its probability, or nothing; at the
-/// sample itself it may not refuse it.
+/// `S_gather` by the three models, as the exhaustive sum gives it for a cloud of one sample. The cut, which has
+/// nothing to choose from, must give exactly that. Every rule of the roulette must give it divided by the acceptance
+/// probability, or zero; at the sample itself it must accept.
 pub fn gather(medium: &Medium, incident: &Incident, exitant: &Exitant) -> [Value; 3] {
     let Incident { position, normal, direction } = *incident;
     let sample = Sample { position: position.as_vec3(), normal, direction, flux: Vec3::ONE };
@@ -132,7 +132,7 @@ pub fn gather(medium: &Medium, incident: &Incident, exitant: &Exitant) -> [Value
     })
 }
 
-/// Light onto the origin of the plane z = 0, from `direction` as a cloud stores it: within 5·10⁻⁵.
+/// Light onto the origin of the plane z = 0, from `direction` as a cloud stores it, to within 5·10⁻⁵.
 pub fn onto_plane(direction: DVec3) -> Incident {
     let direction = direction.normalize();
     let sample = Sample { position: Vec3::ZERO, normal: DVec3::Z, direction, flux: Vec3::ONE };
@@ -144,7 +144,7 @@ pub fn out_of_plane(x: f64) -> Exitant {
     Exitant { position: DVec3::new(x, 0.0, 0.0), normal: DVec3::Z, direction: DVec3::Z }
 }
 
-/// Light that went straight into the plane z = 0 and leaves it `x` away.
+/// Light that enters the plane z = 0 at normal incidence and leaves it at the offset `x`.
 pub fn along_plane(x: f64) -> Separation {
     Separation { offset: DVec3::new(x, 0.0, 0.0), normal_in: DVec3::Z, refracted: DVec3::NEG_Z, normal_out: DVec3::Z }
 }

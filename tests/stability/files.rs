@@ -1,5 +1,5 @@
 //! NaN and infinity in every input file: an error that names the file or the field, never a panic, and never a number
-//! that is not finite in what was read.
+//! that is not finite in the result.
 
 use crate::document::{bench, binary, document, import};
 use bssrdf::{Medium, MediumFile, Optics};
@@ -19,7 +19,7 @@ use test_support::{
     planted::{alternating, planted},
 };
 
-/// What JSON has no number for, and what leaves the range of float64.
+/// Texts that JSON has no number for, and numbers beyond float64.
 const NO_NUMBERS: [&str; 6] = ["NaN", "-NaN", "Infinity", "-Infinity", "1e999", "-1e999"];
 
 /// Paths of all numbers in a JSON value.
@@ -39,7 +39,7 @@ fn replaced(document: &Value, path: &str, text: &str) -> String {
     document.to_string().replacen("\"here\"", text, 1)
 }
 
-/// Everything of a scene that later stages compute with.
+/// All numbers of a scene that later stages compute with.
 fn assert_finite(scene: &Scene, what: &str) {
     let vectors = scene.mesh.positions.iter().chain(&scene.mesh.normals);
     assert!(vectors.into_iter().all(|v| v.is_finite()) && scene.origin.is_finite(), "{what}");
@@ -59,7 +59,8 @@ fn assert_finite(scene: &Scene, what: &str) {
     }
 }
 
-/// Each number of a glTF file in turn: by name, beyond float64, and beyond the float32 that the parser rounds to.
+/// Each number of a glTF file in turn: replaced by a name, by numbers beyond float64, and by numbers beyond the
+/// float32 that the parser rounds to.
 #[test]
 fn gltf_json() {
     let (bench, document) = (bench(&binary()), document());
@@ -84,7 +85,7 @@ fn gltf_json() {
     }
 }
 
-/// Each float of the binary in turn; indices have no such values, and are checked against their count.
+/// Each float of the buffer in turn; indices have no such values, and are checked against their count.
 #[test]
 fn gltf_binary() {
     let changed = |at: usize, number: f32| {
@@ -145,7 +146,7 @@ fn medium() {
         numbers(&medium, "", &mut paths);
         assert_eq!(paths.len(), 10);
         for path in &paths {
-            // No medium scatters within 1e-300 of a length, but one within 1e300 is clear.
+            // A mean free path of 1e-300 is refused; one of 1e300 makes a clear medium.
             let huge = if path.contains("mean_free_path") || path.contains("radius") { "1e-300" } else { "1e300" };
             for number in NO_NUMBERS.into_iter().chain([huge, "-1"]) {
                 assert!(Medium::from_json(&replaced(&medium, path, number)).is_err(), "{path} is {number}");
@@ -166,7 +167,7 @@ fn medium() {
     }
 }
 
-/// One sample, changed, in a file whose checksums are right.
+/// One changed sample in a file with correct checksums.
 fn verdict(path: &Path, sample: Sample, change: impl Fn(&mut Meta)) -> Result<(), formats::Error> {
     let sun = Light::Directional { towards: DVec3::Z, irradiance: DVec3::ONE };
     let drawn = sampled(&world(&[Part::translucent(quad(0.5, 0.0, 1))], &[sun], DVec3::ZERO), &by_area(1, 0));
@@ -176,7 +177,7 @@ fn verdict(path: &Path, sample: Sample, change: impl Fn(&mut Meta)) -> Result<()
     Cloud::open(path)?.verify(path)
 }
 
-/// Every float of a sample and of the facts about a cloud.
+/// Every float of a sample and of the metadata of a cloud.
 #[test]
 fn cloud() {
     let bench = Bench::new();
@@ -208,7 +209,7 @@ fn cloud() {
     assert!(verdict(&path, Sample { flux: Vec3::NEG_X, ..good }, |_| ()).is_err(), "negative flux");
 }
 
-/// An image can be read whatever it holds; compared, it passes nothing, least of all with itself.
+/// An image can be read whatever it holds; in a comparison it passes no gate, not even against itself.
 #[test]
 fn image() {
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {

@@ -1,4 +1,5 @@
-//! Media whose channels decay at very different rates, on an object of a metre: where the note's roulette has no variance.
+//! Media whose channels decay at very different rates, on an object of one metre, where the variance of the note's
+//! roulette is infinite.
 
 use bssrdf::{Model, built_in};
 use gather::{
@@ -14,8 +15,8 @@ use test_support::{
     z_test::Estimate,
 };
 
-/// The default rule against the whole sum, on one cloud and the same camera paths: the mean of the red differences, in
-/// standard errors, and the largest red pixel over the 99.9th percentile.
+/// The default rule against the exhaustive sum, on one cloud and the same camera paths: the mean of the red
+/// differences, in standard errors, and the largest red pixel over the 99.9th percentile.
 fn deviation_and_firefly(name: &str, rule: Rule) -> (f64, f64) {
     const SIDE: usize = 64;
     let sun = Light::Directional { towards: DVec3::new(0.6, 0.0, 0.8), irradiance: DVec3::ONE };

@@ -1,9 +1,9 @@
-//! Cloud files changed byte by byte, with their checksums made right again: what a forger would do.
+//! Cloud files changed byte by byte, with correct checksums: what a forger would do.
 
 use std::ops::Range;
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
-/// The header and one entry of its table, bytes.
+/// Sizes of the header and of one entry of its table, bytes.
 const HEADER: usize = 64;
 const ENTRY: usize = 64;
 
@@ -39,7 +39,7 @@ impl Forged {
         entries.into_iter().find(named).expect("every cloud has this section")
     }
 
-    /// With the right checksums for the sections and the header.
+    /// Sets the checksums of the sections and the header.
     pub fn sealed(mut self) -> Forged {
         for name in ["meta", "provenance", "tile", "node"] {
             let sum = xxh3_64(&self.0[self.section(name)]);
@@ -48,7 +48,7 @@ impl Forged {
         self.sealed_head()
     }
 
-    /// With the right checksum for the header as it is.
+    /// Sets the checksum of the header as it is.
     pub fn sealed_head(mut self) -> Forged {
         let end = self.head().end.min(self.0.len());
         let mut hasher = Xxh3::new();

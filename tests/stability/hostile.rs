@@ -1,4 +1,4 @@
-//! Clouds that were damaged, or forged with the right checksums: they are refused, or do no harm. No panic, no hang.
+//! Clouds that are damaged, or forged with correct checksums, are refused or do no harm: no panic, no hang.
 
 use crate::{forge::Forged, scenes::aimed_at};
 use bssrdf::Model;
@@ -23,10 +23,10 @@ use test_support::{
     pipeline::{ESTIMATORS, grey, sampled, settings, stratified, write},
 };
 
-/// Stored samples: five tiles in each half. Their trees have room for eight: nodes that hold nothing.
+/// Stored samples: five tiles in each half, whose trees have room for eight, so that some nodes hold nothing.
 const SAMPLES: u64 = 150;
 
-/// What floats and words are replaced with.
+/// Values that replace floats and words.
 const FLOATS: [f32; 9] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN, 1e30, -1.0, 0.0, 1e-45];
 
 struct Lab {
@@ -59,7 +59,8 @@ impl Lab {
         self.folder.path().join("bad.cloud")
     }
 
-    /// What `gather` does with a cloud, but for the checks of its facts against the scene's: true if it takes it.
+    /// Does with a cloud what `gather` does, except for the comparison of its metadata with the scene; returns
+    /// whether the cloud is accepted.
     fn takes(&self, forged: &Forged) -> bool {
         fs::write(self.path(), &forged.0).expect("the temporary folder is writable");
         let Ok(cloud) = Cloud::open(&self.path()) else {
@@ -80,7 +81,7 @@ impl Lab {
         true
     }
 
-    /// One image of it, if it is taken.
+    /// Renders one image of the cloud if it is accepted.
     fn renders(&self, forged: &Forged) {
         if self.takes(forged)
             && let Ok(cloud) = Cloud::open(&self.path())
@@ -95,7 +96,7 @@ impl Lab {
         }
     }
 
-    /// Fails if one of the forgeries does harm; how many were taken.
+    /// Fails if one of the forgeries does harm; returns how many were accepted.
     fn harmless(&self, forgeries: impl Iterator<Item = (String, Forged)>) -> usize {
         let (mut taken, mut harmful) = (0, Vec::new());
         for (what, forged) in forgeries {
@@ -112,7 +113,7 @@ impl Lab {
         taken
     }
 
-    /// A section with each of its words replaced by each of these.
+    /// All variants of a section in which one of its words is replaced by one of these.
     fn replaced<'a>(&'a self, section: &'a str, words: &'a [u32]) -> impl Iterator<Item = (String, Forged)> + 'a {
         let range = self.good.section(section);
         range.clone().step_by(4).flat_map(move |at| {
@@ -154,7 +155,7 @@ fn headers() {
     assert!(taken < 3 * 64, "{taken} changed headers taken");
 }
 
-/// Every byte of the facts, with the right checksums: their numbers, lengths of lists, and texts.
+/// Every byte of the metadata, with correct checksums: numbers, lengths of lists, and texts.
 #[test]
 fn facts() {
     let lab = Lab::new();
@@ -173,7 +174,7 @@ fn facts() {
     lab.harmless((range.start..range.end - 8).map(long));
 }
 
-/// Counts and places of groups, and K, that the file has no room for.
+/// Counts and offsets of groups, and K, that do not fit into the file.
 ///
 /// Seen to catch: groups that are not checked against the sections.
 #[test]
@@ -203,7 +204,7 @@ fn groups() {
         }
         lab.renders(&forged);
     }
-    // A larger K is as good as any.
+    // A larger K is valid.
     assert!(taken.iter().all(|what| ["K", "many materials"].contains(what)), "{taken:?}");
 }
 
@@ -215,7 +216,7 @@ fn tiles() {
     lab.harmless(lab.replaced("tile", &words));
 }
 
-/// Every number of every node: also of those that have no tiles, or no place in the file.
+/// Every number of every node, including nodes that have no tiles or lie outside the file.
 ///
 /// Seen to catch: a pick from a node beyond the last sample; a negative flux, which opens leaves beyond the last tile.
 #[test]
@@ -226,9 +227,10 @@ fn nodes() {
     }
 }
 
-/// A file of a hundred million samples, nearly all of it a hole: opened in milliseconds, since nothing of it is read.
+/// A file of a hundred million samples, nearly all of it a hole, opens in milliseconds, because opening reads no
+/// samples.
 ///
-/// Seen to catch: a file whose checksums are all checked when it is opened.
+/// Seen to catch: all checksums verified when the file is opened.
 #[test]
 fn opening_reads_no_samples() {
     let lab = Lab::new();

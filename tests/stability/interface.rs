@@ -16,7 +16,7 @@ fn medium(eta: f64) -> Medium {
     grey(0.1, 0.9, 0.0, eta)
 }
 
-/// Light that goes in at an angle, and leaves near by: `S_bare` with the same ω12 for all indices.
+/// Light that enters at an angle and leaves nearby: `S_bare` with the same ω12 for all indices.
 fn separation() -> Separation {
     Separation {
         offset: DVec3::new(0.7, 0.3, 0.0),
@@ -26,7 +26,7 @@ fn separation() -> Separation {
     }
 }
 
-/// η = 1: everything passes, nothing bends, at any angle.
+/// η = 1: everything is transmitted and nothing bends, at any angle.
 #[test]
 fn equal_indices() {
     for cosine in [1.0, 0.5, 1e-7, 1e-300] {
@@ -38,9 +38,9 @@ fn equal_indices() {
     }
 }
 
-/// η = 1 ± 10⁻⁷ bends and reflects next to nothing, and `S_bare` is that of equal indices.
+/// η = 1 ± 10⁻⁷ refracts and reflects next to nothing, and `S_bare` is that of equal indices.
 ///
-/// Seen to fail with the published fits, whose branches do not meet at 1: by 0.41 % on either side of it, and those of the
+/// Seen to fail with the published fits, whose branches do not meet at 1: by 0.41 % on either side of it for the
 /// directional and the better dipole.
 #[test]
 fn indices_that_differ_by_a_ten_millionth() {
@@ -55,7 +55,7 @@ fn indices_that_differ_by_a_ten_millionth() {
     }
 }
 
-/// From one end of the fits to the other, and in small steps through η = 1.
+/// From one end of the range of the fits to the other, and in small steps through η = 1.
 #[test]
 fn no_jump_in_the_index() {
     let ends = [ETA_MIN + 1e-6, ETA_MAX - 1e-6];
@@ -71,7 +71,7 @@ fn no_jump_in_the_index() {
     }
 }
 
-/// η = 0.7 beyond the critical angle: no light enters, whatever the estimator, and none is seen to leave.
+/// η = 0.7 beyond the critical angle: no light enters, whatever the estimator, and none leaves towards the camera.
 #[test]
 fn total_reflection_outside() {
     let sine_beyond = onto_plane(DVec3::new(0.71, 0.0, (1.0f64 - 0.71 * 0.71).sqrt()));
@@ -100,7 +100,7 @@ fn total_reflection_outside() {
     }
 }
 
-/// At the critical angle itself `t = 0`: the square root must not see rounding below zero.
+/// At the critical angle itself `t = 0`: rounding must not make the radicand negative.
 #[test]
 fn the_critical_angle_itself() {
     for k in -50..=50 {
@@ -112,8 +112,9 @@ fn the_critical_angle_itself() {
     }
 }
 
-/// cos θ = 10⁻⁷ on both sides: T falls in proportion to the cosine and keeps its digits, which one minus a reflectance
-/// would not. A cloud stores no cosine between 0 and 3·10⁻⁵: the smallest that it does goes through the sum.
+/// cos θ = 10⁻⁷ on both sides: T falls in proportion to the cosine and keeps its digits, which one minus a
+/// reflectance would not. A cloud stores no cosine between 0 and 3·10⁻⁵: the smallest that it stores goes through the
+/// sum.
 #[test]
 fn grazing_light_and_view() {
     for eta in [1.3, 2.5, 1.0 + 1e-7] {

@@ -13,7 +13,7 @@ use test_support::{
     pipeline::{ESTIMATORS, MODELS, by_area, cloud, grey, settings},
 };
 
-/// The middle of the square in z = 0.
+/// The centre of the square in z = 0.
 fn middle() -> SurfacePoint {
     SurfacePoint { position: DVec3::ZERO, normal: DVec3::Z, geometric_normal: DVec3::Z, triangle: 0, material: 0 }
 }
@@ -24,7 +24,7 @@ fn under(height: f64) -> World {
     world(&[Part::translucent(quad(0.5, 0.0, 1))], &[light], DVec3::ZERO)
 }
 
-/// An image of the middle by all models and estimators.
+/// An image of the centre by all models and estimators.
 fn render_all(world: &World, cloud: &Cloud) {
     for (estimator, model) in ESTIMATORS.into_iter().flat_map(|estimator| MODELS.map(|model| (estimator, model))) {
         let settings = Settings { paths_per_pixel: 4, filter: Filter::Box, estimator, ..settings(model, 8, 8) };
@@ -33,8 +33,8 @@ fn render_all(world: &World, cloud: &Cloud) {
     }
 }
 
-/// `E = I/d²` reaches 10¹² right below it; the rest of the square is lit under a cosine of 10⁻⁶, and nothing of it
-/// shadows itself.
+/// `E = I/d²` reaches 10¹² directly below the light; the rest of the square is lit at a cosine of 10⁻⁶ and does not
+/// shadow itself.
 #[test]
 fn light_a_millionth_above_the_surface() {
     for height in [1e-6, 1e-7] {
@@ -53,7 +53,8 @@ fn light_a_millionth_above_the_surface() {
     }
 }
 
-/// In the surface `n·ω = 0`, and at one point of it the distance, too: no light, and no number divided by it.
+/// A light in the plane of the surface, where `n·ω = 0` and at one point the distance is 0 as well: it gives no
+/// light, and no division by zero.
 #[test]
 fn light_in_the_surface() {
     let world = under(0.0);
@@ -75,8 +76,8 @@ fn light_behind_the_surface_and_inside_the_object() {
     }
 }
 
-/// cos θ = 10⁻⁷: all samples are lit, with the flux of that cosine. Their stored direction has digits for a cosine of
-/// 5·10⁻⁵, less than which T12 lets next to nothing through.
+/// cos θ = 10⁻⁷: all samples are lit, with the flux of that cosine. The stored direction resolves cosines down to
+/// 5·10⁻⁵, below which T12 transmits next to nothing.
 #[test]
 fn grazing_sun() {
     let sun = Light::Directional { towards: DVec3::new(1.0, 0.0, 1e-7).normalize(), irradiance: DVec3::ONE };
@@ -87,15 +88,15 @@ fn grazing_sun() {
     render_all(&world, &cloud);
 }
 
-/// A glowing plate that lies on the body, or 10⁻⁶ above it; or beside it in its plane, turned away, or below.
+/// An emissive plate on the object, or 10⁻⁶ above it; in its plane beside it, turned away, or below.
 #[test]
 fn area_light_on_the_surface() {
     let body = Part::translucent(quad(0.5, 0.0, 2));
-    // It reflects nothing: rounding lights its back by 10⁻³⁸ of what it emits.
+    // The plate is black: rounding lights its back by 10⁻³⁸ of what it emits.
     let glowing = |mesh| Part { emission: DVec3::ONE, color: DVec3::ZERO, ..Part::opaque(mesh) };
     for height in [0.0, 1e-6, 1e-3] {
         let mut plate = quad(0.3, height, 2);
-        plate.triangles.iter_mut().for_each(|t| t.swap(1, 2)); // shines down
+        plate.triangles.iter_mut().for_each(|t| t.swap(1, 2)); // it shines down
         let world = world(&[body.clone(), glowing(plate)], &[], DVec3::ZERO);
         let cloud = cloud(&world, &by_area(2000, 1));
         assert_eq!(cloud.is_empty(), height == 0.0, "{height}");
@@ -113,7 +114,7 @@ fn area_light_on_the_surface() {
     }
 }
 
-/// A cone without a soft edge, whose angles are the same: all light on one side of it, none on the other.
+/// A cone without a soft edge, whose two angles are equal: all light on one side of it, none on the other.
 #[test]
 fn spot_without_a_soft_edge() {
     let spot = Spot::new(DVec3::NEG_Z, 0.8f64.acos(), 0.8f64.acos());

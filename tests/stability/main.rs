@@ -1,5 +1,5 @@
-//! Hard cases by name. Every one is short, says which guard it exercises, and asserts a definite thing; numbers must be
-//! finite and not negative wherever they come from. Points are evaluated by all models, in float64, in float32 lanes and
+//! Hard cases by name. Every test is short, says which guard it exercises, and asserts something definite; numbers
+//! must be finite and not negative everywhere. Points are evaluated by all models, in float64, in float32 lanes and
 //! through all estimators; scenes go through both phases.
 
 mod cameras;

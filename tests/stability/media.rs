@@ -1,11 +1,11 @@
-//! Media at their ends: nothing scatters, nothing absorbs, nothing at all; strong asymmetry; all scales.
+//! Media at the ends of their range: no scattering, no absorption, neither; strong asymmetry; all scales.
 
 use crate::evaluate::{along_plane, assert_close, assert_is, bare, gather, onto_plane, out_of_plane};
 use bssrdf::{Coefficients, Medium, Model, Separation, built_in, built_in_names};
 use glam::DVec3;
 use test_support::pipeline::{MODELS, grey, medium};
 
-/// Lit from the front, and from behind through a sheet; `scale` in m.
+/// Separations lit from the front, and from behind through a sheet; `scale` in m.
 fn separations(scale: f64) -> [Separation; 3] {
     let [normal_in, normal_out] = [DVec3::Z, DVec3::new(0.6, 0.0, 0.8)];
     let refracted = DVec3::new(0.36, 0.48, -0.8);
@@ -16,7 +16,7 @@ fn separations(scale: f64) -> [Separation; 3] {
     ]
 }
 
-/// σ_a = 0: no σ_tr to divide by, and the roulette accepts everything: the sum is the whole one.
+/// σ_a = 0: no σ_tr to divide by, and the roulette accepts everything: the sum is the exhaustive one.
 #[test]
 fn no_absorption() {
     let medium = grey(0.0, 1.0, 0.0, 1.3);
@@ -28,7 +28,7 @@ fn no_absorption() {
         assert_close(&values, 2e-5);
         assert!(values.iter().all(|v| v.fast.min_element() > 0.0));
     }
-    // The limit of less and less of it.
+    // The value is the limit of decreasing absorption.
     let little = grey(1e-12, 1.0, 0.0, 1.3);
     for separation in separations(1.0) {
         for (none, little) in bare(&medium, &separation).iter().zip(bare(&little, &separation)) {
@@ -87,7 +87,7 @@ fn asymmetry_near_its_ends() {
     }
 }
 
-/// Albedo 1 − 10⁻⁹: no digits are lost against σ_a = 0, from which it differs by `σ_tr r`.
+/// Albedo 1 − 10⁻⁹: no digits are lost against σ_a = 0, from which the result differs by `σ_tr r`.
 #[test]
 fn almost_no_absorption() {
     let [almost, none] = [grey(1e-9, 1.0 - 1e-9, 0.0, 1.3), grey(0.0, 1.0, 0.0, 1.3)];
@@ -100,7 +100,7 @@ fn almost_no_absorption() {
     }
 }
 
-/// Coefficients so small that their products leave the range of numbers; files may hold them.
+/// Coefficients so small that their products leave the range of float64; files may hold them.
 #[test]
 fn coefficients_that_underflow() {
     for tiny in [1e-30, 1e-60, 1e-120, 1e-160, 1e-200, 1e-300, f64::MIN_POSITIVE, 5e-324] {
@@ -148,7 +148,7 @@ fn any_scale_is_like_any_other() {
     }
 }
 
-/// Real media, from a point to a hundred metres away.
+/// Measured media, from a point to a hundred metres away.
 #[test]
 fn every_medium_at_every_distance() {
     for name in built_in_names() {

@@ -1,4 +1,4 @@
-//! Meshes that modellers' programs make: without area, needles, twice, open, inside out.
+//! Meshes that modelling programs make: without area, with needles, duplicates, holes, or inside out.
 
 use crate::{
     evaluate::assert_is,
@@ -19,7 +19,7 @@ fn sun() -> Light {
     Light::Directional { towards: DVec3::new(0.36, 0.48, 0.8), irradiance: DVec3::ONE }
 }
 
-/// A square metre in the plane z = 0, or whatever `mesh` is, in the sun.
+/// The given mesh under a directional light.
 fn sunny(mesh: Mesh) -> World {
     world(&[Part::translucent(mesh)], &[sun()], DVec3::ZERO)
 }
@@ -32,8 +32,8 @@ fn spread(model: Model) -> Settings {
     Settings { paths_per_pixel: 16, filter: Filter::Box, ..settings(model, 8, 8) }
 }
 
-/// They have no normal and no density: the importer leaves them out and counts them, and N with either rule of choice
-/// does not.
+/// Degenerate triangles have no normal and no density: the importer leaves them out and counts them, and N of either
+/// rule of choice does not include them.
 #[test]
 fn zero_area_triangles_change_nothing() {
     let clean = slab(DVec3::new(1.0, 0.5, 0.25), 2);
@@ -53,7 +53,8 @@ fn zero_area_triangles_change_nothing() {
     }
 }
 
-/// Needles of 1 m by 1 µm between ordinary triangles: their area and normal keep all digits, and no ray slips through.
+/// Needles of 1 m by 1 µm between ordinary triangles: their area and normal keep all digits, and no ray passes
+/// between them.
 #[test]
 fn slivers_of_a_millionth() {
     let mut mesh = rectangle([-1.0, 0.0], 1.0, 0.0, 1);
@@ -78,10 +79,10 @@ fn slivers_of_a_millionth() {
     }
 }
 
-/// A triangle given twice, or with its back as another, is one surface: it is lit once, shadows no copy of its own, and a
-/// camera path meets it once.
+/// A triangle that is there twice, or a second time with the opposite winding, is one surface: it is lit once, no
+/// copy shadows it, and a camera path meets it once.
 ///
-/// Seen to catch: copies kept, of which the scattered light was twice as bright, or none where they lay back to back.
+/// Seen to catch: copies that were kept, which doubled the scattered light, or left none where they lay back to back.
 #[test]
 fn duplicate_triangles_are_one_surface() {
     let once = quad(0.5, 0.0, 3);
@@ -101,8 +102,8 @@ fn duplicate_triangles_are_one_surface() {
     }
 }
 
-/// A sheet without a back: what is refracted never comes out. In a medium it ends somewhere; if the medium is clear it
-/// sees the sky, and is counted.
+/// A sheet without a back: refracted light never leaves it. In an absorbing medium it is absorbed; in a clear one it
+/// reaches the sky and is counted.
 #[test]
 fn open_mesh() {
     let world = sunny(quad(1.0, 0.0, 3));
@@ -120,7 +121,7 @@ fn open_mesh() {
         let [above, below] =
             [&above, &below].map(|camera| assert_invisible("open and clear", &clear, &[1.5], camera, &settings));
         assert_eq!(above.escaped_inside, above.paths);
-        // Met from behind, the sheet mirrors 4 % into the medium.
+        // Met from behind, the sheet reflects 4 % into the medium.
         assert!(below.escaped_inside > 0 && below.escaped_inside < below.paths / 10, "{below:?}");
     }
 }
@@ -141,7 +142,8 @@ fn inside_out_mesh() {
     assert_invisible("inside out", &Clear::new(world), &[1.0], &camera, &settings);
 }
 
-/// Two bodies in one place: neither shadows the other, and a path that enters one leaves one, never both or none.
+/// Two objects in one place: neither shadows the other, and a path that enters one of them leaves one of them, never
+/// both or none.
 #[test]
 fn two_coincident_shells() {
     let shell = Part::translucent(sphere(1.0, 3));
@@ -160,7 +162,7 @@ fn two_coincident_shells() {
     }
 }
 
-/// The smallest mesh: one box of the ray tree, one interval of the choice.
+/// The smallest mesh: one node of the ray tree, one interval of the discrete density.
 #[test]
 fn one_triangle() {
     let triangle = Mesh { positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y], triangles: vec![[0, 1, 2]] };
@@ -176,7 +178,7 @@ fn one_triangle() {
     }
 }
 
-/// K = 1: one lane of sixteen is a sample, or there is none; the image is `S Φ`, or black.
+/// K = 1: one lane of sixteen holds a sample, or none does; the image is `S Φ` or black.
 #[test]
 fn one_sample() {
     let world = sunny(slab(DVec3::new(1.0, 1.0, 0.5), 1));
@@ -207,7 +209,7 @@ fn one_sample() {
     assert!(unlit > 0 && unlit < 20, "{unlit} of 20 in the dark");
 }
 
-/// Ten million triangles: counts and indices stay in range, the area and the light are those of a few.
+/// Ten million triangles: counts and indices stay in range, and area and light equal those of few triangles.
 #[cfg(feature = "slow")]
 #[test]
 fn ten_million_triangles() {

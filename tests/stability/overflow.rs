@@ -1,11 +1,10 @@
-//! Numbers beyond float32, the range of every file: they are found and named, and none is written.
+//! Numbers beyond float32, the range of every file, are found and named, and none is written.
 
 use bssrdf::Model;
 use formats::cloud::Sample;
 use gather::{Input, Rendered, Settings, render};
 use glam::{DVec3, Vec3};
-use sample_surface::{Plan, SampleError};
-use scene::NormalKind;
+use sample_surface::{Plan, SampleError, Surfaces};
 use std::slice::from_ref;
 use test_support::{
     meshes::{Light, Part, World, quad, world},
@@ -18,8 +17,8 @@ fn under_a_sun(irradiance: DVec3) -> World {
     world(&[Part::translucent(quad(0.05, 0.0, 1))], &[sun], DVec3::ZERO)
 }
 
-/// The square of 10 cm fills the middle of the image; all samples carry `flux`. If the halves of the cloud are `twins`
-/// they hold the same samples, and know of no variance.
+/// A square of 10 cm fills the middle of the image; all samples carry `flux`. If the halves of the cloud are `twins`,
+/// they hold the same samples, so that the estimated variance is zero.
 fn rendered(flux: Vec3, twins: bool, settings: &Settings) -> Rendered {
     let world = under_a_sun(DVec3::ONE);
     let drawn = cloud(&world, &by_area(64, 0));
@@ -33,7 +32,7 @@ fn rendered(flux: Vec3, twins: bool, settings: &Settings) -> Rendered {
     render(&input, settings, |_| ())
 }
 
-/// Finite flux, but radiance beyond float32: those pixels and no others are counted, and the first of them named.
+/// Finite flux, but radiance beyond float32: exactly those pixels are counted, and the first of them is named.
 #[test]
 fn radiance_beyond_float32_is_counted_and_placed() {
     for model in MODELS {
@@ -50,10 +49,10 @@ fn radiance_beyond_float32_is_counted_and_placed() {
     assert_eq!((harmless.non_finite_count, harmless.non_finite.len()), (0, 0));
 }
 
-/// A variance is a square: it leaves float32 long before the radiance does, and goes into the same file, as the largest
-/// number there. It is that of the cloud, too: one path a pixel knows it.
+/// A variance is a square: it leaves float32 long before the radiance does, and is stored as the largest float32. The
+/// variance of the cloud is part of it: one path a pixel estimates it.
 ///
-/// Seen to catch: no image of a good pixel because of its variance.
+/// Seen to catch: an image refused because of the variance of a valid pixel.
 #[test]
 fn variance_beyond_float32_is_the_largest_number_of_the_file() {
     for paths_per_pixel in [1, 4] {
@@ -71,7 +70,7 @@ fn variance_beyond_float32_is_the_largest_number_of_the_file() {
     }
 }
 
-/// Light whose flux leaves float32, or float64: phase one refuses to make a cloud, and counts the samples.
+/// Light whose flux leaves float32, or float64: sampling refuses to make a cloud, and counts the samples.
 #[test]
 fn flux_beyond_float32_makes_no_cloud() {
     for irradiance in [DVec3::splat(1e41), DVec3::new(0.0, 0.0, 9e76)] {
@@ -79,24 +78,18 @@ fn flux_beyond_float32_makes_no_cloud() {
         world.scene.file_lights.clear();
         let light = scene::light::DirectionalLight { direction: DVec3::Z, irradiance };
         world.scene.file_lights.push(Box::new(light));
-        let settings = sample_surface::Settings {
-            samples: 100,
-            choice: sample_surface::Choice::Area,
-            pattern: sample_surface::Pattern::Stratified,
-            normals: NormalKind::Geometric,
-            translucent: Vec::new(),
-            shares: Vec::new(),
-            options: sampled(&under_a_sun(DVec3::ONE), &by_area(1, 0)).meta.options,
-        };
-        let plan = Plan::new(&world.scene, &settings).expect("the scene has light and a surface");
+        let options = sampled(&under_a_sun(DVec3::ONE), &by_area(1, 0)).meta.options;
+        let settings = sample_surface::Settings { samples: 100, options };
+        let (surfaces, _) = Surfaces::translucent(&world.scene).expect("the scene has a surface");
+        let plan = Plan::new(&world.scene, &settings, surfaces).expect("the scene has light");
         match sample_surface::sample(&world.scene, &world.rays, &settings, &plan, |_| ()) {
-            Err(SampleError::NotFinite { count }) => assert_eq!(count, 100),
+            Err(SampleError::NotFinite { samples }) => assert_eq!(samples, 100),
             _ => panic!("a cloud with infinite flux"),
         }
     }
 }
 
-/// Light whose flux is below float32: lit, but nothing to store; counted.
+/// Light whose flux is below float32: the samples are lit but cannot be stored; they are counted.
 #[test]
 fn flux_below_float32_is_dropped_and_counted() {
     let mut world = under_a_sun(DVec3::ONE);

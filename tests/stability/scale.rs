@@ -14,8 +14,8 @@ fn lit_slab(size: f64) -> World {
     world(&[Part::translucent(slab(DVec3::new(1.0, 1.0, 0.25) * size, 2))], &[sun], DVec3::ZERO)
 }
 
-/// Opaque to all but clear, by all models and estimators. A millionth of a mean free path leaves as good as nothing to
-/// scatter: `S` is below its value at the sample, `σ_t'²` times what it is for `σ_t' = 1`.
+/// From opaque to almost clear, by all models and estimators. At a millionth of a mean free path almost nothing is
+/// left to scatter: `S` is below its value at the sample, which is `σ_t'²` times that for `σ_t' = 1`.
 #[test]
 fn mean_free_path_from_a_millionth_to_a_million_of_the_object() {
     let world = lit_slab(0.5);
@@ -38,7 +38,7 @@ fn channel(sigma_s: f64, share: f64) -> Coefficients {
     Coefficients { sigma_a: share * sigma_s, sigma_s, asymmetry: 0.0 }
 }
 
-/// Object, camera and mean free path in proportion: with powers of two, every bit of the image is the same.
+/// Object, camera and mean free path scaled together by powers of two give every bit of the image again.
 #[test]
 fn pictures_of_any_size_are_the_same() {
     let picture = |exponent: i32| {

@@ -1,4 +1,4 @@
-//! Scenes through both phases; whatever comes of them must be fit for a file.
+//! Scenes through both phases: every result must be fit for a file.
 
 use bssrdf::Medium;
 use formats::cloud::Cloud;
@@ -10,10 +10,11 @@ use test_support::{
     pipeline::{by_area, cloud, grey, orthographic},
 };
 
-/// What is there to see, without a light that could be sampled: powers of two, so that means of equal values are exact.
+/// The sky that clear objects show, which is no light to sample: powers of two, so that means of equal values are
+/// exact.
 pub const SKY: DVec3 = DVec3::new(1.0, 0.5, 4.0);
 
-/// Renders, and fails if a number of the image is not finite or radiance negative.
+/// Renders, and fails if a number of the image is not finite or a radiance is negative.
 pub fn render(world: &World, cloud: &Cloud, media: &[Medium], camera: &Camera, settings: &Settings) -> Rendered {
     let input = Input { scene: &world.scene, rays: &world.rays, clouds: std::slice::from_ref(cloud), media, camera };
     let rendered = gather::render(&input, settings, |_| ());
@@ -32,7 +33,7 @@ pub fn channel(rendered: &Rendered, settings: &Settings, name: &str) -> Vec<f32>
     image.channel(name).expect("the film has this channel").to_vec()
 }
 
-/// A scene under [`SKY`] with any cloud of it: none of the cloud's light comes out of a clear medium.
+/// A scene under [`SKY`] with an arbitrary cloud of it, whose light does not leave a clear medium.
 pub struct Clear {
     pub world: World,
     cloud: Cloud,
@@ -52,8 +53,8 @@ impl Clear {
     }
 }
 
-/// Renders bodies of clear media: every pixel must show [`SKY`], to the rounding of the two
-/// shares that its first interfaces split it in, and no path may be lost.
+/// Renders objects of clear media under [`SKY`] all around: every pixel must show that radiance, up to the rounding
+/// of the two shares into which its first interface splits it, and no path may be lost.
 pub fn assert_invisible(what: &str, clear: &Clear, etas: &[f64], camera: &Camera, settings: &Settings) -> Counts {
     let settings = Settings { max_depth: 256, ..settings.clone() };
     let rendered = clear.render(etas, camera, &settings);

@@ -1,4 +1,4 @@
-//! Where the light enters and leaves: the same point, in line with a normal or with the light, far away.
+//! Separations of entry and exit: the same point, in line with a normal or with the light, far away.
 //!
 //! Lengths are mean free paths here: `σ_t' = 1/m`.
 
@@ -18,8 +18,8 @@ fn down(angle: f64) -> DVec3 {
     DVec3::new(angle.sin(), 0.0, -angle.cos())
 }
 
-/// `x = 0`: the guards of the mirror normal and of a division by the distance. The standard dipole's closed form, and
-/// no jump away from the sample.
+/// `x = 0`: the guards of the mirror normal and of a division by the distance. The standard dipole has its closed
+/// form, and there is no jump beside the sample.
 #[test]
 fn exit_point_exactly_at_a_sample() {
     let medium = medium();
@@ -39,8 +39,8 @@ fn exit_point_exactly_at_a_sample() {
     assert_is("standard dipole", standard.exact, DVec3::splat(expected), 1e-14);
 }
 
-/// `x = 0` on an edge, where the light runs along the other face: `μ0 → 0`. The source then lies at the exit point, and
-/// 1/d³ leaves the range of float32, at last that of float64: `S` is 0 there, as it is at `d = 0`.
+/// `x = 0` on an edge, where the light runs along the other face: `μ0 → 0`. The source then approaches the exit
+/// point, and 1/d³ leaves the range of float32 and finally of float64: `S` is 0 there, as it is at `d = 0`.
 #[test]
 fn light_along_the_exit_surface() {
     for exponent in 0..=320 {
@@ -73,8 +73,8 @@ fn the_depth_of_the_source_jumps_where_the_light_turns_from_behind() {
     assert!((value(1e-9) / value(0.0) - 1.0).abs() > 0.1, "no jump: {} {}", value(1e-9), value(0.0));
 }
 
-/// `x ∥ n_i`, as on the far side of a sheet: the mirror normal comes from the light then, and is the limit of points
-/// beside the line on the light's side (method.md 5.6).
+/// `x ∥ n_i`, as on the far side of a sheet: the direction of the light then gives the mirror normal, the limit for
+/// points beside the line on the side of the light (method.md 5.6).
 #[test]
 fn offset_along_the_entry_normal() {
     for angle in [1e-9, 1e-4, 0.3, 0.7] {
@@ -96,7 +96,7 @@ fn offset_along_the_entry_normal() {
     }
 }
 
-/// `x`, `n_i`, `ω12` and `n_o` all in one line: nothing defines a mirror normal, and `a = b = 0`.
+/// `x`, `n_i`, `ω12` and `n_o` in one line: the mirror normal is undefined, and `a = b = 0`.
 #[test]
 fn everything_in_one_line() {
     for normal_out in [DVec3::Z, DVec3::NEG_Z] {
@@ -110,8 +110,8 @@ fn everything_in_one_line() {
     }
 }
 
-/// `x` runs along ω12, all but exactly, with n_i in the same line or not: `r² − (x·ω12)²` would lose its digits in float32
-/// or go below zero (method.md section 8).
+/// `x` nearly parallel to ω12, with n_i in the same line or not: `r² − (x·ω12)²` would lose its digits in float32 or
+/// become negative (method.md section 8).
 #[test]
 fn offset_along_the_refracted_light() {
     let mut random = Random(5);
@@ -132,7 +132,7 @@ fn offset_along_the_refracted_light() {
     assert!(tried > 2000 && far_off < tried / 200, "{far_off} of {tried} are far off");
 }
 
-/// `σ_tr r` large: `S` vanishes, without an inverse exponential on the way.
+/// `σ_tr r` large: `S` vanishes, and no growing exponential overflows on the way.
 #[test]
 fn far_away_with_absorption() {
     for distance in [1e3, 1e4, 1e8, 1e15, 1e18] {

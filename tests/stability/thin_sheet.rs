@@ -11,9 +11,9 @@ use test_support::{
     pipeline::{Lit, MODELS, Point, by_area, cloud, grey},
 };
 
-/// `C_φ φ + C_E n_o·(−D∇φ)` of the field `φ` of one source, seen `at` from it, that shines `along` and has its depth
-/// beside the surface: what (5.9) is short for. The gradient is a central difference: nothing shared with the formula
-/// under test.
+/// `C_φ φ + C_E n_o·(−D∇φ)` for the field `φ` of one source at the offset `at`, which emits along `along` at its
+/// depth below the surface; (5.9) is the closed form of it. The gradient is a central difference, so that nothing is
+/// shared with the formula under test.
 fn source(c: &Coefficients, medium: &Medium, [at, along, out]: [DVec3; 3], depth_squared: f64) -> f64 {
     let (diffusion, transport) = (c.diffusion(), c.transport());
     let field = |x: DVec3| {
@@ -26,7 +26,8 @@ fn source(c: &Coefficients, medium: &Medium, [at, along, out]: [DVec3; 3], depth
     medium.interface.c_phi * field(at) - medium.interface.c_e * diffusion * slope
 }
 
-/// Straight light through sheets from a thousandth of a mean free path to ten, beside and opposite the entry.
+/// Light at normal incidence through sheets from a thousandth of a mean free path to ten, beside and opposite the
+/// entry.
 ///
 /// The guard: `z² = 1/(3σ_t)²` where `μ0 ≤ 0`, with the full extinction.
 #[test]

@@ -1,4 +1,4 @@
-//! Light by way of opaque surfaces: powers on a small square below a ceiling, known on paper.
+//! Light reflected by opaque surfaces: powers on a small square below a ceiling, known in closed form.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -11,10 +11,11 @@ use test_support::{
 };
 
 const SEEDS: u64 = 32;
-/// Of the square, m.
+/// Half width of the square, m.
 const HALF_WIDTH: f64 = 5e-4;
 
-/// The ceiling is a metre above the square, white, wound upwards, and lit from below where the square is not.
+/// The ceiling is white, one metre above the square, wound upwards, and lit from below everywhere but over the
+/// square.
 fn below(ceiling: f64, more: &[Light]) -> World {
     let parts = [Part::translucent(quad(HALF_WIDTH, 0.0, 2)), Part::opaque(quad(ceiling, 1.0, 1))];
     let from_below = Light::Directional { towards: DVec3::new(0.6, 0.0, -0.8), irradiance: DVec3::new(1.0, 2.0, 3.0) };
@@ -30,16 +31,16 @@ fn assert_irradiance(what: &str, world: &World, expected: DVec3) {
         for c in 0..3 {
             let runs: Vec<f64> = powers.iter().map(|p| p[c] / area).collect();
             if runs.iter().all(|r| (r / expected[c] - 1.0).abs() < 1e-6) {
-                continue; // even samples that all see the same
+                continue; // even samples: all of them see the same
             }
             assert_mean(&format!("{what}, {}, channel {c}", pattern.name()), Estimate::of(&runs), expected[c]);
         }
     }
 }
 
-/// A ceiling without end gives all it gets, `ρ E`.
+/// A ceiling without end reflects all that reaches it, `ρ E`.
 ///
-/// Seen to catch: a fifth more light off the ceiling.
+/// Seen to catch: a fifth more light from the ceiling.
 #[test]
 fn an_endless_ceiling_gives_what_it_gets() {
     assert_irradiance("ceiling", &below(2000.0, &[]), 0.8 * DVec3::new(1.0, 2.0, 3.0));

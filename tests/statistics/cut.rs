@@ -1,4 +1,4 @@
-//! The cut has the mean of the whole sum: over the random numbers of many gathers, on one cloud.
+//! The cut has the mean of the exhaustive sum, over the random numbers of many gathers on one cloud.
 
 use bssrdf::{Medium, built_in};
 use formats::cloud::Cloud;
@@ -19,13 +19,13 @@ use test_support::{
 };
 
 const ACCURACIES: [f64; 3] = [0.5, 0.1, 0.01];
-/// Gathers at each point.
+/// Number of gathers at each point.
 const GATHERS: u64 = 48 * EFFORT;
-/// Points of each kind.
+/// Number of lit and of unlit points.
 const POINTS: usize = 10;
 
-/// Points of a scene's surface that light reaches, and points that it does not; as many as asked for of each, if the
-/// scene has both.
+/// Points of the surface that light reaches, and points that it does not: as many of each as asked for, if the scene
+/// has both.
 fn lit_and_unlit(world: &World, wanted: usize) -> [Vec<Point>; 2] {
     let (mut random, mut points) = (Random(31), [Vec::new(), Vec::new()]);
     let lights = LightTree::new(world.scene.lights());
@@ -43,8 +43,8 @@ fn lit_and_unlit(world: &World, wanted: usize) -> [Vec<Point>; 2] {
     points
 }
 
-/// Each run gathers once at every point; its result is the mean ratio to the whole sum, over points and channels. What
-/// is darker than a millionth of the brightest may not count: float32 ends there.
+/// Each run gathers once at every point; its result is the mean ratio to the exhaustive sum, over points and
+/// channels. Values below a millionth of the brightest do not count: float32 resolves no more.
 fn ratios(lit: &Lit, points: &[Point], estimator: Estimator, first_key: u64) -> Vec<f64> {
     let whole: Vec<DVec3> = points.iter().map(|p| lit.radiance(Estimator::Exhaustive, *p, 0)).collect();
     let dark = 1e-6 * whole.iter().map(|w| w.max_element()).fold(0.0, f64::max);
@@ -78,7 +78,7 @@ fn assert_unbiased(what: &str, cloud: &Cloud, medium: &Medium, points: &[Point],
     });
 }
 
-/// Triangles of very uneven areas, all chosen alike: fluxes differ by orders of magnitude from sample to sample, and with
+/// Triangles of very uneven areas, chosen uniformly: the fluxes of samples differ by orders of magnitude, and with
 /// them the errors of closed nodes.
 ///
 /// Seen to catch: the last tile's lanes all counted and picked from; a last sample of each node that is never picked; nodes
@@ -96,7 +96,7 @@ fn under_uneven_fluxes() {
     }
 }
 
-/// Under light from everywhere each sample has a direction of its own, which the tree's nodes average over.
+/// Under a constant environment each sample has a direction of its own, over which the nodes of the tree average.
 ///
 /// Seen to catch: the last tile's lanes all counted and picked from; nodes of little flux left out.
 #[test]

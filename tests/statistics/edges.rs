@@ -1,4 +1,4 @@
-//! Pixels at edges know from rays how much light gets through: that takes noise away and leaves the mean.
+//! The control variate of silhouette pixels removes noise and leaves the mean.
 
 use crate::error_bars::{Scene, edge, of_paths};
 use gather::{Input, Settings, estimator::Estimator, film::Pixel};
@@ -11,10 +11,10 @@ use test_support::{
     z_test::{Estimate, assert_equal},
 };
 
-/// Images of each mean.
+/// Number of images in each mean.
 const IMAGES: u64 = 4000 * EFFORT;
 
-/// Brightness of the whole image, over gathers and camera paths.
+/// Mean radiance of the whole image, for independent random numbers of gathers and camera paths.
 fn brightness(scene: &Scene, paths_per_pixel: u32) -> Estimate {
     let cloud = cloud(&scene.world, &(scene.sampling)(20, 1));
     let (media, camera) = ([scene.medium.clone()], orthographic(DVec3::new(1.0, 1.2, 1.5), scene.half_height));
@@ -35,15 +35,15 @@ fn brightness(scene: &Scene, paths_per_pixel: u32) -> Estimate {
     Estimate::of(&(first..first + IMAGES).into_par_iter().map(image).collect::<Vec<f64>>())
 }
 
-/// One path a pixel is alone, and its pixel no edge: that is the mean without any of it.
+/// With one path a pixel the control variate is off, which gives the mean to compare with.
 ///
-/// Seen to catch: a factor from the half's own paths; rays that miss not counted.
+/// Seen to catch: a factor computed from the half's own paths; rays that miss left out of the count.
 #[test]
 fn the_mean_is_that_of_paths_alone() {
-    // So thin a medium that the light below varies little within a pixel.
+    // The medium is so thin that the light below varies little within a pixel.
     let scene = edge(grey(30.0, 300.0, 0.0, 1.3));
     let alone = brightness(&scene, 1);
-    // Measured without the rays: 0.50, 0.22 and 0.029 of one path's variance.
+    // Measured as a share of the variance of one path: 0.50, 0.22 and 0.029 without the control variate.
     for (paths, most) in [(2, 0.43), (3, 0.15), (8, 0.01)] {
         let known = brightness(&scene, paths);
         assert_equal(&format!("{paths} paths"), known, alone);

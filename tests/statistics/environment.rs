@@ -1,4 +1,4 @@
-//! Images of bodies under a picture of light from all around.
+//! Images of objects under an environment map.
 
 use bssrdf::Model;
 use gather::{Filter, Input, Rendered, Settings};
@@ -18,7 +18,7 @@ use test_support::{
     z_test::{Estimate, assert_equal},
 };
 
-/// A picture of one color.
+/// An environment map of one color.
 fn even(color: DVec3) -> Environment {
     let map = EnvironmentMap::new((24, 12), vec![color.as_vec3(); 288], 1.0, 10.0).expect("good pixels");
     Environment::Map(map.into())
@@ -41,10 +41,10 @@ fn render(environment: Environment, sigma_s: f64, seed: u64) -> Rendered {
     gather::render(&input, &Settings { filter: Filter::Box, paths_per_pixel: 2, ..settings }, |_| ())
 }
 
-/// A picture of one color is that color: what rays see is the same to the last bit, and the light on the body is on
-/// average.
+/// An environment map of one color acts as that constant color: what rays see agrees to the last bit, and the light
+/// on the object agrees in the mean.
 ///
-/// Seen to catch: the probability of a pixel without that of its window.
+/// Seen to catch: the probability of a pixel without that of its tile.
 #[test]
 fn a_picture_of_one_color_is_a_constant_environment() {
     let color = DVec3::new(0.5, 0.25, 2.0);
@@ -63,11 +63,11 @@ fn a_picture_of_one_color_is_a_constant_environment() {
     assert_equal("picture and constant", sums[1], sums[0]);
 }
 
-/// The mean flux of the samples is the light that crosses the shadow of the body in every direction: `Φ = ∫L P dω`. Of a
-/// closed convex body `P` has the mean `A/4` over any hemisphere; what a polyhedron's is towards the sun is added up over
-/// the sun's pixel.
+/// The mean flux of the samples is the light that crosses the shadow of the object in every direction, `Φ = ∫L P dω`.
+/// For a closed convex object the projected area `P` has the mean `A/4` over any hemisphere; towards the sun, the
+/// projected area of the polyhedron is summed over the sun's pixel.
 ///
-/// Seen to catch: the probability of a pixel without that of its window; one solid angle for all pixels; `A/4` towards the
+/// Seen to catch: the probability of a pixel without that of its tile; one solid angle for all pixels; `A/4` towards the
 /// sun (0.08 %); a rotation the other way (0.14 %).
 #[test]
 fn a_convex_body_gathers_what_its_shadow_would() {
@@ -82,7 +82,7 @@ fn a_convex_body_gathers_what_its_shadow_would() {
         .map(|k| mesh.area(k) * mesh.point(k as u32, [1.0, 0.0, 0.0], NormalKind::Geometric).normal)
         .collect();
     let shadow = |direction: DVec3| facets.iter().map(|facet| facet.dot(direction).max(0.0)).sum::<f64>();
-    // The middle of the picture is +X, its columns go on to +Z; it is turned about +Y.
+    // The middle of the map is +X and its columns proceed to +Z; the map is turned about +Y.
     let cosine = |row: f64| (PI * row / 32.0).cos();
     let place = |k: u32| (f64::from(k) + 0.5) / 16.0;
     let toward = |x: u32, y: u32| {

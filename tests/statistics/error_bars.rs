@@ -1,4 +1,5 @@
-//! The variance of a pixel is the variance that it has, over clouds, gathers and camera paths.
+//! The variance that an image states for a pixel is the one that the pixel has, over clouds, gathers and camera
+//! paths.
 
 use crate::means::{jelly, lamp, sun};
 use bssrdf::{Medium, Model, built_in};
@@ -13,9 +14,9 @@ use test_support::{
     z_test::{Estimate, assert_mean},
 };
 
-/// Pairs of images, each with a cloud and camera paths of its own.
+/// Pairs of images; each image has a cloud and camera paths of its own.
 const PAIRS: u64 = 48 * EFFORT;
-/// So few that the cloud's part of the variance is about as large as that of the paths.
+/// So few samples that the cloud's part of the variance is about as large as that of the paths.
 const SAMPLES: u64 = 150;
 
 const CUT: Estimator = Estimator::Cut { accuracy: 0.1 };
@@ -23,14 +24,14 @@ const CUT: Estimator = Estimator::Cut { accuracy: 0.1 };
 pub struct Scene {
     pub world: World,
     pub medium: Medium,
-    /// Half of what the image shows, m.
+    /// Half of the width that the image shows, m.
     pub half_height: f64,
     pub sampling: fn(u64, u64) -> Sampling,
-    /// Clouds that are gathered together.
+    /// Number of clouds that are gathered together.
     shards: u32,
 }
 
-/// A body that fills a part of the image, before black.
+/// An object that fills a part of the image, before black.
 pub fn edge(medium: Medium) -> Scene {
     edge_under(medium, DVec3::ZERO)
 }
@@ -56,8 +57,8 @@ fn image(scene: &Scene, settings: &Settings, seed: u64) -> Vec<Pixel> {
     gather::render(&input, &Settings { seed, ..settings.clone() }, |_| ()).pixels
 }
 
-/// The ratio of the estimated variance to the actual one, sums over pixels and channels, over pairs of images: two
-/// values of a pixel differ by twice their variance, squared and in the mean.
+/// The ratio of the estimated variance to the actual one, both summed over pixels and channels, over pairs of images:
+/// the squared difference between two values of a pixel is, in the mean, twice their variance.
 fn assert_error_bars(what: &str, scene: &Scene, settings: &Settings, first: u64) {
     let pair = |k: u64| {
         let [a, b] = [0, 1].map(|j| image(scene, settings, first + 2 * k + j));
@@ -67,7 +68,7 @@ fn assert_error_bars(what: &str, scene: &Scene, settings: &Settings, first: u64)
     };
     let pairs: Vec<[f64; 2]> = (0..PAIRS).into_par_iter().map(pair).collect();
     let actual = pairs.iter().map(|p| p[0]).sum::<f64>() / PAIRS as f64;
-    // The ratio's error to first order: that of the differences from its own value.
+    // Error of the ratio to first order, from the scatter of the differences about it.
     let ratio = pairs.iter().map(|p| p[1]).sum::<f64>() / PAIRS as f64 / actual;
     let differences: Vec<f64> = pairs.iter().map(|[a, e]| (e - ratio * a) / actual).collect();
     let estimate = Estimate { mean: ratio, ..Estimate::of(&differences) };
@@ -76,7 +77,7 @@ fn assert_error_bars(what: &str, scene: &Scene, settings: &Settings, first: u64)
 }
 
 pub fn of_paths(estimator: Estimator, paths_per_pixel: u32) -> Settings {
-    // The directional dipole has outliers near edges (method.md section 8), which take many images to average.
+    // The directional dipole has outliers at silhouettes (method.md section 8), which take many images to average.
     let settings = settings(Model::StandardDipole, 10, 8);
     Settings { estimator, paths_per_pixel, filter: Filter::Box, ..settings }
 }
@@ -92,7 +93,8 @@ fn of_the_cut() {
     }
 }
 
-/// Of three clouds, and fewer paths or as many for each half: which clouds a pixel saw is a part of its error.
+/// With three clouds, and fewer paths in each half or as many: which clouds a pixel gathers from is a part of its
+/// error.
 ///
 /// Seen to catch: all paths gathering from the first halves.
 #[test]
@@ -104,14 +106,15 @@ fn of_shards() {
     }
 }
 
-/// Every path gathers from both halves, the error bars take even paths with one and odd paths with the other: the same if
-/// the cloud's error is the same all over a pixel, so the medium is thin here. Otherwise the paths average over it, and
-/// the error bars, which know only half of them for each half, are somewhat wide.
+/// Every path gathers from both halves of the cloud, while the error bars take one half for even paths and the other
+/// for odd ones. The two agree if the error of the cloud is the same all over a pixel, for which the medium is thin
+/// here. Otherwise the paths average over that error, and the error bars, which see half of the paths for each half,
+/// are somewhat wide.
 ///
 /// Seen to catch: the same value of the cloud for both halves.
 #[test]
 fn of_the_whole_sum() {
-    // In so thin a medium independent samples, and a view without the body's edge, let the cloud's part be seen.
+    // In so thin a medium, independent samples and a view without the silhouette show the part of the cloud.
     let scene = Scene { half_height: 6e-4, sampling: by_area, ..edge_under_sky(grey(30.0, 300.0, 0.0, 1.3)) };
     for (k, paths) in [2, 4].into_iter().enumerate() {
         let settings = of_paths(Estimator::Exhaustive, paths);
@@ -119,9 +122,10 @@ fn of_the_whole_sum() {
     }
 }
 
-/// In so thin a medium, with so many samples, the noise is that of the body's edge, which pixels know from rays.
+/// In so thin a medium, with so many samples, the noise is that of the silhouette, which the control variate of cheap
+/// rays reduces.
 ///
-/// Seen to catch: halves taken for independent that take their factors from each other.
+/// Seen to catch: halves treated as independent although each takes its factors from the other.
 #[test]
 fn of_edges() {
     let scene = edge(grey(30.0, 300.0, 0.0, 1.3));
@@ -131,8 +135,8 @@ fn of_edges() {
     }
 }
 
-/// One path through the centre of each pixel of a body of index 1 has no noise of its own: what is left is that of cloud
-/// and gather, and known.
+/// One path through the centre of each pixel of an object of index 1 has no noise of its own: what is left is that of
+/// the cloud and the gather, and it is stated.
 ///
 /// Seen to catch: the mean of both halves taken for each.
 #[test]

@@ -1,5 +1,5 @@
-//! `--accuracy X` is the relative error that the cut adds to a pixel: what an image differs by from the whole sum over the
-//! same cloud, along the same camera paths.
+//! `--accuracy X` is the relative error that the cut adds to a pixel: the difference of an image from the exhaustive
+//! sum over the same cloud, along the same camera paths.
 
 use bssrdf::{Medium, Model, built_in, built_in_names};
 use formats::cloud::Cloud;
@@ -20,18 +20,18 @@ use test_support::{
 const ACCURACY: f64 = 0.01;
 const SIZE: usize = 32;
 
-/// A mesh with a cloud of it, and what a camera sees of it.
+/// A mesh, a cloud of it, and a camera.
 struct View {
     name: String,
     world: World,
     cloud: Cloud,
     camera: Camera,
-    /// Pixels whose points light reaches, and those whose it does not.
+    /// Pixels whose point is lit, and pixels whose point is not.
     pixels: [Vec<usize>; 2],
 }
 
 impl View {
-    /// Seen along the axis that shows most of both sides, the lit and the unlit one.
+    /// A view along the axis that shows most of both the lit and the unlit side.
     fn new(name: &str, world: World) -> View {
         let cloud = cloud(&world, &stratified(60_000 * EFFORT.min(4), 1));
         let cameras = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
@@ -74,20 +74,20 @@ impl View {
     }
 }
 
-/// A camera that looks from `towards` at all of one material.
+/// A camera that looks from `towards` at all surfaces of one material.
 fn looking(world: &World, material: u16, towards: DVec3) -> Camera {
     let mesh = &world.scene.mesh;
     let own = (0..mesh.triangles.len()).filter(|k| mesh.triangles[*k].material == material);
     let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (low, high) = own.flat_map(|k| mesh.corners(k)).fold(start, |(low, high), p| (low.min(p), high.max(p)));
     let camera = orthographic(towards, 0.4 * (high - low).length());
-    // From just outside: nothing else of the scene is in between.
+    // The camera is just outside: nothing else of the scene lies in between.
     let position = world.scene.origin + (low + high) / 2.0 + towards * (high - low).length();
     Camera { position, ..camera }
 }
 
-/// Pixels whose centre shows a point that light reaches, and one that it does not. Points seen so obliquely that the
-/// interface takes much of their light are left out: the cut may be that much worse there.
+/// Pixels whose centre shows a lit point, and pixels whose centre shows an unlit one. Points seen at grazing angles,
+/// where the interface takes much of the light, are left out: the cut may be that much worse there.
 fn sides(world: &World, material: u16, camera: &Camera) -> [Vec<usize>; 2] {
     let (scene, rays) = (&world.scene, &world.rays);
     let lights = LightTree::new(scene.lights());
@@ -107,7 +107,7 @@ fn sides(world: &World, material: u16, camera: &Camera) -> [Vec<usize>; 2] {
     sides
 }
 
-/// Views of meshes that are there: the repository's, and others beside it.
+/// Views of the meshes of the repository, and of others if they are there.
 fn views() -> Vec<View> {
     let mut views: Vec<View> = ["figure", "slivers"].map(|name| View::new(name, repository_scene(name))).into();
     let others = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/scenes");
@@ -126,21 +126,23 @@ fn media() -> Vec<Medium> {
     names.into_iter().map(|name| built_in(name).expect("a built-in medium")).collect()
 }
 
-/// Much of the light crosses the object without being scattered: the shortest mean free path is over a quarter of its
-/// size. What does scatter is the directional dipole's poles at grazing light, a sample here and there.
+/// Tenuous media, of which much light passes without scattering: the shortest mean free path exceeds a quarter of the
+/// size of the object. What does scatter comes from poles of the directional dipole at grazing light, at single
+/// samples.
 fn is_tenuous(medium: &Medium, view: &View) -> bool {
     let shortest = medium.channels.iter().map(|c| 1.0 / c.reduced_extinction()).fold(f64::INFINITY, f64::min);
     shortest > 0.25 * view.cloud.meta().materials[0].area_m2.sqrt()
 }
 
-/// No turbid medium is worse than this at lit and at unlit points, as a multiple of the accuracy: with all media 1.2 and
-/// 2.1. The factor that is measured before goes by brightness, so that dim lit points share that of unlit ones.
+/// The largest error of turbid media at lit and at unlit points, as a multiple of the accuracy; over all media it is
+/// 1.2 and 2.1. The factor that is measured beforehand depends on brightness, so that dim lit points share that of
+/// unlit ones.
 const WORST: [f64; 2] = [1.5, 2.5];
 
-/// No tenuous one; with all media 1.2 and 2.8.
+/// The same for tenuous media; over all of them 1.2 and 2.8.
 const WORST_TENUOUS: [f64; 2] = [1.5, 3.5];
 
-/// Seen to catch: three times the accuracy asked for.
+/// Seen to catch: a cut three times as loose as asked for.
 #[test]
 fn the_cut_is_as_accurate_as_asked_for() {
     let media = media();
@@ -150,13 +152,14 @@ fn the_cut_is_as_accurate_as_asked_for() {
         for (half, kind) in ["lit", "unlit"].into_iter().enumerate() {
             let own = || media.iter().zip(errors.iter().map(|e| e[half])).filter(|(_, e)| e.is_finite());
             let mean = (own().map(|(_, e)| e.ln()).sum::<f64>() / own().count() as f64).exp();
-            // Relative to what is allowed.
+            // The error relative to the allowed one.
             let bound = |medium: &Medium| if is_tenuous(medium, &view) { WORST_TENUOUS } else { WORST }[half];
             let by_bound = own().max_by(|a, b| (a.1 / bound(a.0)).total_cmp(&(b.1 / bound(b.0))));
             let (worst, most) = by_bound.expect("a medium that is not black");
             let what = format!("{}, {kind}: error {mean:.2} X, worst {most:.2} X ({})", view.name, worst.name);
             println!("{what}");
-            // Better than asked is no failure: in opaque media all that contributes at all is summed one by one.
+            // An error smaller than asked for is no failure: in opaque media all samples that contribute are summed
+            // one by one.
             if mean.is_nan() || mean > 1.5 || most > bound(worst) {
                 failures.push(what);
             }

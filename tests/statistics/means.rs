@@ -1,8 +1,8 @@
-//! Means over independent clouds: what must not change with the choice of triangles, the number of samples, or how the
-//! light is divided.
+//! Means over independent clouds, which must not depend on the choice of triangles, the number of samples, or how the
+//! light is divided among lights.
 //!
-//! Both phases run whole. The medium has the index 1: no path is reflected, and each pixel shows the sum over the cloud
-//! at one point, and nothing else.
+//! Both programs' work is done in full. The medium has the index 1: no path is reflected, and each pixel shows the
+//! sum over the cloud at one point and nothing else.
 
 use bssrdf::{Medium, Model};
 use formats::cloud::Cloud;
@@ -37,7 +37,7 @@ pub fn lamp() -> Light {
     Light::Point { position: DVec3::new(-6e-3, 1e-3, 4e-3), intensity: DVec3::new(4e-5, 2e-5, 1e-5) }
 }
 
-/// The slab under some lights.
+/// The slab under the given lights.
 pub fn lit_by(lights: &[Light]) -> World {
     world(&[Part::translucent(slab(HALF_SIZE, 6))], lights, DVec3::ZERO)
 }
@@ -121,7 +121,7 @@ fn two_lights_add_up() {
     }
 }
 
-/// The same samples, the same light: only the directions' last digits and the stored codes of them differ.
+/// The same samples under the same light: only the last digits of the directions and their stored codes differ.
 ///
 /// Seen to catch: a point light without its cosine; one falling off with the distance instead of its square.
 #[test]
@@ -145,15 +145,16 @@ fn a_far_point_light_is_a_directional_one() {
 fn blocked_samples_count() {
     const HALF_WIDTH: f64 = 12e-3;
     let square = Part::translucent(quad(HALF_WIDTH, 0.0, 8));
-    // Black, so that no sample looks at it instead of the sun.
+    // The sheet is black, so that no sample takes reflected light from it instead of direct light.
     let sheet = Part::opaque(rectangle([-1.5 * HALF_WIDTH, 0.0], 1.5 * HALF_WIDTH, 5e-3, 1));
     let sheet = Part { color: DVec3::ZERO, ..sheet };
     let above = [Light::Directional { towards: DVec3::Z, irradiance: DVec3::ONE }];
     let open = world(std::slice::from_ref(&square), &above, DVec3::ZERO);
     let covered = world(&[square, sheet], &above, DVec3::ZERO);
-    // A window of 3 by 2 mm, seen from below the sheet.
+    // The image shows 3 by 2 mm, seen from below the sheet.
     let window = |x: f64| Camera { position: DVec3::new(x, 0.0, 2e-3), ..orthographic(DVec3::Z, 1e-3) };
-    // Eight attenuation lengths from the shadow's edge: e^{−8} of the light of the other half is missing.
+    // The point is eight attenuation lengths from the shadow's edge: e^{−8} of the light of the other half is
+    // missing.
     let lit = estimate(&covered, &window(6e-3), 1000, |seed| by_area(SAMPLES, seed));
     let free = estimate(&open, &window(6e-3), 1100, |seed| by_area(SAMPLES, seed));
     let dark = estimate(&covered, &window(-6e-3), 1000, |seed| by_area(SAMPLES, seed));

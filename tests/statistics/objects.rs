@@ -35,9 +35,9 @@ fn two() -> World {
     world(&[Part::translucent(small), Part::translucent(large)], &[sun(DVec3::ONE)], DVec3::ZERO)
 }
 
-/// Densities times areas add up to the share that was asked for, and the choice follows them.
+/// Densities times areas add up to the share that was asked for, and the choice follows the densities.
 ///
-/// Seen to catch: half of the samples left for the others whatever the share.
+/// Seen to catch: half of the samples given to the other objects whatever the share.
 #[test]
 fn shares_are_kept_and_densities_follow() {
     let world = two();
@@ -62,7 +62,7 @@ fn shares_are_kept_and_densities_follow() {
 
 /// The small slab looks the same whatever share of the samples it gets, by both patterns.
 ///
-/// Seen to catch: a density whose share is off by its fiftieth power.
+/// Seen to catch: a density whose share is wrong by a fiftieth.
 #[test]
 fn a_share_leaves_the_mean() {
     let (world, camera) = (two(), orthographic(DVec3::new(0.2, 0.3, 1.0), 1.5e-3));
@@ -85,8 +85,8 @@ fn a_share_leaves_the_mean() {
     }
 }
 
-/// Two slabs that touch, a sheet over the first: the light of the second one ends at the common face, unless both are of
-/// one material.
+/// Two slabs that touch, with an opaque sheet over the first: the light of the second one ends at the common face,
+/// unless both are of one material.
 #[test]
 fn light_does_not_bleed_between_touching_objects() {
     let half = DVec3::new(2e-3, 2e-3, 1e-3);

@@ -1,4 +1,4 @@
-//! Camera paths through `gather::render`: interfaces, the way through a medium, emission.
+//! Camera paths through `gather::render`: interfaces, absorption in a medium, emission.
 
 use bssrdf::{Model, fresnel};
 use gather::{Filter, Input, Rendered, Settings};
@@ -12,7 +12,7 @@ use test_support::{
     z_test::{Estimate, assert_mean},
 };
 
-/// An image of a body of index 1.5 that scatters nothing; `sigma_a` in 1/m.
+/// An image of an object of index 1.5 that scatters nothing; `sigma_a` in 1/m.
 fn render(world: &World, camera: &Camera, sigma_a: f64, settings: &Settings) -> Rendered {
     let (cloud, media) = (cloud(world, &by_area(16, 0)), [grey(sigma_a, 0.0, 0.0, 1.5)]);
     let input = Input { scene: &world.scene, rays: &world.rays, clouds: from_ref(&cloud), media: &media, camera };
@@ -24,7 +24,7 @@ fn of_paths(paths_per_pixel: u32, max_depth: u32) -> Settings {
     Settings { paths_per_pixel, max_depth, filter: Filter::Box, ..settings }
 }
 
-/// The means of all pixels against what is expected, each channel.
+/// The mean of all pixels, in each channel, against the expected one.
 fn assert_image(what: &str, rendered: &Rendered, expected: DVec3) {
     assert_eq!(rendered.counts.cut_by_depth, 0);
     for c in 0..3 {
@@ -33,8 +33,8 @@ fn assert_image(what: &str, rendered: &Rendered, expected: DVec3) {
     }
 }
 
-/// Under light of the same radiance from everywhere a clear body cannot be seen: the two branches of a path show R and T21
-/// of that radiance unless the depth limit ended one, and that then shows nothing.
+/// A clear object in a constant environment is invisible: the two branches of a path carry R and T21 of that
+/// radiance. A path that the depth limit ends carries nothing.
 ///
 /// Seen to catch: throughput scaled by η⁻² at one crossing; the refracted branch weighted with T21 twice; the mirrored
 /// one without R.
@@ -44,7 +44,7 @@ fn a_clear_body_under_a_constant_sky_is_invisible() {
     let paths = 16 * EFFORT as u32;
     let camera = orthographic(DVec3::new(1.0, 2.0, 3.0), 1.2);
     let rendered = render(&world, &camera, 0.0, &of_paths(paths, 64));
-    // R and T21 of a path add up to 1 but for its rounding.
+    // R and T21 of a path add up to 1 up to rounding.
     let rounding = 1e-14 * f64::from(paths);
     let mut missing = 0.0;
     let mut darker = 0;
@@ -54,7 +54,8 @@ fn a_clear_body_under_a_constant_sky_is_invisible() {
         missing += lost.x;
         darker += u64::from(lost.x > rounding);
     }
-    // What is lost was refracted: T21 of a path, between a tenth (two degrees from grazing) and its largest value.
+    // The missing radiance was refracted: T21 of a path, between a tenth (two degrees from grazing) and its largest
+    // value.
     let cut = rendered.counts.cut_by_depth;
     let largest = fresnel::transmittance(1.0, 1.5);
     assert!(darker <= cut && missing <= largest * cut as f64 + 1e-9 && missing >= 0.1 * cut as f64, "{missing} {cut}");
@@ -64,10 +65,10 @@ fn a_clear_body_under_a_constant_sky_is_invisible() {
     assert_eq!(rendered.counts.escaped_inside, 0, "the body is closed");
 }
 
-/// A clear body that glows is seen through its interface: `T21 L_e` beside the sky, from a face under a known angle. It
-/// is convex, so no face lights another.
+/// A clear emissive object is seen through its interface: `T21 L_e` beside the sky, from a face at a known angle. The
+/// object is convex, so no face lights another.
 ///
-/// Nothing in it is random: each pixel has its value, to the float32 of the file.
+/// Nothing in it is random: each pixel has its value to the float32 of the file.
 ///
 /// Seen to catch: emission added to the mirrored branch too; T21 of the refracted one applied twice; emission shown at
 /// inner hits.
@@ -78,7 +79,7 @@ fn emission_is_seen_through_the_interface() {
     let world = world(&[body], &[], sky);
     for degrees in [0.0, 60.0, 80.0] {
         let (sine, cosine) = f64::to_radians(degrees).sin_cos();
-        // A window small enough that all of it lies on one face.
+        // The image shows so little that all of it lies on one face.
         let camera = orthographic(DVec3::new(sine, 0.0, cosine), 0.01);
         let rendered = render(&world, &camera, 0.0, &of_paths(100 * EFFORT as u32, 1000));
         let expected = fresnel::transmittance(cosine, 1.5) * emission + sky;
@@ -88,8 +89,8 @@ fn emission_is_seen_through_the_interface() {
     }
 }
 
-/// A glowing block that is seen in a pane, of a medium that lets nothing through: `R L_e`, without noise. The area light
-/// that the block is does not come on top.
+/// An emissive block reflected in a pane of an opaque medium: `R L_e`, without noise. The block is also an area
+/// light, whose light must not be added a second time.
 ///
 /// Seen to catch: a mirrored branch that ends at light sources.
 #[test]
@@ -111,10 +112,10 @@ fn a_lamp_is_seen_in_a_mirror() {
     }
 }
 
-/// A pane before a glowing wall: with R at each face and the transmittance a of one way through, it shows
-/// `(1 − R)² a/(1 − R² a²)` of the wall.
+/// A pane before an emissive wall: with R at each face and the transmittance a of one way through, it shows `(1 − R)²
+/// a/(1 − R² a²)` of the wall.
 ///
-/// Seen to catch: reflection inside with the probability of the outside; absorption left out.
+/// Seen to catch: internal reflection with the probability of the outside; absorption left out.
 #[test]
 fn a_pane_transmits_what_its_faces_and_its_medium_let_through() {
     const SIGMA_A: f64 = 0.8;

@@ -1,4 +1,5 @@
-//! Well-spread samples have the mean of independent ones, and less scatter; any number of samples has the mean of many.
+//! Stratified samples have the mean of independent ones and less variance; any number of samples has the mean of
+//! many.
 
 use crate::means::{HALF_SIZE, corner, image_sum, jelly, lamp, lit_by, over_seeds, sun};
 use bssrdf::Model;
@@ -13,7 +14,7 @@ use test_support::{
     z_test::{Estimate, assert_equal},
 };
 
-/// Clouds of each mean.
+/// Number of clouds in each mean.
 const SEEDS: u64 = 24;
 const SAMPLES: u64 = 4096 * EFFORT;
 
@@ -54,17 +55,17 @@ fn stratified_and_independent_samples_have_one_mean() {
             for c in 0..3 {
                 assert_equal(&format!("{name}, {}, channel {c}", choice.name()), spread[c], free[c]);
             }
-            // What the pattern is for; with one sequence for both halves, or a scrambled index, it is lost.
+            // The purpose of the pattern, which is lost with one sequence for both halves, or with a scrambled index.
             let gain = error(free) / error(spread);
             assert!(gain > 1.5, "{name}, {}: errors {} and {}", choice.name(), error(free), error(spread));
         }
     }
 }
 
-/// From one sample on: the halves of odd numbers are not equal, and one of one is empty.
+/// From one sample on: with an odd number the halves are unequal, and with one sample the second half is empty.
 ///
-/// Seen to catch: K/2 for the number of samples of the larger half; half the light of one sample; a list that is kept from
-/// gather to gather for its memory, and not cleared.
+/// Seen to catch: K/2 for the number of samples of the larger half; half the light of one sample; a list that is
+/// reused from gather to gather and not cleared.
 #[test]
 fn few_samples_have_the_mean_of_many() {
     let world = lit_by(&[sun(DVec3::ONE), lamp()]);

@@ -1,4 +1,4 @@
-//! What the cut picks from the nodes that it leaves closed.
+//! The samples that the cut picks to stand for closed nodes.
 
 use bssrdf::Model;
 use formats::cloud::{Cloud, Sample};
@@ -16,10 +16,10 @@ use test_support::{
     random::Random,
 };
 
-/// So loose that a node is closed wherever it may be.
+/// An accuracy so loose that every node that may be closed is closed.
 const LOOSE: Estimator = Estimator::Cut { accuracy: 1e9 };
 
-/// Samples in a point, each known by its flux: 1, 2, 3 and so on.
+/// Samples at one point, told apart by their flux: 1, 2, 3 and so on.
 fn numbered(x: f32, count: usize, color: Vec3) -> impl Iterator<Item = Sample> {
     let position = Vec3::new(x, 0.0, 0.0);
     (1..=count).map(move |k| Sample { position, normal: DVec3::Z, direction: DVec3::Z, flux: color * k as f32 })
@@ -49,13 +49,13 @@ impl Experiment {
     }
 }
 
-/// The whole number that `x` is, to rounding.
+/// The integer that `x` is, up to rounding.
 fn whole(x: f64) -> usize {
     assert!((x - x.round()).abs() < 1e-3, "{x} is the number of no sample");
     x.round() as usize
 }
 
-/// A tree of one closed node gives one of its samples, each as often as the others, for all of them. Neither the number of
+/// A tree of one closed node gives one of its samples, each equally often, to stand for all. Neither the number of
 /// samples nor that of tiles is a power of two, and the last tile is not full.
 ///
 /// Seen to catch: picks from all lanes of the last tile; a last sample that is never picked.
@@ -75,7 +75,7 @@ fn a_closed_node_picks_its_samples_evenly() {
     assert_fits("picks of one node", &observed, &vec![draws as f64 / COUNT as f64; COUNT]);
 }
 
-/// Two nodes, red and green, on both sides of the exitant point: every pair of picks is as frequent as any other.
+/// Two nodes, red and green, on either side of the exitant point: every pair of picks is equally frequent.
 ///
 /// Seen to catch: one random number for all nodes of a sum.
 #[test]

@@ -1,4 +1,4 @@
-//! The table of reflectance errors that users are warned by, against random walks.
+//! The table of reflectance errors behind the warnings to users, against random walks.
 
 use bssrdf::Coefficients;
 use test_support::{
@@ -8,7 +8,7 @@ use test_support::{
     walk::{Matter, slab},
 };
 
-/// The table has two digits after the point; its own walks have a standard error below 0.0005 of the incident light.
+/// The table has two decimals; its own walks have a standard error below 0.0005 of the incident light.
 fn tolerance(walk: f64, model: f64, walk_error: f64) -> f64 {
     0.005 + 4.5 * walk_error.hypot(5e-4) * model / (walk * walk)
 }

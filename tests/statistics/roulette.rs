@@ -1,4 +1,4 @@
-//! The roulette over samples: how often it accepts, and what its weights do to the mean.
+//! The roulette over samples: its acceptance rate, and the mean that its weights give.
 
 use bssrdf::{
     Model, built_in,
@@ -35,8 +35,8 @@ fn accepted(cloud: &Cloud, p: f64, key: u64) -> u64 {
     simd::dispatch(Roulette { model, samples, exit, rates: Rates::One(-p.ln()) }).evaluations
 }
 
-/// Fails if a binomial count is too far from its mean; the counts here are large enough for a normal distribution, or
-/// so much smaller than the trials that its tail is heavier only on the upper side, by less than the correction is wide.
+/// Fails if a binomial count is too far from its mean. The counts are large enough for a normal distribution, or so
+/// much smaller than the number of trials that only their upper tail is heavier, by less than the correction allows.
 fn assert_count(what: &str, count: u64, trials: f64, p: f64) {
     let error = (trials * p * (1.0 - p)).sqrt();
     let estimate = Estimate { mean: count as f64, error, freedom: 1e6 };
@@ -98,10 +98,11 @@ fn probabilities_below_the_first_bits_are_met() {
     }
 }
 
-/// Roulette over the whole sum, same cloud and points, one number a cloud; the mean is one for every rule, channel and
-/// model. The note's rule is tested only in channels where its variance is finite, 2σ_tr,c > σ̄ (method.md 7.1).
+/// Roulette over the exhaustive sum, on the same cloud at the same points, one number for each cloud; the mean is one
+/// for every rule, channel and model. The rule of the note is tested only in channels where its variance is finite,
+/// 2σ_tr,c > σ̄ (method.md 7.1).
 ///
-/// Seen to catch: weights of 1 instead of 1/p; lanes left free in the last block counted with weight 1.
+/// Seen to catch: weights of 1 instead of 1/p; unused lanes of the last block counted with weight 1.
 #[test]
 fn every_rule_has_the_mean_of_the_whole_sum() {
     let lights = [

@@ -1,4 +1,4 @@
-//! Chi-square tests: what is drawn against the density that is returned with it.
+//! Chi-square tests of draws against the density that is returned with them.
 
 use glam::{DVec3, Vec3};
 use sample_surface::{Choice, TriangleChoice};
@@ -23,8 +23,8 @@ fn items(seed: u64) -> impl Iterator<Item = Item> {
     (0..DRAWS).map(move |k| stream.item(k))
 }
 
-/// Counts of triangles against the density per area that comes with each, times the triangle's area; densities that do
-/// not add up to one are found by the test's own check of the total.
+/// Counts of triangles against the density per area that comes with each, times the area of the triangle. Densities
+/// that do not add up to one fail the check of the total in the test itself.
 ///
 /// Seen to catch: the uniform rule's density without N; the area rule choosing uniformly; the uniform rule never
 /// choosing the last triangle.
@@ -95,7 +95,7 @@ fn directions_follow_the_cosine() {
     assert_fits("cosine hemisphere", &observed, &expected);
 }
 
-/// A scene with five lights, not all of which reach all points.
+/// A scene with five lights, some of which do not reach all points.
 fn lit_by_five() -> World {
     let point = |x: f64, z: f64, power: f64| Light::Point {
         position: DVec3::new(x, -1.5, z),

@@ -1,4 +1,4 @@
-//! Several clouds gathered as one have the mean of a cloud, whatever their sizes.
+//! Several clouds that are gathered as one have the mean of one cloud, whatever their sizes.
 
 use crate::error_bars::{Scene, edge, of_paths};
 use bssrdf::built_in;
@@ -15,9 +15,9 @@ use test_support::{
     z_test::{Estimate, assert_equal},
 };
 
-/// Of uneven sizes, one of them with an empty half.
+/// Shards of uneven sizes, one of them with an empty half.
 const SIZES: [u64; 4] = [60, 240, 1, 11];
-/// Images, each with clouds of their own.
+/// Number of images; each has clouds of its own.
 const RUNS: u64 = 128 * EFFORT;
 
 /// Mean of an image, all channels.
@@ -28,10 +28,11 @@ fn brightness(scene: &Scene, clouds: &[Cloud], settings: &Settings) -> f64 {
     pixels.iter().map(|p| p.beauty().element_sum()).sum::<f64>() / pixels.len() as f64
 }
 
-/// Of 4 paths one cloud is sure of a turn, of 18 two are.
+/// With 4 paths one of the clouds is used by a path for certain, with 18 two are.
 ///
-/// Seen to catch: sums over the samples of one cloud divided by those of all; clouds taken in turn divided by those of the
-/// first; the whole sum divided by the samples of the first; weights of turns for clouds that may have none.
+/// Seen to catch: sums over the samples of one cloud divided by the number in all; round-robin sums divided by the
+/// number in the first cloud; the exhaustive sum divided by the number in the first; weights of the round-robin given
+/// to clouds that no path may use.
 #[test]
 fn the_mean_of_uneven_shards_is_that_of_one_cloud() {
     let scene = edge(built_in("marble").expect("a built-in medium"));

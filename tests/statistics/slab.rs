@@ -1,4 +1,4 @@
-//! Reflectance of a plane: the whole of phase one and of the sum against the tabulated integrals.
+//! Reflectance of a plane: sampling and the exhaustive sum together against the tabulated integrals.
 
 use bssrdf::{Medium, Model, built_in, fresnel};
 use gather::{Input, Settings, estimator::Estimator};
@@ -15,7 +15,7 @@ use test_support::{
     z_test::{Estimate, assert_mean},
 };
 
-/// The medium of this file; tabulated in all channels.
+/// The medium of these tests; its integrals are tabulated for all channels.
 fn skin() -> Medium {
     built_in("skin1").expect("a built-in medium")
 }
@@ -33,7 +33,7 @@ fn tabulated(model: &str, key: &str) -> DVec3 {
 }
 
 /// A disc 16 diffusion lengths wide. Its triangles shrink towards the centre and are chosen uniformly, so that a few
-/// thousand samples find S at every distance.
+/// thousand samples resolve S at every distance.
 fn disc(lights: &[Light], environment: DVec3) -> World {
     world(&[Part::translucent(graded_disc(2e-5, 60e-3, 45))], lights, environment)
 }
@@ -42,21 +42,21 @@ fn sampling(samples: u64, seed: u64) -> Sampling {
     Sampling { choice: Choice::Uniform, ..by_area(samples * EFFORT, seed) }
 }
 
-/// Independent clouds of a test, each with a range of seeds of its own.
+/// Independent clouds of each test; every test has its own range of seeds.
 const SEEDS: u64 = 32;
 
-/// Fails unless the mean over clouds is as expected, and known well enough to tell.
+/// Fails unless the mean over clouds is as expected and its standard error is small enough to tell.
 fn assert_radiance(what: &str, runs: &[DVec3], expected: DVec3) {
     for c in 0..3 {
         let estimate = Estimate::of(&runs.iter().map(|r| r[c]).collect::<Vec<_>>());
         assert_mean(&format!("{what}, channel {c}"), estimate, expected[c]);
         assert!(estimate.relative_error() < 0.01, "{estimate:?} is too rough to tell");
-        // Stricter than all tests' common level; it holds for these seeds.
+        // This level is stricter than the tests' common one; these seeds meet it.
         assert!(estimate.deviation(expected[c]).abs() < 4.0);
     }
 }
 
-/// `L_r` at the centre by the whole sum over each cloud.
+/// `L_r` at the centre by the exhaustive sum over each cloud.
 fn radiance_at_centre(world: &World, model: Model, first_seed: u64) -> Vec<DVec3> {
     let (medium, centre) = (skin(), Point { position: DVec3::ZERO, normal: DVec3::Z });
     let run = |seed: u64| {
@@ -114,7 +114,7 @@ fn a_constant_sky_lights_the_plane() {
     assert_radiance("constant sky", &runs, SKY * enters * tabulated("standard", "I_0deg"));
 }
 
-/// The same through `gather::render` and the interface, of which the chosen refraction is part: `T21(θ_o) L_r`.
+/// The same through `gather::render` and an interface, where the path takes the refracted branch: `T21(θ_o) L_r`.
 ///
 /// Seen to catch: T21 of the chosen refraction applied again (S for `S_gather`); a lost 1/K.
 #[test]

@@ -1,5 +1,5 @@
-//! Well-spread samples are uniform all the same: counts over many seeds, of one sample of each, follow the density, and
-//! each half of a cloud knows nothing of the other.
+//! Stratified samples are uniform all the same: over many seeds, counts of one sample of each cloud follow the
+//! density, and the two halves of a cloud are independent.
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -14,10 +14,10 @@ use test_support::{
     z_test::Estimate,
 };
 
-/// Seeds, each with a scramble of its own.
+/// Number of seeds; each has a scramble of its own.
 const SEEDS: u64 = 60_000 * EFFORT;
 
-/// The place of the sample of each seed's cloud that `index` says.
+/// Position of one sample of each seed's cloud; `index` chooses it.
 fn places(world: &World, rule: Choice, samples: u64, index: impl Fn(u64) -> u64 + Sync) -> Vec<SamplePoint> {
     let mesh = &world.scene.mesh;
     let choice = TriangleChoice::new(mesh, rule, |_| true);
@@ -30,19 +30,20 @@ fn places(world: &World, rule: Choice, samples: u64, index: impl Fn(u64) -> u64 
     (0..SEEDS).into_par_iter().map(place).collect()
 }
 
-/// Any sample of a cloud, another one for each seed: no single one need be uniform where they divide the surface up.
+/// Another sample of the cloud for each seed: samples that divide the surface among them need not be uniform one by
+/// one.
 fn any(samples: u64) -> impl Fn(u64) -> u64 + Sync {
     move |seed| Random(seed).bits() % samples
 }
 
-/// Counts of some cells that are equally likely.
+/// Counts of cells that are equally likely.
 fn assert_even(what: &str, cells: usize, observed: impl Iterator<Item = usize>) {
     let mut counts = vec![0; cells];
     observed.for_each(|cell| counts[cell] += 1);
     assert_fits(what, &counts, &vec![SEEDS as f64 / cells as f64; cells]);
 }
 
-/// Seen to catch: one scramble of the surface for all seeds.
+/// Seen to catch: the same scramble of the surface for all seeds.
 #[test]
 fn samples_choose_triangles_as_the_rule_says() {
     for (name, mesh) in [("disc", graded_disc(0.1, 1.0, 6)), ("slab", slab(DVec3::new(1.0, 2.0, 0.3), 2))] {
@@ -61,13 +62,13 @@ fn samples_choose_triangles_as_the_rule_says() {
     }
 }
 
-/// What makes the estimate unbiased: the sum of `1/(K pdf)` over the samples of a part of the surface is its area, in the
-/// mean over clouds. The parts are all triangles, one by one.
+/// The condition for an unbiased estimate: the mean over clouds of the sum of `1/(K pdf)` over the samples of a part
+/// of the surface is the area of that part. The parts are the triangles, one by one.
 ///
 /// Seen to catch: the area rule's density with the uniform choice; a density for one sample more than there is.
 #[test]
 fn samples_stand_for_the_area_they_are_drawn_from() {
-    // Few triangles, so that none of them is a rare event.
+    // The mesh has few triangles, so that none of them is a rare event.
     let world = world(&[Part::translucent(slab(DVec3::new(1.0, 2.0, 0.5), 1))], &[], DVec3::ONE);
     let mesh = &world.scene.mesh;
     for (rule, samples) in [Choice::Area, Choice::Uniform].into_iter().flat_map(|r| [2, 40, 301, 5000].map(|n| (r, n)))
@@ -82,7 +83,7 @@ fn samples_stand_for_the_area_they_are_drawn_from() {
                 shares[triangle][seed as usize] += 1.0 / (samples as f64 * place.pdf_area * mesh.area(triangle));
             }
         }
-        // One decision for all triangles; where chance has no part the sum is exact.
+        // One decision covers all triangles; where nothing is random the sum is exact.
         let p_value = |runs: &Vec<f64>| {
             let exact = runs.iter().all(|x| (x - 1.0).abs() < 1e-9);
             if exact { 1.0 } else { Estimate::of(runs).p_value(1.0) }
@@ -93,10 +94,11 @@ fn samples_stand_for_the_area_they_are_drawn_from() {
     }
 }
 
-/// The lattice of the samples is whole where ribbons are: a small step along them is a small step on the surface, but for
-/// the ends of ribbons.
+/// The lattice of the samples is continuous along ribbons: except at the ends of ribbons, a small step along them is
+/// a small step on the surface.
 ///
-/// Seen to catch: a ribbon that forgets that it sees a cell from its other side; a second half with two corners exchanged.
+/// Seen to catch: a ribbon that does not note from which side it enters a cell; a second half with two corners
+/// exchanged.
 #[test]
 fn ribbons_are_continuous() {
     let world = repository_scene("figure");
@@ -113,16 +115,16 @@ fn ribbons_are_continuous() {
             (chosen.triangle, mesh.point(chosen.triangle, weights, NormalKind::Geometric).position)
         };
         let points: Vec<(u32, DVec3)> = (0..steps).map(point).collect();
-        // A cell is 80 steps: one step crosses less than a quarter of an edge, even near the corner of a half alone.
+        // A cell is 80 steps: one step crosses less than a quarter of an edge, also near the corner of a half cell.
         let jumps = points.windows(2).filter(|p| p[0].1.distance(p[1].1) > 0.25 * longest(p[0].0)).count();
         println!("{jumps} jumps among {} triangles", mesh.triangles.len());
-        // A ribbon is eight triangles long in the mean.
+        // Ribbons have a mean length of eight triangles.
         assert!(jumps < mesh.triangles.len() / 6, "across at {across}: {jumps} jumps");
     }
 }
 
-/// Counts in a grid of congruent small triangles, where the triangle is one piece, a few, and many; its longest edge is any
-/// of its three.
+/// Counts in a grid of congruent small triangles, for triangles that form one piece, a few, and many, and for each of
+/// the three edges as the longest.
 ///
 /// Seen to catch: points that leave a piece out.
 #[test]
@@ -143,7 +145,7 @@ fn samples_cover_a_triangle_evenly() {
     }
 }
 
-/// Each number for the light, and each pair of them, of a sample taken alone; and together with its place.
+/// Each random number for the light of a sample, each pair of them, and each of them together with the position.
 ///
 /// Seen to catch: one scramble for two dimensions.
 #[test]
@@ -159,21 +161,21 @@ fn samples_have_uniform_numbers_for_their_light() {
         }
     }
     for samples in [1, 100] {
-        // All sides of the cube are alike.
+        // All sides of the cube are equivalent.
         let places = places(&world, Choice::Area, samples, any(samples));
         let cells = places.iter().map(|p| SIDE * p.triangle as usize + (p.light[0] * SIDE as f64) as usize);
         assert_even(&format!("triangle and light of any of {samples} samples"), SIDE * SIDE, cells);
     }
 }
 
-/// Samples of different halves know nothing of each other: what the two differ by is the error of both.
+/// Samples of different halves are independent: the difference between the halves estimates the error of both.
 ///
 /// Seen to catch: one scramble for both halves.
 #[test]
 fn the_halves_are_independent() {
     const SIDE: usize = 12;
     let world = world(&[Part::translucent(slab(DVec3::ONE, 1))], &[], DVec3::ONE);
-    // One sample in each half, which may be anywhere.
+    // Each half has one sample, which may lie anywhere.
     let [even, odd] = [0, 1].map(|k| places(&world, Choice::Area, 2, |_| k));
     let pairs = || even.iter().zip(&odd);
     let cells = pairs().map(|(a, b)| SIDE * a.triangle as usize + b.triangle as usize);
@@ -186,7 +188,7 @@ fn the_halves_are_independent() {
             pairs().map(|(a, b)| SIDE * (a.weights[d] * SIDE as f64) as usize + (b.weights[d] * SIDE as f64) as usize);
         let mut counts = vec![0; SIDE * SIDE];
         cells.for_each(|c| counts[c.min(SIDE * SIDE - 1)] += 1);
-        // A weight of a uniform point has the density 2(1 − w).
+        // A barycentric weight of a uniform point has the density 2(1 − w).
         let share = |k: usize| (2.0 * (SIDE - k) as f64 - 1.0) / (SIDE * SIDE) as f64;
         let expected: Vec<f64> = (0..SIDE * SIDE).map(|c| SEEDS as f64 * share(c / SIDE) * share(c % SIDE)).collect();
         assert_fits(&format!("weight {d} of both halves"), &counts, &expected);

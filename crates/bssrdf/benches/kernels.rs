@@ -9,7 +9,7 @@
 
 use bssrdf::{
     DVec3, Medium, built_in, fresnel,
-    lanes::{BetterLanes, Block, DirectionalLanes, EntryRefraction, LANES, Lane, LaneModel, StandardLanes},
+    lanes::{BetterLanes, Block, DirectionalLanes, Directions, EntryRefraction, LANES, Lane, LaneModel, StandardLanes},
     simd::{self, Kernel, Level},
 };
 use divan::{Bencher, black_box, counter::ItemsCount};
@@ -79,10 +79,10 @@ fn model<M: LaneModel>(bencher: Bencher, level: Level) {
     });
 }
 
-/// The entry of packed samples, reduced to one number.
+/// The entry of samples, reduced to one number.
 struct Enter<'a> {
     entry: EntryRefraction,
-    codes: &'a [[[u32; LANES]; 2]],
+    samples: &'a [[Directions; 2]],
 }
 
 impl Kernel for Enter<'_> {
@@ -91,7 +91,7 @@ impl Kernel for Enter<'_> {
     #[inline(always)]
     fn run(self) -> Lane {
         let mut sum = [0.0; LANES];
-        for [normal, direction] in self.codes {
+        for [normal, direction] in self.samples {
             let entered = self.entry.enter(normal, direction);
             for i in 0..LANES {
                 let vectors = entered.normal.iter().chain(&entered.refracted);
@@ -102,13 +102,22 @@ impl Kernel for Enter<'_> {
     }
 }
 
+/// Sixteen random directions as integers.
+fn directions(random: &mut Random) -> Directions {
+    let vectors = [0; LANES].map(|_| {
+        let v = random.direction();
+        (v * (32767.0 / v.abs().element_sum())).round().as_ivec3()
+    });
+    [0, 1, 2].map(|c| vectors.map(|v| v[c]))
+}
+
 #[divan::bench(args = Level::ALL)]
 fn entry(bencher: Bencher, level: Level) {
     let mut random = Random(2);
-    let codes: Vec<_> = (0..BLOCKS).map(|_| [0; 2].map(|_| [0; LANES].map(|_| random.bits() as u32))).collect();
-    bencher
-        .counter(ItemsCount::new(BLOCKS * LANES))
-        .bench(|| simd::run_as(level, Enter { entry: black_box(EntryRefraction::new(1.3)), codes: black_box(&codes) }));
+    let samples: Vec<_> = (0..BLOCKS).map(|_| [0; 2].map(|_| directions(&mut random))).collect();
+    let entry = EntryRefraction::new(1.3);
+    let kernel = || Enter { entry: black_box(entry), samples: black_box(&samples) };
+    bencher.counter(ItemsCount::new(BLOCKS * LANES)).bench(|| simd::run_as(level, kernel()));
 }
 
 /// Multiplications and additions that wait for nothing: what the core could do if all else were free.

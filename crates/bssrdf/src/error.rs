@@ -1,4 +1,4 @@
-//! What can be wrong with a medium.
+//! Errors of media.
 
 /// A medium that cannot be used; the message names the field and the way out.
 #[derive(Debug, thiserror::Error)]

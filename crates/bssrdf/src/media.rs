@@ -1,6 +1,6 @@
 //! The media of `data/media`, built in by name.
 
-use crate::{Medium, MediumError};
+use crate::{error::MediumError, medium::Medium};
 
 macro_rules! media {
     ($($name:literal,)*) => {
@@ -64,7 +64,7 @@ pub fn built_in_names() -> impl Iterator<Item = &'static str> {
     MEDIA.iter().map(|(name, _)| *name)
 }
 
-/// A built-in medium; an unknown name is answered with the nearest ones.
+/// A built-in medium; the error of an unknown name suggests similar ones.
 pub fn built_in(name: &str) -> Result<Medium, MediumError> {
     match MEDIA.iter().find(|(known, _)| *known == name) {
         Some((_, text)) => Medium::from_json(text),

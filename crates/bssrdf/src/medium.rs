@@ -1,14 +1,14 @@
-//! Optical coefficients of a medium and every quantity derived from them, computed once and nowhere else.
+//! Optical coefficients of a medium and every quantity derived from them.
 
 use crate::{
     error::MediumError,
-    fresnel,
     medium_file::{MediumFile, Unit, check},
 };
+use bsdf::fresnel;
 
 /// Smallest relative index the Fresnel fits hold for (exclusive): 1/η ≤ 2.5.
 pub const ETA_MIN: f64 = 0.4;
-/// Largest relative index the Fresnel fits hold for: beyond it `A_C` turns negative (method.md section 2).
+/// Largest relative index the Fresnel fits hold for: beyond it `A_C` turns negative (docs/method.md section 2).
 pub const ETA_MAX: f64 = 2.5;
 
 /// Coefficients of one color channel, 1/m.
@@ -33,8 +33,8 @@ impl Coefficients {
         (1.0 - self.asymmetry) * self.sigma_s
     }
 
-    /// False where `S = 0` because nothing scatters (method.md section 8): not once in 10⁶⁰ m, which leaves the squares
-    /// and cubes of all lengths finite.
+    /// False where nothing scatters, so that `S = 0` (docs/method.md section 8). The limit of once in 10⁶⁰ m keeps squares and
+    /// cubes of all lengths finite.
     pub fn scatters(&self) -> bool {
         self.reduced_scattering() > 1e-60
     }
@@ -49,40 +49,40 @@ impl Coefficients {
         if self.scatters() { self.reduced_scattering() / self.reduced_extinction() } else { 0.0 }
     }
 
-    /// `D = 1/(3σ_t')` of the standard and the directional dipole, m (method.md 3.2, 5.1).
+    /// `D = 1/(3σ_t')` of the standard and the directional dipole, m (docs/method.md 3.2, 5.1).
     pub fn diffusion(&self) -> f64 {
         1.0 / (3.0 * self.reduced_extinction())
     }
 
-    /// note: [transport] `σ_tr = √(3 σ_a (σ_a + (1−g) σ_s))`, 1/m (method.md 5.1).
+    /// note: [transport] `σ_tr = √(3 σ_a (σ_a + (1−g) σ_s))`, 1/m (docs/method.md 5.1).
     pub fn transport(&self) -> f64 {
         (3.0 * self.sigma_a * self.reduced_extinction()).sqrt()
     }
 
-    /// Grosjean's `D = (2σ_a + σ_s')/(3σ_t'²)` of the better dipole, m (method.md 4.1).
+    /// Grosjean's `D = (2σ_a + σ_s')/(3σ_t'²)` of the better dipole, m (docs/method.md 4.1).
     pub fn grosjean_diffusion(&self) -> f64 {
         let reduced = self.reduced_extinction();
         (2.0 * self.sigma_a + self.reduced_scattering()) / (3.0 * reduced * reduced)
     }
 
-    /// `σ_tr = √(σ_a/D)` with Grosjean's `D`, 1/m (method.md 4.1); 0 in a vacuum.
+    /// `σ_tr = √(σ_a/D)` with Grosjean's `D`, 1/m (docs/method.md 4.1); 0 in a vacuum.
     pub fn grosjean_transport(&self) -> f64 {
         if self.sigma_a == 0.0 { 0.0 } else { (self.sigma_a / self.grosjean_diffusion()).sqrt() }
     }
 }
 
-/// What the boundary contributes to the models, from the fits of [`fresnel`].
+/// The constants of the boundary in the models, from the fits of [`fresnel`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interface {
-    /// `C_φ(η)`.
+    /// `C_φ(η)` (docs/method.md 2.6).
     pub c_phi: f64,
-    /// `C_E(η)`.
+    /// `C_E(η)` (docs/method.md 2.6).
     pub c_e: f64,
-    /// `4 C_φ(1/η)`: normalises the exit lobe.
+    /// `4 C_φ(1/η)`, which normalizes the exit lobe (docs/method.md 4.5, 5.10).
     pub exit_norm: f64,
-    /// `A_C = (1 − C_E)/(2C_φ)` (method.md 2.7).
+    /// `A_C = (1 − C_E)/(2C_φ)` (docs/method.md 2.7).
     pub reflection: f64,
-    /// `A_F = (1 + F_dr)/(1 − F_dr)` (method.md 3.2).
+    /// `A_F = (1 + F_dr)/(1 − F_dr)` (docs/method.md 3.2).
     pub reflection_egan: f64,
 }
 
@@ -104,7 +104,7 @@ impl Medium {
         Medium::new(serde_json::from_str(text)?)
     }
 
-    /// Checks ranges and converts to 1/m: the one place where a unit is changed.
+    /// Checks ranges and converts to 1/m.
     pub fn new(file: MediumFile) -> Result<Medium, MediumError> {
         let scale = match file.unit {
             Unit::Millimetre => 1000.0,
@@ -120,7 +120,7 @@ impl Medium {
         Ok(Medium { name: file.name, source: file.source, channels, eta: file.eta, interface })
     }
 
-    /// One value of every channel.
+    /// A function of the coefficients of every channel.
     pub fn map(&self, f: impl Fn(&Coefficients) -> f64) -> [f64; 3] {
         [f(&self.channels[0]), f(&self.channels[1]), f(&self.channels[2])]
     }
@@ -130,7 +130,7 @@ impl Medium {
         self.map(|c| 1.0 / c.extinction())
     }
 
-    /// True if no channel scatters: nothing leaves by subsurface scattering.
+    /// True if no channel scatters: then no light leaves by subsurface scattering.
     pub fn is_clear(&self) -> bool {
         !self.channels.iter().any(Coefficients::scatters)
     }

@@ -1,6 +1,7 @@
-//! A medium as a JSON file gives it: by its coefficients, by albedo and mean free path, or by the color that it shows.
+//! A medium as a JSON file gives it: by coefficients, by albedo and mean free path, or by color and radius.
 
-use crate::{albedo, error::MediumError, fresnel};
+use crate::{albedo, error::MediumError};
+use bsdf::fresnel;
 use serde::Deserialize;
 
 /// A medium in the unit of its file.
@@ -24,14 +25,14 @@ pub enum Unit {
     Metre,
 }
 
-/// The three ways to say how a medium absorbs and scatters: red, green, blue.
+/// The three ways to give absorption and scattering: red, green, blue.
 #[derive(Clone, Copy, Debug)]
 pub enum Optics {
     /// Absorption and scattering, 1/unit.
     Coefficients { sigma_a: [f64; 3], sigma_s: [f64; 3] },
     /// `σ_s/σ_t` and `1/σ_t`, unit.
     Albedo { albedo: [f64; 3], mean_free_path: [f64; 3] },
-    /// Diffuse reflectance of a half-space, of the light that enters it, and `1/σ_tr`, unit.
+    /// Reflectance of a half-space, as a share of the light that enters it, and `1/σ_tr`, unit.
     Color { color: [f64; 3], radius: [f64; 3] },
 }
 
@@ -117,7 +118,7 @@ impl MediumFile {
         Ok((sigma_a, sigma_s))
     }
 
-    /// Inverts the standard dipole as Jensen and Buhler 2002 do: with `q = σ_tr/σ_t'` from the color, `σ_t' = σ_tr/q`,
+    /// Inverts the standard dipole as Jensen and Buhler 2002 do: the color gives `q = σ_tr/σ_t'`; then `σ_t' = σ_tr/q`,
     /// `σ_a = q σ_tr/3`, and `σ_s' = σ_t' − σ_a`.
     fn of_color(&self, color: f64, radius: f64, g: f64) -> Result<(f64, f64), MediumError> {
         let fault = "outside [0, 1); what reflects all light has no finite radius";
@@ -136,8 +137,7 @@ fn of_albedo(albedo: f64, mean_free_path: f64) -> Result<(f64, f64), MediumError
     Ok(((1.0 - albedo) / path, albedo / path))
 }
 
-/// Largest coefficient accepted, in the file's unit: a mean free path below 10⁻⁹ of it is no medium of diffuse light,
-/// and squares of it must stay finite in float32.
+/// Largest coefficient accepted, in the file's unit: its square stays finite in float32.
 const COEFFICIENT_MAX: f64 = 1e9;
 
 fn check_coefficient(field: &'static str, value: f64) -> Result<(), MediumError> {

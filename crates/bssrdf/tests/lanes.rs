@@ -3,7 +3,10 @@
 
 use bssrdf::{
     Bssrdf, Coefficients, DVec3, Interface, Medium, Model, Separation, fresnel,
-    lanes::{BetterLanes, Block, DirectionalLanes, Entered, EntryRefraction, LANES, Lane, LaneModel, StandardLanes},
+    lanes::{
+        BetterLanes, Block, DirectionalLanes, Directions, Entered, EntryRefraction, LANES, Lane, LaneModel,
+        StandardLanes,
+    },
     simd::{self, Kernel, Level},
 };
 use test_support::Random;
@@ -192,10 +195,11 @@ fn all_vector_widths_give_the_same_bits() {
     assert_same_bits::<StandardLanes>();
 }
 
-/// Sixteen samples enter.
+/// Light enters for sixteen samples.
 struct Enter {
     entry: EntryRefraction,
-    codes: [[u32; LANES]; 2],
+    normals: Directions,
+    directions: Directions,
 }
 
 impl Kernel for &Enter {
@@ -203,16 +207,25 @@ impl Kernel for &Enter {
 
     #[inline(always)]
     fn run(self) -> Entered {
-        self.entry.enter(&self.codes[0], &self.codes[1])
+        self.entry.enter(&self.normals, &self.directions)
     }
+}
+
+/// Sixteen random directions as integers.
+fn directions(random: &mut Random) -> Directions {
+    let vectors = [0; LANES].map(|_| {
+        let v = random.direction();
+        (v * (32767.0 / v.abs().element_sum())).round().as_ivec3()
+    });
+    [0, 1, 2].map(|c| vectors.map(|v| v[c]))
 }
 
 #[test]
 fn all_vector_widths_let_the_same_light_enter() {
     let mut random = Random(8);
     for _ in 0..BLOCKS {
-        let codes = [0; 2].map(|_| [0; LANES].map(|_| random.between(0.0, 4_294_967_296.0) as u32));
-        let enter = Enter { entry: EntryRefraction::new(random.between(0.41, 2.5)), codes };
+        let entry = EntryRefraction::new(random.between(0.41, 2.5));
+        let enter = Enter { entry, normals: directions(&mut random), directions: directions(&mut random) };
         let bits =
             |entered: Entered| (bits(entered.normal), bits(entered.refracted), entered.transmittance.map(f32::to_bits));
         let plain = bits(simd::run_plain(&enter));

@@ -1,7 +1,7 @@
-//! Memory that the system does not grant: one message and exit code 2 instead of an abort, in every program.
+//! Where the system grants no memory, every program ends with one message and exit code 2 instead of an abort.
 //!
-//! What is big is refused by [`crate::require_memory`] before any work; this is for all else, of any size and in any
-//! library.
+//! [`crate::require_memory`] refuses large data before any work; this allocator covers everything else, of any size and in
+//! any library.
 
 use signal_hook::low_level;
 use std::{
@@ -15,19 +15,19 @@ use std::{
 const MESSAGE: &[u8] = b"there is not enough memory: raise its limit (`ulimit -v`, that of the container or queue), \
 or take smaller inputs or fewer threads, and run again\n";
 
-/// The system's allocator, which ends the process instead of returning null.
+/// The system's allocator, except that it ends the process instead of returning null.
 struct EndsWhenFull;
 
 #[global_allocator]
 static ALLOCATOR: EndsWhenFull = EndsWhenFull;
 
-// SAFETY: every call goes to the system's allocator with the arguments as they come, and its answer is returned as it
-// is; in the one case that is not, the process ends.
+// SAFETY: every call is passed on to the system's allocator with the same arguments, and its result is returned; if that is
+// null, the process ends instead.
 #[allow(unsafe_code)]
 unsafe impl GlobalAlloc for EndsWhenFull {
     #[inline]
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        // SAFETY: the caller's promise about `layout` is the one that is asked for.
+        // SAFETY: the caller's promise about `layout` is the one that `System` asks for.
         granted(unsafe { System.alloc(layout) })
     }
 
@@ -39,8 +39,8 @@ unsafe impl GlobalAlloc for EndsWhenFull {
 
     #[inline]
     unsafe fn realloc(&self, old: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        // SAFETY: the caller's promises about the block, its layout and its new size are those that are asked for; the
-        // block comes from the same allocator.
+        // SAFETY: the caller's promises about the block, its layout and its new size are those that `System` asks for, and
+        // the block comes from `System`.
         granted(unsafe { System.realloc(old, layout, size) })
     }
 
@@ -59,8 +59,8 @@ fn granted(block: *mut u8) -> *mut u8 {
     block
 }
 
-/// From now on a thread that is not granted the stack on which it handles signals ends the process too: the standard
-/// library panics then.
+/// From now on, the process also ends if a thread is not granted the stack on which it handles signals, where the standard
+/// library panics.
 pub fn end_without_signal_stacks() {
     let usual = panic::take_hook();
     panic::set_hook(Box::new(move |info| {
@@ -71,13 +71,13 @@ pub fn end_without_signal_stacks() {
     }));
 }
 
-/// Ends the process. Nothing here asks for memory: the message is there already, stderr has no buffer, and
-/// `low_level::exit` is the system's `_exit`. Its temporary file stays: the next that writes the same target removes it.
+/// Ends the process without asking for memory: the message is static, stderr has no buffer, and `low_level::exit` is the
+/// system's `_exit`. A temporary file stays, and the next writer of the same target removes it.
 #[cold]
 fn end() -> ! {
     static ENDING: AtomicBool = AtomicBool::new(false);
     if ENDING.swap(true, Ordering::Relaxed) {
-        // Another thread says it.
+        // Another thread prints the message.
         loop {
             std::thread::sleep(Duration::from_secs(1));
         }
@@ -91,7 +91,7 @@ mod tests {
     use super::*;
     use std::process::Command;
 
-    /// The tree without the hook was aborted by signal 6.
+    /// Seen to fail without the hook: the process was aborted by signal 6.
     #[test]
     fn a_thread_without_a_signal_stack_ends_the_process_with_2() {
         const MARK: &str = "A_THREAD_PANICS";

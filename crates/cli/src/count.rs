@@ -1,12 +1,12 @@
-//! Counts as people write them: read, and printed so that they can be read again.
+//! Counts as people write them, `250k` or `1e6`: parsed, and printed so that they can be parsed again.
 
-/// What a suffix stands for, as a power of ten; the largest first.
+/// Suffixes and the powers of ten that they stand for, the largest first.
 const SUFFIXES: [(char, u32); 4] = [('T', 12), ('G', 9), ('M', 6), ('k', 3)];
 
-/// Digits of a printed count.
+/// Significant digits of a printed count.
 const DIGITS: u32 = 3;
 
-/// Digits of a printed count that is only an estimate.
+/// Significant digits of a printed count that is an estimate.
 const FEW_DIGITS: u32 = 2;
 
 /// Parses `250k`, `1M`, `2.3M`, `1e6` or `1000000`, exactly.
@@ -14,7 +14,7 @@ pub fn parse_count(text: &str) -> Result<u64, String> {
     exact(text).ok_or_else(|| "expected a whole number such as 250k, 2.3M or 1e6".into())
 }
 
-/// The whole number that a decimal fraction with a suffix is, if it is one.
+/// The value of a decimal fraction with a suffix, if it is a whole number.
 fn exact(text: &str) -> Option<u64> {
     let of = |(letter, power): &(char, u32)| {
         let digits = text.strip_suffix(*letter).or_else(|| text.strip_suffix('K').filter(|_| *letter == 'k'))?;
@@ -41,17 +41,17 @@ fn exact(text: &str) -> Option<u64> {
     kept.checked_mul(10u64.checked_pow(u32::try_from(shift.max(0)).ok()?)?)
 }
 
-/// A count for people: `9999`, `16.4k`, `2.35M`. It has all its digits below ten thousand, three from there on.
+/// Prints a count: `9999`, `16.4k`, `2.35M`, with all digits below ten thousand and three significant ones above.
 pub fn count(n: u64) -> String {
     if n < 10_000 && !n.is_multiple_of(1000) { n.to_string() } else { with_suffix(rounded(n, DIGITS, false)) }
 }
 
-/// A count that is recommended, of two digits: rounded up, so that it is not too small.
+/// Prints a recommended count with two significant digits, rounded up so that it is not too small.
 pub fn count_up(n: f64) -> String {
     with_suffix(rounded(n.ceil() as u64, FEW_DIGITS, true))
 }
 
-/// `n` with so many digits, and zeros.
+/// Rounds `n` to a number of significant digits.
 fn rounded(n: u64, digits: u32, up: bool) -> u64 {
     let unit = 10u64.pow((n.checked_ilog10().unwrap_or(0) + 1).saturating_sub(digits));
     let half = u64::from(unit > 1 && n % unit >= unit / 2);
@@ -59,7 +59,7 @@ fn rounded(n: u64, digits: u32, up: bool) -> u64 {
     whole.saturating_mul(unit)
 }
 
-/// `n` with the largest suffix that it has once, without zeros at its end.
+/// Prints `n` with the largest suffix that does not exceed it, without trailing zeros.
 fn with_suffix(n: u64) -> String {
     let Some((letter, power)) = SUFFIXES.iter().find(|(_, power)| n >= 10u64.pow(*power)) else {
         return n.to_string();
@@ -115,9 +115,9 @@ mod tests {
         }
     }
 
-    /// What is printed is read again: to three digits, and what is recommended to as much as is needed.
+    /// A printed count is parsed again to within its digits, and a recommended one to no less than the count.
     #[test]
-    fn what_is_printed_is_read() {
+    fn printed_counts_are_parsed_again() {
         let numbers = (0..20_000).chain((0..60).map(|k| 3u64.pow(40) >> k)).chain([u64::MAX, 10u64.pow(19)]);
         for n in numbers {
             let [near, enough] = [count(n), count_up(n as f64)].map(|text| parse_count(&text).expect("a count"));

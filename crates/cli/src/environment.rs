@@ -1,4 +1,4 @@
-//! Light from all around as it is named on a command line.
+//! The environment as it is named on a command line.
 
 use crate::{Common, Failure, Need, parse_rgb, require_memory};
 use formats::Panorama;
@@ -11,15 +11,16 @@ use std::{
     sync::Arc,
 };
 
-/// What `--environment` is.
+/// The value of `--environment`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EnvironmentSource {
-    /// W/(m² sr).
+    /// A constant radiance, W/(m² sr).
     Constant(DVec3),
+    /// A panorama.
     File(PathBuf),
 }
 
-/// A file by the end of its name, else a color.
+/// Parses a file, which is known by its extension, or a color.
 pub fn parse_environment(text: &str) -> Result<EnvironmentSource, String> {
     if [".exr", ".hdr"].iter().any(|end| text.to_lowercase().ends_with(end)) {
         return Ok(EnvironmentSource::File(text.into()));
@@ -29,7 +30,7 @@ pub fn parse_environment(text: &str) -> Result<EnvironmentSource, String> {
 }
 
 impl EnvironmentSource {
-    /// The light, with its radiance multiplied and turned about +Y; prints what the picture differs in from its file.
+    /// Reads the environment, with its radiance multiplied by `scale` and turned about +Y; prints the warnings of the reader.
     pub fn read(&self, scale: f64, rotation_degrees: f64, common: &Common) -> Result<Environment, Failure> {
         let path = match self {
             EnvironmentSource::Constant(radiance) => return Ok((*radiance * scale).into()),
@@ -45,7 +46,7 @@ impl EnvironmentSource {
     }
 }
 
-/// Refuses a picture that cannot be held, before its pixels are read.
+/// Refuses a panorama that does not fit into memory, before its pixels are read.
 fn check_memory(path: &Path) -> Result<(), Failure> {
     let size = Panorama::size(path).map_err(|e| Failure::usage(format!("--environment: {e}")))?;
     let map = EnvironmentMap::bytes((size.width, size.height));

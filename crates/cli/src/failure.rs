@@ -1,5 +1,6 @@
 //! How a program ends.
 
+use crate::{allocator, terminal::tell, truncated};
 use signal_hook::{
     consts::{SIGHUP, SIGINT, SIGTERM, SIGXCPU, SIGXFSZ},
     flag,
@@ -24,12 +25,12 @@ impl Failure {
         Failure { code: 2, message: message.into() }
     }
 
-    /// The same of a part of the input that the message does not name.
+    /// The same failure, in a part of the input that the message does not name.
     pub fn within(self, part: impl Display) -> Failure {
         Failure { message: format!("{part}: {}", self.message), ..self }
     }
 
-    /// A number that is not finite reached an output: exit code 3.
+    /// A value that is not finite reached an output: exit code 3.
     pub fn numerical(message: impl Into<String>) -> Failure {
         Failure { code: 3, message: message.into() }
     }
@@ -41,36 +42,36 @@ impl<E: std::error::Error> From<E> for Failure {
     }
 }
 
-/// A message of a library as one line.
+/// The message of a library, on one line.
 fn one_line(error: impl Display) -> String {
     error.to_string().lines().map(str::trim).collect::<Vec<_>>().join(" ")
 }
 
-/// Whether the process was started with this signal ignored, as far as the system says.
+/// Whether the process was started with this signal ignored; false where the system does not tell.
 fn is_ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = status.lines().find_map(|line| u64::from_str_radix(line.strip_prefix("SigIgn:")?.trim(), 16).ok());
     ignored.is_some_and(|signals| signals >> (signal - 1) & 1 == 1)
 }
 
-/// Runs a program and ends the process with its exit code. SIGHUP, SIGINT, SIGTERM and SIGXCPU (`ulimit -t`) remove the
-/// temporary files and end it with 128 + the signal's number; under `nohup` SIGHUP does nothing. A file that grows beyond
-/// `ulimit -f` is an output that cannot be written, like one on a full disk.
+/// Runs a program and ends the process with its exit code. On SIGHUP, SIGINT, SIGTERM and SIGXCPU (`ulimit -t`) the
+/// temporary files are removed and the exit code is 128 plus the number of the signal; under `nohup`, SIGHUP is ignored. A
+/// file that grows beyond `ulimit -f` is an output that cannot be written, like one on a full disk.
 pub fn run(name: &str, program: impl FnOnce() -> Result<u8, Failure>) -> ! {
-    crate::truncated::end_with_a_message();
-    crate::allocator::end_without_signal_stacks();
-    // With a handler the system tells the writer, instead of ending the process, that the file would be too long.
+    truncated::end_with_a_message();
+    allocator::end_without_signal_stacks();
+    // With a handler, the system reports a file that would be too long to its writer, instead of ending the process.
     flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false))).ok();
     clean_up_after_signals();
     let code = program().unwrap_or_else(|failure| {
-        crate::tell(format_args!("{name}: {}", failure.message));
+        tell(format_args!("{name}: {}", failure.message));
         failure.code
     });
     std::process::exit(i32::from(code))
 }
 
-/// Starts the thread that waits for signals. Where no thread is to be had they end the process at once, and the next
-/// writer of the same file removes what was left.
+/// Starts the thread that waits for signals. If no thread can be started, signals end the process at once, and the next
+/// writer of the same file removes the temporary file.
 fn clean_up_after_signals() {
     let hangup = (!is_ignored(SIGHUP)).then_some(SIGHUP);
     let (ready, is_ready) = mpsc::channel();

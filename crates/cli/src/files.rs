@@ -1,5 +1,5 @@
-//! Every file that a run reads and writes, declared in one place: no output may replace an input or another output, and
-//! every output must be seen to be writable, before any work is done.
+//! The files that a run reads and writes, all declared before any work is done, so that no output replaces an input or
+//! another output and every output is known to be writable.
 
 use crate::Failure;
 use clap::builder::{PathBufValueParser, TypedValueParser};
@@ -13,15 +13,15 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The files of a run. Links, hard links and other spellings of a path are one file.
+/// The files of a run. Paths that lead to the same file, by links or other spellings, are one file.
 #[derive(Debug, Default)]
 pub struct Files {
     known: HashMap<Identity, Use>,
-    /// Folders that are known to take new files.
+    /// Folders in which files can be created.
     probed: HashSet<Identity>,
 }
 
-/// What tells files apart: device and inode, or those of the folder and a name where there is no file yet.
+/// The identity of a file: its device and inode or, where there is no file yet, those of its folder and its name.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 enum Identity {
     There { device: u64, inode: u64 },
@@ -32,14 +32,14 @@ enum Identity {
 #[derive(Clone, Debug)]
 struct Use {
     path: PathBuf,
-    /// What people call it: the name of its option or argument.
+    /// The option or argument that names it.
     what: String,
     written: bool,
 }
 
 impl Files {
-    /// Declares an input, `what` by its option or argument. Refuses pipes and devices, which might never end or begin, and
-    /// a file that is declared as an output. A file that is not there is left to its reader.
+    /// Declares an input that the option or argument `what` names. Refuses pipes and devices, which might never begin or
+    /// end, and a file that is declared as an output. A missing file is left to its reader.
     pub fn reads(&mut self, what: &str, path: &Path) -> Result<(), Failure> {
         let Ok(meta) = fs::metadata(path) else { return Ok(()) };
         if !meta.is_file() && !meta.is_dir() {
@@ -61,8 +61,8 @@ impl Files {
         }
     }
 
-    /// Declares an output, `what` by its option. Refuses one that cannot be written, or that is an input or another output.
-    /// Devices such as `/dev/null` may be named by many.
+    /// Declares an output that the option `what` names. Refuses one that cannot be written, and one that is an input or
+    /// another output. Several options may name a device such as `/dev/null`.
     pub fn writes(&mut self, what: &str, path: &Path) -> Result<(), Failure> {
         let named = |failure: Failure| failure.within(what);
         atomic::check(path).map_err(|e| named(e.into()))?;
@@ -85,7 +85,7 @@ impl Files {
     }
 }
 
-/// The refusal to write `path`, which `what` names and `other` too, maybe by another path.
+/// The refusal to write `path`, which both `what` and `other` name, the latter as the path `by` if that differs.
 fn would_replace(path: &Path, what: &str, other: &str, by: Option<&Path>) -> Failure {
     let spelled = by.map_or(String::new(), |by| format!(" ({} is the same file)", by.display()));
     Failure::usage(format!("{}: {what} would replace {other}{spelled}; give another name", path.display()))
@@ -95,7 +95,7 @@ fn identity_of(meta: &Metadata) -> Identity {
     Identity::There { device: meta.dev(), inode: meta.ino() }
 }
 
-/// What a path leads to, whether or not it is there.
+/// The identity of the file that a path leads to, whether or not it exists.
 fn identity(path: &Path) -> io::Result<Identity> {
     if let Ok(meta) = fs::metadata(path) {
         return Ok(identity_of(&meta));
@@ -106,12 +106,12 @@ fn identity(path: &Path) -> io::Result<Identity> {
     Ok(Identity::New { device: folder.dev(), folder: folder.ino(), name })
 }
 
-/// Whether two paths lead to one file. What cannot be found is no file yet.
+/// Whether two paths lead to the same file; false if either leads nowhere.
 pub fn is_same_file(one: &Path, other: &Path) -> bool {
     identity(one).is_ok_and(|one| identity(other).is_ok_and(|other| one == other))
 }
 
-/// Parses the name of a file. A program that expects `-` to be a stream would wait for it, or find the file of that name.
+/// Parses the name of a file; refuses `-`, which users might mean as a stream.
 pub fn file_name() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|path| match path == Path::new("-") {
         true => Err("streams are not accepted; give the name of a file (`./-` if that is its name)"),
@@ -134,9 +134,9 @@ mod tests {
         [early.writes("--ply", &second).is_ok(), late.reads("SCENE", &first).is_ok()]
     }
 
-    /// Planted errors that this caught: paths compared as text, hard links told apart, dangling links not followed.
+    /// Seen to catch: paths compared as text, hard links told apart, dangling links not followed.
     #[test]
-    fn one_file_of_many_names_is_not_read_and_written() {
+    fn a_file_of_several_names_is_not_both_read_and_written() {
         let root = tempfile::tempdir().expect("a folder");
         let folder = root.path();
         fs::write(folder.join("scene.glb"), b"scene").expect("writes");
@@ -152,7 +152,7 @@ mod tests {
         assert_eq!(fs::read_dir(folder).expect("lists").count(), 4, "the probes leave nothing");
     }
 
-    /// Planted errors that this caught: outputs not kept, outputs that are not there yet compared as text.
+    /// Seen to catch: outputs not remembered, outputs that do not exist yet compared as text.
     #[test]
     fn two_outputs_are_two_files() {
         let root = tempfile::tempdir().expect("a folder");
@@ -170,7 +170,7 @@ mod tests {
         }
     }
 
-    /// Planted error that this caught: the probe left out.
+    /// Seen to catch: the probe left out.
     #[test]
     fn an_output_that_cannot_be_written_is_refused() {
         let root = tempfile::tempdir().expect("a folder");

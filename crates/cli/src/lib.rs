@@ -1,6 +1,32 @@
-//! How a stage behaves as a program: arguments in common, exit codes, progress, signals.
+//! What the programs have in common: arguments, files that are read and written, exit codes, progress, signals.
+//!
+//! A program parses its arguments, of which [`Common`] and [`SceneArgs`] are parts, and calls [`run`] with its work.
+//! [`Files`] declares what is read and written before the work; [`Common::in_pool`] does it on as many threads as asked
+//! for; [`Progress`] and [`Seconds`] tell how it goes. A [`Failure`] ends the program with a message and an exit code.
+//!
+//! ```
+//! use cli::{count, one_of, parse_count};
+//! use clap::{Arg, Command};
+//!
+//! // Counts are read as people write them, and printed likewise.
+//! assert_eq!(parse_count("2.3M"), Ok(2_300_000));
+//! assert_eq!(count(2_345_678), "2.35M");
+//!
+//! // Words of the command line stand for the values of a library's type.
+//! #[derive(Clone, Copy, Debug, PartialEq)]
+//! enum Side {
+//!     Left,
+//!     Right,
+//! }
+//! const SIDES: [Side; 2] = [Side::Left, Side::Right];
+//! let name = |side: Side| if side == Side::Left { "left" } else { "right" };
+//! let command = Command::new("turn").arg(Arg::new("side").value_parser(one_of(&SIDES, name)));
+//! let matches = command.get_matches_from(["turn", "right"]);
+//! assert_eq!(matches.get_one::<Side>("side"), Some(&Side::Right));
+//! ```
 
 mod allocator;
+mod common;
 mod count;
 mod environment;
 mod failure;
@@ -8,90 +34,33 @@ mod files;
 mod medium;
 mod memory;
 mod named;
+mod numbers;
 mod printable;
 mod progress;
 mod rgb;
 mod scene_args;
+mod scene_settings;
+mod seconds;
 mod tables;
+mod terminal;
 mod threads;
 mod truncated;
+mod words;
 
+pub use common::{Common, print};
 pub use count::{count, count_up, parse_count};
 pub use environment::EnvironmentSource;
 pub use failure::{Failure, run};
 pub use files::{Files, file_name, is_same_file};
 pub use medium::{ReadMediumError, is_file, read_medium, scene_medium};
 pub use memory::{Need, available_memory_bytes, peak_memory_bytes, require_memory};
-pub use named::{Thing, Unclear, the_one, word_for};
+pub use named::{Candidate, Unclear, the_one, word_for};
+pub use numbers::parse_relative_error;
 pub use printable::printable;
 pub use progress::Progress;
 pub use rgb::parse_rgb;
 pub use scene_args::SceneArgs;
-pub use tables::{camera_names, camera_table, material_table};
-
-use clap::{Args, ValueEnum};
-use std::io::{self, ErrorKind, Write};
-
-/// Arguments that every program has.
-#[derive(Args, Clone, Debug)]
-pub struct Common {
-    /// Seed of the random numbers; the same seed gives the same bytes
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub seed: u64,
-    /// Threads to use [default: all cores]
-    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
-    /// How to show progress: a bar on a terminal and two lines elsewhere (auto), two lines, or nothing
-    #[arg(long, value_name = "HOW", default_value = "auto")]
-    pub progress: ProgressStyle,
-    /// Print nothing but results and errors
-    #[arg(long)]
-    pub quiet: bool,
-}
-
-/// How progress is shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum ProgressStyle {
-    Auto,
-    Plain,
-    None,
-}
-
-impl Common {
-    /// Runs `work` on as many threads as asked for, or as can be started. All parallel work is done inside, so that no
-    /// library starts threads of its own.
-    pub fn in_pool<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
-        threads::in_pool(self.thread_count(), |line| self.warn(line), work)
-    }
-
-    /// Threads that were asked for.
-    pub fn thread_count(&self) -> usize {
-        self.threads.map_or_else(threads::cores, usize::from)
-    }
-
-    /// A line for people, on stderr.
-    pub fn say(&self, line: impl std::fmt::Display) {
-        if !self.quiet {
-            tell(line);
-        }
-    }
-
-    /// A warning, on stderr.
-    pub fn warn(&self, line: impl std::fmt::Display) {
-        self.say(format_args!("warning: {line}"));
-    }
-}
-
-/// A line on stderr, whatever names it holds; a closed stderr is nobody's fault.
-fn tell(line: impl std::fmt::Display) {
-    writeln!(io::stderr(), "{}", printable(&line.to_string())).ok();
-}
-
-/// Writes a result to stdout. A reader that has seen enough (`| head`) is no failure.
-pub fn print(text: &str) -> Result<(), Failure> {
-    let mut out = io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(Failure::usage(format!("stdout: cannot write: {e}"))),
-        _ => Ok(()),
-    }
-}
+pub use scene_settings::{SceneSettings, normal_kind};
+pub use seconds::Seconds;
+pub use tables::{camera_names, camera_table, material_names, material_table};
+pub use words::one_of;

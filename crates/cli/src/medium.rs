@@ -1,10 +1,10 @@
-//! Media as they are named on a command line, or described by a scene's file.
+//! Media as a command line names them, or as a scene's file describes them.
 
 use bssrdf::{Medium, MediumError, MediumFile, Optics, Unit, built_in, single_scattering_albedo};
 use scene::{Material, ScatterExtension};
 use std::{fs, io};
 
-/// Why there is no such medium.
+/// Why a medium cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadMediumError {
     #[error("{0}")]
@@ -17,12 +17,12 @@ pub enum ReadMediumError {
     Scene { material: String, source: MediumError },
 }
 
-/// Whether a medium's name is that of a file: it ends in `.json` or has a slash.
+/// Whether the name of a medium is a path: it ends in `.json` or contains a slash.
 pub fn is_file(name: &str) -> bool {
     name.ends_with(".json") || name.contains('/')
 }
 
-/// A medium by its built-in name, or from a file.
+/// Reads a medium, built in by name or from a file.
 pub fn read_medium(name: &str) -> Result<Medium, ReadMediumError> {
     if !is_file(name) {
         return built_in(name).map_err(ReadMediumError::Name);
@@ -31,7 +31,7 @@ pub fn read_medium(name: &str) -> Result<Medium, ReadMediumError> {
     Medium::from_json(&text).map_err(|source| ReadMediumError::File { path: name.into(), source })
 }
 
-/// A device might never end, nor a pipe begin.
+/// Reads a regular file: a pipe might never begin, and a device never end.
 fn read_text(name: &str) -> io::Result<String> {
     if !fs::metadata(name)?.is_file() {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "not a regular file"));
@@ -39,7 +39,7 @@ fn read_text(name: &str) -> io::Result<String> {
     fs::read_to_string(name)
 }
 
-/// The medium that the scene's file gives a material; none if it gives no coefficients.
+/// The medium that the scene's file gives a material, or none if it gives no coefficients.
 pub fn scene_medium(material: &Material) -> Result<Option<Medium>, ReadMediumError> {
     let Some(volume) = &material.medium else { return Ok(None) };
     let scatter = volume.scatter.as_ref();
@@ -47,7 +47,7 @@ pub fn scene_medium(material: &Material) -> Result<Option<Medium>, ReadMediumErr
     let (extension, albedo) = match scatter {
         None => ("KHR_materials_volume", [0.0; 3]),
         Some(s) => {
-            // The older draft leaves g out of its albedo.
+            // In the older draft of the extension the albedo does not depend on g.
             let g = if s.draft == ScatterExtension::Scatter { asymmetry } else { 0.0 };
             (s.draft.extension(), s.color.to_array().map(|color| single_scattering_albedo(color, g)))
         }
@@ -70,7 +70,7 @@ pub fn scene_medium(material: &Material) -> Result<Option<Medium>, ReadMediumErr
 mod tests {
     use super::*;
 
-    /// Planted: without the look at its kind, which takes all memory.
+    /// Seen to catch: the kind of the file not looked at, so that a device takes all memory.
     #[test]
     fn a_device_is_refused() {
         let message = read_medium("/dev/zero").expect_err("refused").to_string();

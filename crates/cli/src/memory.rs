@@ -1,4 +1,4 @@
-//! How much memory there is: of the machine, of the control group that a queue or container gives, of `ulimit -v`.
+//! How much memory is left: of the machine, within the control group of a queue or container, and within `ulimit -v`.
 
 use crate::Failure;
 use std::{
@@ -6,31 +6,31 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// What a program takes besides its data: its code, stacks of threads, pools of the allocator.
+/// Memory that a program takes besides its data: code, stacks of threads, pools of the allocator.
 const OVERHEAD_BYTES: u64 = 64 << 20;
 
-/// The most memory this process had, in bytes, where the system tells.
+/// The largest amount of memory that this process has held, bytes; 0 where the system does not tell.
 pub fn peak_memory_bytes() -> u64 {
     status("VmHWM:").unwrap_or(0)
 }
 
-/// Memory that this process can still fill, in bytes, where the system tells: the least of what all limits leave.
+/// Memory that this process can still fill, bytes: the smallest remainder of all limits, where the system tells them.
 pub fn available_memory_bytes() -> Option<u64> {
     let machine = read("/proc/meminfo").and_then(|text| kibibytes(&text, "MemAvailable:"));
     let group = read("/proc/self/cgroup").and_then(|text| group_headroom(&text, Path::new("/sys/fs/cgroup")));
     [machine, group, address_space()].into_iter().flatten().min()
 }
 
-/// What work takes, in bytes.
+/// Memory that work needs, bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct Need {
-    /// Filled.
+    /// Memory that is filled.
     pub held: u64,
-    /// Of files that are mapped: the system lends memory for them, but `ulimit -v` counts them.
+    /// Memory of mapped files. The system can take it back, but `ulimit -v` counts it.
     pub mapped: u64,
 }
 
-/// Refuses what cannot fit before any work is done: `what` has this need; `way_out` says what to do.
+/// Refuses, before any work is done, a need that cannot be met: that of `what`, where `way_out` says what the user can do.
 pub fn require_memory(what: &str, need: Need, way_out: &str) -> Result<(), Failure> {
     let held = need.held.saturating_add(OVERHEAD_BYTES);
     let limits = [(held, available_memory_bytes()), (held.saturating_add(need.mapped), address_space())];
@@ -45,7 +45,7 @@ pub fn require_memory(what: &str, need: Need, way_out: &str) -> Result<(), Failu
     }
 }
 
-/// What `ulimit -v` leaves.
+/// Address space that `ulimit -v` leaves, bytes.
 fn address_space() -> Option<u64> {
     let limits = read("/proc/self/limits")?;
     let line = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
@@ -53,7 +53,8 @@ fn address_space() -> Option<u64> {
     Some(limit.saturating_sub(status("VmSize:")?))
 }
 
-/// The least that the control groups of `memberships` (the text of /proc/self/cgroup) leave, mounted at `root`.
+/// The smallest remainder of the control groups that `memberships` names, the text of /proc/self/cgroup; they are mounted at
+/// `root`.
 fn group_headroom(memberships: &str, root: &Path) -> Option<u64> {
     let memory = |line: &str| {
         let mut parts = line.splitn(3, ':').skip(1);
@@ -70,13 +71,14 @@ fn group_headroom(memberships: &str, root: &Path) -> Option<u64> {
     groups.filter_map(|(mount, path, files)| min_headroom(&mount, mount.join(path), files)).min()
 }
 
-/// Names of the files with limit and use, and of the entries with pages of files, which are given back when needed.
+/// Names of the files with the limit and the use of a group, and of the entries of its statistics that count pages of
+/// files, which the system takes back when it needs them.
 type Files = [&'static str; 4];
 const VERSION_2: Files = ["memory.max", "memory.current", "inactive_file", "active_file"];
 const VERSION_1: Files = ["memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file", "total_active_file"];
 
-/// A group may be limited, and so may any that it lies in. Inside a container the path is that of the host, and only the
-/// mount's own group is seen.
+/// The smallest remainder of a group and of those that contain it, each of which may have a limit. Inside a container the
+/// path is that of the host, and only the group of the mount itself is visible.
 fn min_headroom(mount: &Path, group: PathBuf, files: Files) -> Option<u64> {
     let groups = group.ancestors().take_while(|folder| folder.starts_with(mount));
     groups.filter_map(|folder| headroom(folder, files)).min()
@@ -111,9 +113,9 @@ fn read(path: impl AsRef<Path>) -> Option<String> {
 mod tests {
     use super::*;
 
-    /// Planted errors that this caught: pages of files counted as used, groups above left out.
+    /// Seen to catch: pages of files counted as used, containing groups left out.
     #[test]
-    fn the_least_of_all_groups_counts() {
+    fn the_smallest_remainder_of_all_groups_counts() {
         let root = tempfile::tempdir().expect("a folder");
         let group = |path: &str, files: &[(&str, &str)]| {
             let folder = root.path().join(path);

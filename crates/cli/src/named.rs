@@ -1,73 +1,77 @@
-//! Which of a scene's things a word on a command line means.
+//! Which of a scene's cameras or materials a word on a command line means.
 
-/// Something that a word may mean.
-pub struct Thing<'a> {
-    /// Its place in the list that the programs print.
+/// A camera or material that a word may mean.
+pub struct Candidate<'a> {
+    /// Its index in the list that the programs print.
     pub index: usize,
-    /// What it is called.
+    /// Names of its own.
     pub names: Vec<&'a str>,
-    /// What tells it from others of its name.
-    pub place: String,
+    /// A detail that tells it from others of the same name, in the words of a message.
+    pub detail: String,
 }
 
-/// Why a word does not mean one thing.
+/// Why a word does not mean exactly one candidate.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Unclear {
-    /// It means nothing; the names that there are.
+    /// No candidate has this name; these names exist.
     Unknown { known: String },
-    /// It may mean more than one: each by its index, which is the way out.
+    /// Several candidates have this name; each is listed by its index, which is never ambiguous.
     Several { choices: String },
 }
 
-/// What an index is said by where a name may be taken for it.
+/// The prefix of a word that is an index and not a name.
 const INDEX: &str = "index:";
 
-/// The index of the one of `things` that `word` means: `index:N` is the Nth and nothing else, any other word is a name.
-/// Where `numbers` says so, a whole number is a name and an index, and if these are two things, it is unclear.
-pub fn the_one(word: &str, things: &[Thing], numbers: bool) -> Result<usize, Unclear> {
-    let is_meant = |thing: &&Thing| match word.strip_prefix(INDEX).and_then(|n| n.parse::<usize>().ok()) {
-        Some(index) => thing.index == index,
-        None => thing.names.contains(&word) || numbers && thing.index.to_string() == word,
+/// The index of the candidate that `word` means: `index:N` is the candidate of that index and nothing else, any other
+/// word is a name. With `numbers`, a whole number is both a name and an index; if these are two candidates, the word is
+/// unclear.
+pub fn the_one(word: &str, candidates: &[Candidate], numbers: bool) -> Result<usize, Unclear> {
+    let is_meant = |candidate: &&Candidate| match word.strip_prefix(INDEX).and_then(|n| n.parse::<usize>().ok()) {
+        Some(index) => candidate.index == index,
+        None => candidate.names.contains(&word) || numbers && candidate.index.to_string() == word,
     };
-    let meant: Vec<&Thing> = things.iter().filter(is_meant).collect();
+    let meant: Vec<&Candidate> = candidates.iter().filter(is_meant).collect();
     match meant[..] {
         [one] => Ok(one.index),
-        [] => Err(Unclear::Unknown { known: listed(things, |t| format!("`{}`", name(t))) }),
+        [] => Err(Unclear::Unknown { known: listed(candidates, |c| format!("`{}`", name(c))) }),
         _ => {
-            let meant = meant.into_iter();
-            Err(Unclear::Several {
-                choices: listed(meant, |t| format!("{INDEX}{} (`{}`{})", t.index, name(t), t.place)),
-            })
+            let choices = listed(meant, |c| format!("{INDEX}{} (`{}`{})", c.index, name(c), c.detail));
+            Err(Unclear::Several { choices })
         }
     }
 }
 
-/// A word that means the thing of this index, its name if that is clear.
-pub fn word_for(index: usize, things: &[Thing], numbers: bool) -> String {
-    let names = things.iter().find(|t| t.index == index).map(name);
-    let clear = names.filter(|name| the_one(name, things, numbers) == Ok(index));
+/// A word that means the candidate of this index: its name, unless that is unclear.
+pub fn word_for(index: usize, candidates: &[Candidate], numbers: bool) -> String {
+    let own = candidates.iter().find(|c| c.index == index).map(name);
+    let clear = own.filter(|name| the_one(name, candidates, numbers) == Ok(index));
     clear.map_or_else(|| format!("{INDEX}{index}"), str::to_owned)
 }
 
-fn name<'a>(thing: &Thing<'a>) -> &'a str {
-    thing.names.first().copied().unwrap_or_default()
+fn name<'a>(candidate: &Candidate<'a>) -> &'a str {
+    candidate.names.first().copied().unwrap_or_default()
 }
 
-fn listed<T>(things: impl IntoIterator<Item = T>, text: impl Fn(T) -> String) -> String {
-    things.into_iter().map(text).collect::<Vec<_>>().join(", ")
+fn listed<T>(items: impl IntoIterator<Item = T>, text: impl Fn(T) -> String) -> String {
+    items.into_iter().map(text).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Seen to fail where a name was looked for first: `1` was the camera called so, whatever else it may mean.
+    /// Seen to fail when names were looked up before indices: `1` then was the camera of that name, whatever else it may
+    /// mean.
     #[test]
-    fn a_word_means_one_thing_or_none() {
-        let thing = |index, names: [&'static str; 2]| Thing { index, names: names.into(), place: String::new() };
-        let things =
+    fn a_word_means_one_candidate_or_none() {
+        let candidate = |(index, names): (usize, [&'static str; 2])| Candidate {
+            index,
+            names: names.into(),
+            detail: String::new(),
+        };
+        let names =
             [["1", "Front"], ["2", "Back"], ["2", "Side"], ["index:0", "Front "], ["9", "index:x"], ["5", "Back"]];
-        let things: Vec<Thing> = things.into_iter().enumerate().map(|(k, names)| thing(k, names)).collect();
+        let candidates: Vec<Candidate> = names.into_iter().enumerate().map(candidate).collect();
         for (word, index) in [
             ("0", 0),
             ("Front", 0),
@@ -79,9 +83,9 @@ mod tests {
             ("index:1", 1),
             ("index:x", 4),
         ] {
-            assert_eq!(the_one(word, &things, true), Ok(index), "{word}");
+            assert_eq!(the_one(word, &candidates, true), Ok(index), "{word}");
         }
-        let choices = |word| match the_one(word, &things, true) {
+        let choices = |word| match the_one(word, &candidates, true) {
             Err(Unclear::Several { choices }) => choices,
             other => panic!("{word}: {other:?}"),
         };
@@ -89,12 +93,12 @@ mod tests {
         assert_eq!(choices("2"), "index:1 (`2`), index:2 (`2`)");
         assert_eq!(choices("Back"), "index:1 (`2`), index:5 (`5`)");
         for word in ["7", "front", "", "index:6", "index:-1", "00"] {
-            assert!(matches!(the_one(word, &things, true), Err(Unclear::Unknown { .. })), "{word}");
+            assert!(matches!(the_one(word, &candidates, true), Err(Unclear::Unknown { .. })), "{word}");
         }
-        // Without numbers `1` is but a name.
-        assert_eq!(the_one("1", &things, false), Ok(0));
-        assert!(the_one("3", &things, false).is_err());
-        let words: Vec<String> = (0..6).map(|k| word_for(k, &things, true)).collect();
+        // Without numbers, `1` is only a name.
+        assert_eq!(the_one("1", &candidates, false), Ok(0));
+        assert!(the_one("3", &candidates, false).is_err());
+        let words: Vec<String> = (0..6).map(|k| word_for(k, &candidates, true)).collect();
         assert_eq!(words, ["index:0", "index:1", "index:2", "index:3", "9", "5"]);
     }
 }

@@ -1,23 +1,23 @@
-//! Names from files, made safe for a terminal and for messages of one line.
+//! Makes names from files safe for a terminal and for messages of one line.
 
 use std::borrow::Cow;
 
-/// The text with every character that a terminal would obey, or that would end or reorder a line, shown as its escape:
-/// a newline as `\n`, the escape character as `\u{1b}`. All other text stays as it is.
+/// The text with an escape for every character that controls a terminal, or that would end or reorder a line: `\n` for a
+/// newline, `\u{1b}` for the escape character. All other text is unchanged.
 pub fn printable(text: &str) -> Cow<'_, str> {
-    if !text.chars().any(is_obeyed) {
+    if !text.chars().any(is_unsafe) {
         return Cow::Borrowed(text);
     }
     let mut safe = String::with_capacity(text.len() + 8);
     for c in text.chars() {
-        if is_obeyed(c) { safe.extend(c.escape_debug()) } else { safe.push(c) }
+        if is_unsafe(c) { safe.extend(c.escape_debug()) } else { safe.push(c) }
     }
     Cow::Owned(safe)
 }
 
-/// Control characters (C0, delete, C1), line and paragraph separators, what changes the direction of writing, and the
-/// byte order mark.
-fn is_obeyed(c: char) -> bool {
+/// Whether a character is a control character (C0, delete, C1), a line or paragraph separator, a mark of the direction of
+/// writing, or the byte order mark.
+fn is_unsafe(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}')
 }
@@ -26,10 +26,10 @@ fn is_obeyed(c: char) -> bool {
 mod tests {
     use super::printable;
 
-    /// Planted errors that this caught: the C1 controls (of which U+009B begins a terminal's command), the separators and
-    /// the marks of direction left out.
+    /// Seen to catch: the C1 controls (of which U+009B begins a terminal's command), the separators, and the marks of
+    /// direction left out.
     #[test]
-    fn nothing_is_left_that_a_terminal_obeys() {
+    fn no_character_is_left_that_controls_a_terminal() {
         for (name, safe) in [
             ("Wax", "Wax"),
             ("Käse, 蝋, 🕯", "Käse, 蝋, 🕯"),

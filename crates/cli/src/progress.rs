@@ -1,13 +1,17 @@
-//! Long work shows a bar on a terminal and two lines elsewhere.
+//! Progress of long steps: a bar on a terminal, two lines elsewhere.
 
-use crate::{Common, ProgressStyle, count};
+use crate::{
+    common::{Common, ProgressStyle},
+    count::count,
+    terminal::tell,
+};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle as Template};
 use std::{
     io::{IsTerminal, stderr},
     time::Instant,
 };
 
-/// Progress of one step. Add to it in portions of some milliseconds of work.
+/// Progress of one step. Each call of [`Progress::add`] should stand for some milliseconds of work.
 pub struct Progress {
     bar: ProgressBar,
     plain: bool,
@@ -44,7 +48,7 @@ impl Progress {
         let seconds = self.start.elapsed().as_secs_f64();
         self.bar.finish_and_clear();
         if self.plain {
-            crate::tell(format_args!("{}: done in {seconds:.2} s", self.name));
+            tell(format_args!("{}: done in {seconds:.2} s", self.name));
         }
         seconds
     }

@@ -1,6 +1,6 @@
 //! Colors on the command line.
 
-/// Parses `R,G,B`: three finite numbers that are not negative.
+/// Parses `R,G,B`, three finite numbers that are not negative.
 pub fn parse_rgb(text: &str) -> Result<[f64; 3], String> {
     let expected = "expected R,G,B: three numbers, zero or more";
     let numbers: Vec<f64> =

@@ -1,10 +1,10 @@
-//! Lists that the programs print.
+//! Lists of what a scene holds, as the programs print them.
 
-use crate::{Failure, Thing, printable, scene_medium};
+use crate::{Candidate, Failure, printable, scene_medium};
 use bssrdf::Medium;
 use scene::{Camera, Projection, Scene};
 
-/// A table with a header, columns aligned.
+/// Rows of cells, the first of which are headers.
 struct Table(Vec<Vec<String>>);
 
 impl Table {
@@ -12,7 +12,7 @@ impl Table {
         Table(vec![header.iter().map(|s| (*s).to_owned()).collect()])
     }
 
-    /// The lines; the last column is as wide as it is.
+    /// The rows as lines with aligned columns.
     fn text(&self) -> String {
         let width = |c: usize| self.0.iter().map(|row| row[c].chars().count()).max().unwrap_or(0);
         let widths: Vec<usize> = (0..self.0[0].len()).map(width).collect();
@@ -29,7 +29,7 @@ impl Table {
     }
 }
 
-/// The cameras of a scene: what `--camera` may name, and how they look.
+/// The cameras of a scene, which `--camera` may name, with their fields of view and positions.
 pub fn camera_table(scene: &Scene) -> String {
     let mut table = Table::new(&["index", "name", "kind", "field of view", "aspect", "position, m", "node"]);
     for (index, camera) in scene.cameras.iter().enumerate() {
@@ -51,22 +51,32 @@ fn position(camera: &Camera) -> String {
 }
 
 /// The cameras of a scene as a word may mean them: by their own name or their node's.
-pub fn camera_names(scene: &Scene) -> Vec<Thing<'_>> {
-    let place = |camera: &Camera| format!(" of node `{}` at {} m", camera.node, position(camera));
-    let cameras = scene.cameras.iter().enumerate();
-    cameras.map(|(index, c)| Thing { index, names: vec![&c.name, &c.node], place: place(c) }).collect()
+pub fn camera_names(scene: &Scene) -> Vec<Candidate<'_>> {
+    scene.cameras.iter().enumerate().map(|(index, camera)| named_camera(index, camera)).collect()
 }
 
-/// The materials of a scene: what `--translucent` and `--medium` may name, how they are taken if nobody says so, how
-/// large their surfaces are, and the medium that the file gives them.
+fn named_camera(index: usize, camera: &Camera) -> Candidate<'_> {
+    let detail = format!(" of node `{}` at {} m", camera.node, position(camera));
+    Candidate { index, names: vec![&camera.name, &camera.node], detail }
+}
+
+/// These materials of a scene as a word may mean them: by name, told apart by area.
+pub fn material_names<'a>(scene: &'a Scene, materials: &[u16]) -> Vec<Candidate<'a>> {
+    let areas = scene.area_of_materials();
+    let candidate = |index: usize| {
+        let detail = format!(", {:.4e} m2", areas[index]);
+        Candidate { index, names: vec![&scene.materials[index].name], detail }
+    };
+    materials.iter().map(|material| candidate(usize::from(*material))).collect()
+}
+
+/// The materials of a scene, which `--translucent` and `--medium` may name: what each is taken for without these options,
+/// its triangles and area, and the medium that the file gives it.
 pub fn material_table(scene: &Scene) -> Result<String, Failure> {
     let mut table =
         Table::new(&["index", "name", "kind", "triangles", "area, m2", "medium of the file: sigma_a, sigma_s (1/m)"]);
-    let (mut counts, mut areas) = (vec![0u64; scene.materials.len()], vec![0.0; scene.materials.len()]);
-    for (k, t) in scene.mesh.triangles.iter().enumerate() {
-        counts[usize::from(t.material)] += 1;
-        areas[usize::from(t.material)] += scene.mesh.area(k);
-    }
+    let (mut counts, areas) = (vec![0u64; scene.materials.len()], scene.area_of_materials());
+    scene.mesh.triangles.iter().for_each(|t| counts[usize::from(t.material)] += 1);
     let (lost, translucent) =
         (scene.lost_volumes(), scene.translucent().map_or(Vec::new(), |(materials, _)| materials));
     for (index, material) in scene.materials.iter().enumerate() {

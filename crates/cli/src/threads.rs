@@ -1,4 +1,4 @@
-//! The threads of a program: one pool, of as many as asked for or as there are cores, or as few as can be had.
+//! The threads of a program: one pool, of as many threads as were asked for, or as there are cores, or as can be started.
 
 use crate::Failure;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -9,15 +9,16 @@ use std::{
     time::Duration,
 };
 
-/// The pool of the process, once it is needed, and how many threads were asked for.
+/// The pool of the process, once it is needed, and the number of threads that was asked for.
 static POOL: Mutex<Option<(usize, &'static ThreadPool)>> = Mutex::new(None);
 
-/// Cores that this process may use. Environment variables have no say: what a program does is on its command line.
-pub(crate) fn cores() -> usize {
-    std::thread::available_parallelism().map_or(1, NonZeroUsize::get)
+/// The number of cores that this process may use. Environment variables do not change it, so that the command line alone
+/// decides.
+pub(crate) fn cores() -> NonZeroUsize {
+    thread::available_parallelism().unwrap_or(NonZeroUsize::MIN)
 }
 
-/// Runs `work` on a pool of `count` threads. `warn` is told if only fewer can be started.
+/// Runs `work` on a pool of `count` threads; `warn` is called if only fewer can be started.
 pub(crate) fn in_pool<T: Send>(
     count: usize,
     warn: impl Fn(String),
@@ -37,8 +38,7 @@ pub(crate) fn in_pool<T: Send>(
     Ok(pool.install(work))
 }
 
-/// A pool of as many threads as can be started: half as many after each failure, and at last the calling thread alone,
-/// which needs no other.
+/// Starts a pool of `count` threads, or of half as many after each failure, and at last of the calling thread alone.
 fn start(count: usize, warn: impl Fn(String)) -> Result<ThreadPool, Failure> {
     let mut wanted = count;
     let mut failure = None;
@@ -52,7 +52,7 @@ fn start(count: usize, warn: impl Fn(String)) -> Result<ThreadPool, Failure> {
             }
             Err(fault) => failure = Some(fault),
         }
-        // Those that were started end by themselves, and count until they have.
+        // The threads of the failed pool count towards the limit until they have ended by themselves.
         thread::sleep(Duration::from_millis(20));
         wanted /= 2;
     }

@@ -1,7 +1,8 @@
 //! sRGB and tone curves: the numbers by which linear light becomes what a screen shows, and back.
 //!
 //! Linear red, green and blue have the primaries and the white of Rec. 709, which sRGB shares. [`srgb`] holds its transfer
-//! functions, [`tone`] a curve that compresses bright light. Kernels that compute in lanes have the formulas in float32 and
+//! functions, [`xyz`] the matrices to and from CIE X, Y, Z, [`oklab`] a space of equal steps, and [`tone`] a curve that compresses
+//! bright light. Kernels that compute in lanes have the formulas in float32 and
 //! take the constants from here.
 //!
 //! ```
@@ -12,8 +13,10 @@
 //! assert!(color::tone::aces(0.6 * 0.9) > 0.6 && color::tone::aces(0.6 * 7.2) > 0.95);
 //! ```
 
+pub mod oklab;
 pub mod srgb;
 pub mod tone;
+pub mod xyz;
 
 /// CIE x and y of red, green and blue (ITU-R BT.709, table 1).
 pub const PRIMARIES: [[f64; 2]; 3] = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]];

@@ -73,6 +73,14 @@ impl Scene {
         lost.into_iter().collect()
     }
 
+    /// Area of the triangles of each material, m².
+    pub fn area_of_materials(&self) -> Vec<f64> {
+        let mut areas = vec![0.0; self.materials.len()];
+        let triangles = self.mesh.triangles.iter().enumerate();
+        triangles.for_each(|(k, t)| areas[usize::from(t.material)] += self.mesh.area(k));
+        areas
+    }
+
     fn lost(&self, materials: &[u16]) -> LostVolumes {
         let names: Vec<&str> = materials.iter().map(|k| self.materials[usize::from(*k)].name.as_str()).collect();
         let sum = |counts: &BTreeMap<u16, u64>| materials.iter().filter_map(|k| counts.get(k)).sum::<u64>();

@@ -4,7 +4,10 @@ use bssrdf::{
     lanes::{Block, EntryRefraction, LANES, Lane},
     simd,
 };
-use formats::cloud::{Cloud, Group, Node, Record, TILE, Tile};
+use formats::{
+    cloud::{Cloud, Group, Node, Record, TILE, Tile},
+    octahedral::integer_directions,
+};
 use glam::DVec3;
 
 const _: () = assert!(LANES == TILE, "a tile is evaluated as one block");
@@ -139,7 +142,7 @@ impl<'a> LitSamples<'a> {
 
     #[inline(always)]
     fn enter(&self, words: &Words, exit: &Exit) -> (Block, [Lane; 3]) {
-        let entered = self.entry.enter(&words.normal, &words.direction);
+        let entered = self.entry.enter(&integer_directions(&words.normal), &integer_directions(&words.direction));
         let (mut offset, mut flux) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
         for c in 0..3 {
             for i in 0..LANES {

@@ -13,16 +13,16 @@ use std::path::{Path, PathBuf};
 #[derive(Parser)]
 #[command(version)]
 struct Arguments {
-    /// Pictures, down the first column, then down the next; a slash in a title starts a new line
+    /// Pictures, which fill the first column downwards, then the next; a slash in a title starts a new line
     #[arg(value_name = "TITLE=FILE.png", required = true)]
     pictures: Vec<String>,
     /// PNG file to write
     #[arg(short, long, value_name = "SHEET.png", value_parser = file_name())]
     output: PathBuf,
-    /// Pictures in a column
+    /// Number of pictures in a column
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u16).range(1..=64))]
     rows: u16,
-    /// Width and height of a picture on the sheet, pixels
+    /// Width and height of a picture on the sheet in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = 256, value_parser = clap::value_parser!(u16).range(16..=1024))]
     side: u16,
 }

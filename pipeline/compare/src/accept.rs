@@ -121,7 +121,17 @@ fn entry<'a>(
     new: &[u8],
 ) -> Result<LogEntry<'a>, Failure> {
     let digest = |bytes: &[u8]| blake3::hash(bytes).to_hex().to_string();
-    let changes = |layer: &'a LayerReport| layer.channels.iter().map(|channel| change(&layer.name, channel));
+    let change = |layer: &'a str, ChannelReport { name, metrics }: &'a ChannelReport| Change {
+        layer,
+        channel: name,
+        mean_old: metrics.mean_reference,
+        mean_new: metrics.mean_test,
+        bias: metrics.get("bias"),
+        rmse: metrics.get("rmse"),
+        relmse: metrics.get("relmse"),
+        max: metrics.max.error,
+    };
+    let changes = |layer: &'a LayerReport| layer.channels.iter().map(move |channel| change(&layer.name, channel));
     Ok(LogEntry {
         schema: SCHEMA,
         time: now()?,
@@ -134,20 +144,6 @@ fn entry<'a>(
         gates: &report.gates,
         metrics: report.layers.iter().flat_map(changes).collect(),
     })
-}
-
-fn change<'a>(layer: &'a str, channel: &'a ChannelReport) -> Change<'a> {
-    let metrics = &channel.metrics;
-    Change {
-        layer,
-        channel: &channel.name,
-        mean_old: metrics.mean_reference,
-        mean_new: metrics.mean_test,
-        bias: metrics.get("bias"),
-        rmse: metrics.get("rmse"),
-        relmse: metrics.get("relmse"),
-        max: metrics.max.error,
-    }
 }
 
 /// The time in seconds since 1970. SOURCE_DATE_EPOCH replaces the clock (reproducible-builds.org).

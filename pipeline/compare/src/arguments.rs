@@ -5,36 +5,37 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser};
 use compare::heatmap::DEFAULT_MAX;
+use compare::metric::GATES;
 use compare::{Choice, LimitsError, Settings, read_limits};
 
-use crate::gate_options::{self, GateOptions};
+use crate::gate_options::GateOptions;
 
 /// Compare two OpenEXR images.
 ///
-/// Prints metrics per layer, then one line with the verdict. Exit code: 0 passed, 1 the images differ beyond a
-/// gate or hold values that are not finite, 2 could not judge, 3 a difference for --diff-exr is beyond float32.
+/// Prints the metrics of each layer, then one line with the verdict. Exit codes: 0 the images passed, 1 they differ by more than
+/// a gate allows or hold values that are not finite, 2 they could not be judged, 3 a difference for --diff-exr is beyond float32.
 #[derive(Debug, Parser)]
 #[command(version)]
 pub(crate) struct Arguments {
-    /// Image that is right, or a folder of them (--replicates)
+    /// Reference image, or a folder of replicates (--replicates)
     #[arg(value_parser = cli::file_name())]
     pub(crate) reference: PathBuf,
-    /// Image to judge, or a folder of them
+    /// Image to judge, or a folder of replicates
     #[arg(value_parser = cli::file_name())]
     pub(crate) test: PathBuf,
     #[command(flatten)]
     pub(crate) gates: GateOptions,
-    /// JSON file of gates, each with its reason, that hold besides those of the command line (docs/compare.md)
+    /// JSON file of gates, each with its reason, which hold in addition to those of the command line (docs/compare.md)
     #[arg(long, value_name = "FILE", value_parser = cli::file_name())]
     pub(crate) limits: Option<PathBuf>,
-    /// Layer that gates of the command line and --heatmap look at, or `all` [default: beauty (the channels without a layer
-    /// that are the picture), for gates also its alpha]
+    /// Layer that --heatmap draws and the gates of the command line judge, or `all` [default: beauty (the channels without a
+    /// layer that are the picture), for gates also its alpha]
     #[arg(long, value_name = "NAME")]
     pub(crate) layer: Option<String>,
     /// Let NaN and infinity pass; gates on their channel still fail
     #[arg(long)]
     pub(crate) allow_nonfinite: bool,
-    /// Measure FLIP, LDR and HDR: the difference as it is seen. Takes longer than all else
+    /// Measure LDR-FLIP and HDR-FLIP, the visible difference, which takes longer than all else
     #[arg(long)]
     pub(crate) flip: bool,
     /// Compare images of different clouds or scenes
@@ -46,20 +47,20 @@ pub(crate) struct Arguments {
     /// Write test - reference of every channel, signed, as OpenEXR
     #[arg(long, value_name = "FILE.exr", value_parser = cli::file_name())]
     pub(crate) diff_exr: Option<PathBuf>,
-    /// Write the layer's absolute error as a picture with its scale
+    /// Write the absolute error of the layer as a picture with its scale
     #[arg(long, value_name = "FILE.png", value_parser = cli::file_name())]
     pub(crate) heatmap: Option<PathBuf>,
-    /// Write a page with both images, their difference and all numbers; it needs nothing else. `compare --html-index
-    /// FILE REPORT.html...` lists such pages, the worst first
+    /// Write a page with both images, their difference and all numbers, which needs no other file. `compare --html-index FILE
+    /// REPORT.html...` lists such pages, the worst first
     #[arg(long, value_name = "FILE", value_parser = cli::file_name())]
     pub(crate) html: Option<PathBuf>,
     /// Error at the end of the heatmap's scale, in units of the channel
     #[arg(long, value_name = "T", default_value_t = DEFAULT_MAX, value_parser = end_of_scale, requires = "heatmap")]
     pub(crate) heatmap_max: f64,
-    /// Make the test image the reference, whatever the verdict, and append what changed to REFERENCE.log
+    /// Replace the reference by the test image, whatever the verdict, and append what changed to REFERENCE.log
     #[arg(long, requires = "reason")]
     pub(crate) accept: bool,
-    /// Why the test image is accepted
+    /// Reason for the acceptance
     #[arg(long, value_name = "TEXT", requires = "accept", value_parser = reason)]
     pub(crate) reason: Option<String>,
     #[command(flatten)]
@@ -71,15 +72,15 @@ pub(crate) struct Arguments {
 /// The arguments that ask for folders instead of two images.
 #[derive(Args, Debug)]
 pub(crate) struct NoiseArguments {
-    /// Both are folders of images, each from a cloud with a seed of its own (or what --summarise wrote): t-tests of
-    /// few large means, which know that all pixels share the error of their cloud (docs/check.md)
+    /// Test folders of images, each from a cloud with a seed of its own (REFERENCE may hold what --summarise wrote), by t-tests
+    /// of a few means, because all pixels of an image share the error of its cloud (docs/check.md)
     #[arg(long, conflicts_with_all = options_of_two_images())]
     pub(crate) replicates: bool,
-    /// How many folders this run judges: their chance of a false alarm is 1e-3 together
+    /// Number of folders that this run judges; the probability of a false alarm in any of them is 1e-3
     #[arg(long, value_name = "N", default_value = "1", requires = "replicates")]
     pub(crate) family: NonZeroU16,
-    /// Write what --replicates needs of the folder REFERENCE, and its mean image, into the folder TEST, which holds no
-    /// images
+    /// Write a summary of the folder REFERENCE, which --replicates can read instead, and its mean image into the folder TEST,
+    /// which must hold no images
     #[arg(long, conflicts_with_all = options_of_two_images(), conflicts_with_all = ["replicates", "json"])]
     pub(crate) summarise: bool,
 }
@@ -87,7 +88,7 @@ pub(crate) struct NoiseArguments {
 /// The options that are about two images.
 fn options_of_two_images() -> impl Iterator<Item = &'static str> {
     let others = ["limits", "layer", "allow_nonfinite", "flip", "ignore_meta", "diff_exr", "heatmap", "html", "accept"];
-    gate_options::names().chain(others)
+    GATES.iter().map(|kind| kind.name).chain(others)
 }
 
 impl Arguments {
@@ -105,7 +106,7 @@ impl Arguments {
 
     /// The number of threads for the reading and writing of images.
     pub(crate) fn threads(&self) -> NonZeroUsize {
-        NonZeroUsize::new(self.common.thread_count()).unwrap_or(NonZeroUsize::MIN)
+        self.common.thread_count()
     }
 
     /// The path of the log of `--accept`.

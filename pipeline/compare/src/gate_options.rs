@@ -8,11 +8,6 @@ use compare::metric::{GATES, GateKind, GateValue};
 #[derive(Clone, Debug)]
 pub(crate) struct GateOptions(pub(crate) Vec<Gate>);
 
-/// The names of the options, which are their ids too.
-pub(crate) fn names() -> impl Iterator<Item = &'static str> {
-    GATES.iter().map(|kind| kind.name)
-}
-
 impl Args for GateOptions {
     fn augment_args(command: Command) -> Command {
         GATES.iter().fold(command, |command, kind| command.arg(option(kind)))

@@ -2,7 +2,7 @@
 
 use formats::image::Image;
 
-use crate::metric::Samples;
+use crate::metric::Pair;
 
 /// The name of the layer of the picture itself.
 pub(crate) const BEAUTY: &str = "beauty";
@@ -21,13 +21,13 @@ pub struct Layer<'a> {
     /// layers of their own name.
     pub name: String,
     /// The names after the dot with their samples: first R, G, B, A, X, Y, Z, RY, BY in this order, then others by name.
-    pub channels: Vec<(String, Samples<'a>)>,
+    pub channels: Vec<(String, Pair<'a>)>,
 }
 
 impl<'a> Layer<'a> {
     /// The samples of the layer, channel after channel.
-    pub fn samples(&self) -> Samples<'a> {
-        Samples { planes: self.channels.iter().flat_map(|(_, samples)| samples.planes.iter().copied()).collect() }
+    pub fn samples(&self) -> Vec<Pair<'a>> {
+        self.channels.iter().map(|(_, samples)| *samples).collect()
     }
 }
 
@@ -38,7 +38,7 @@ pub(crate) fn layers<'a>(reference: &'a Image, test: &'a Image) -> Vec<Layer<'a>
     for channel in &reference.channels {
         let (layer, name) = split(&channel.name, picture);
         let Some(samples) = test.channel(&channel.name) else { continue };
-        let entry = (name.to_owned(), Samples { planes: vec![(channel.samples.as_slice(), samples)] });
+        let entry = (name.to_owned(), (channel.samples.as_slice(), samples));
         match layers.iter_mut().find(|known| known.name == layer) {
             Some(known) => known.channels.push(entry),
             None => layers.push(Layer { name: layer.to_owned(), channels: vec![entry] }),

@@ -163,12 +163,6 @@ mod tests {
     }
 
     #[test]
-    fn a_byte_order_mark_is_no_fault() {
-        let text = r#"{"schema": 1, "limits": [{"gate": "max-bias", "limit": 0.1, "reason": "r"}]}"#;
-        assert_eq!(parse(&format!("\u{feff}{text}")), parse(text));
-    }
-
-    #[test]
     fn a_question_is_asked_once() {
         let bias = r#"{"gate": "max-bias", "limit": 1, "reason": "r"}"#;
         let other = r#"{"gate": "max-bias", "limit": 2, "layer": "beauty", "reason": "r"}"#;

@@ -1,8 +1,12 @@
-//! The command line.
+//! The command line: what the user typed.
 
-use clap::{Parser, ValueEnum};
-use cli::{Common, SceneArgs, file_name};
-use gather::Crop;
+use bssrdf::Model;
+use clap::Parser;
+use cli::{Common, SceneArgs, file_name, one_of, parse_relative_error};
+use gather::{
+    Crop, Filter,
+    estimator::{Estimator, Rule},
+};
 use std::path::PathBuf;
 
 /// Renders a scene's translucent surfaces from a point cloud.
@@ -11,62 +15,66 @@ use std::path::PathBuf;
 #[derive(Parser)]
 #[command(version, override_usage = "gather [OPTIONS] CLOUD... SCENE --output IMAGE.exr")]
 pub struct Arguments {
-    /// Clouds of sample-surface: one, or shards and seeds of one scene, which are gathered as one whatever their order;
-    /// and last the scene that they were sampled from (with --list-cameras, --list-files or --list-materials it alone)
+    /// Clouds of sample-surface: one, or shards and seeds of one scene, which are gathered as one whatever their order; and
+    /// last the scene that they were sampled from (with --list-cameras, --list-files or --list-materials, only the scene)
     #[arg(value_name = "CLOUD... SCENE", value_parser = file_name())]
     pub files: Vec<PathBuf>,
     /// OpenEXR image to write
     #[arg(short, long, value_name = "IMAGE.exr", value_parser = file_name(),
         required_unless_present_any = ["list_cameras", "list_files", "list_materials", "list_media"])]
     pub output: Option<PathBuf>,
-    /// Camera of SCENE by its name, its node's, or its index; index:N where a name may be taken for it [default: the first]
+    /// Camera of SCENE by its name, its node's name, or its index; index:N where a name could be taken for an index
+    /// [default: the first]
     #[arg(long, value_name = "NAME|INDEX")]
     pub camera: Option<String>,
-    /// Camera in a file of its own; beats --camera. A list of them makes as many images: IMAGE.NAME.exr of the view's
-    /// name, or IMAGE.0000.exr by its place, previews and statistics likewise
+    /// Camera in a file of its own; beats --camera. A list of cameras makes as many images: IMAGE.NAME.exr by the view's
+    /// name, or IMAGE.0000.exr by its index in the list; previews and statistics likewise
     #[arg(long, value_name = "FILE.json", value_parser = file_name())]
     pub view: Option<PathBuf>,
     /// Turn the camera about the vertical axis through the view's target, or through the middle of the translucent
-    /// surfaces, in N equal steps: IMAGE.0000.exr and so on, previews and statistics likewise
+    /// surfaces, in N equal steps: IMAGE.0000.exr and so on; previews and statistics likewise
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub orbit: Option<u32>,
-    /// Width, pixels [default: 512, or by the height]
+    /// Width, pixels [default: 512, or by the height and the camera's aspect]
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub width: Option<u32>,
     /// Height, pixels [default: by the camera's aspect]
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub height: Option<u32>,
-    /// Render this part of the image alone: X columns from the left, Y rows from the top, W columns and H rows. Its values
+    /// Render only this part of the image: X columns from the left, Y rows from the top, W columns and H rows. Its values
     /// are those of the whole image
     #[arg(long, value_name = "X,Y,W,H", value_parser = parse_crop, conflicts_with = "target_error")]
     pub crop: Option<Crop>,
-    /// Medium, by built-in name or from a file; of one material, by name or index:N, or of all (repeatable) [default: what
-    /// SCENE's materials say]
+    /// Medium, by built-in name or from a file, of one material, by name or index:N, or of all materials (repeatable)
+    /// [default: the media that SCENE gives its materials]
     #[arg(long, value_name = "[MATERIAL=]NAME|FILE.json")]
     pub medium: Vec<String>,
-    /// How light scatters from point to point
-    #[arg(long, value_name = "MODEL", default_value = "directional-dipole")]
-    pub bssrdf: ModelName,
-    /// Sum over the cloud: hierarchical (cut), by the note's roulette, or all samples
-    #[arg(long, value_name = "HOW", default_value = "cut", default_value_if("note", "true", "roulette"))]
-    pub estimator: EstimatorName,
+    /// BSSRDF model: how light scatters from point to point
+    #[arg(long, value_name = "MODEL", default_value = "directional-dipole",
+        value_parser = one_of(&Model::ALL, Model::name))]
+    pub bssrdf: Model,
+    /// Sum over the cloud: hierarchical (cut), by the note's roulette, or over all samples (exhaustive)
+    #[arg(long, value_name = "HOW", default_value = "cut", default_value_if("note", "true", "roulette"),
+        value_parser = one_of(&Estimator::ALL, Estimator::name))]
+    pub estimator: Estimator,
     /// Relative error that the cut may add to a pixel's scattered light [default: 0.01]
-    #[arg(long, value_name = "X", value_parser = parse_accuracy)]
+    #[arg(long, value_name = "X", value_parser = parse_relative_error)]
     pub accuracy: Option<f64>,
-    /// Acceptance rule of the roulette; mean is the note's, and unbounded in variance for colored media
-    #[arg(long, value_name = "RULE", default_value = "mixture", default_value_if("note", "true", "mean"))]
-    pub roulette: RuleName,
-    /// Camera paths a pixel; with --target-error, the most [default: 16; with --target-error 4096]
+    /// Acceptance rule of the roulette; mean is the note's, and has unbounded variance in colored media
+    #[arg(long, value_name = "RULE", default_value = "mixture", default_value_if("note", "true", "mean"),
+        value_parser = one_of(&Rule::ALL, Rule::name))]
+    pub roulette: Rule,
+    /// Camera paths per pixel; with --target-error, the largest number [default: 16; with --target-error 4096]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_048_576))]
     pub spp: Option<u32>,
-    /// Add paths until the image's relative standard error is this, the cloud's part included: 95 of 100 images are off
-    /// by less than twice this
-    #[arg(long, value_name = "X", value_parser = parse_accuracy)]
+    /// Add paths until the image has this relative standard error, that of the cloud included: 95 of 100 images have an
+    /// error of less than twice this
+    #[arg(long, value_name = "X", value_parser = parse_relative_error)]
     pub target_error: Option<f64>,
     /// Spread the paths over the pixel (box), or send all through its centre (point)
-    #[arg(long, value_name = "FILTER", default_value = "box")]
-    pub filter: FilterName,
-    /// Interface events a path may have; what is cut off is counted
+    #[arg(long, value_name = "FILTER", default_value = "box", value_parser = one_of(&Filter::ALL, Filter::name))]
+    pub filter: Filter,
+    /// Interface events that a path may have; paths that are cut off are counted
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub max_depth: u32,
     #[command(flatten)]
@@ -80,7 +88,7 @@ pub struct Arguments {
     /// Write statistics as JSON
     #[arg(long, value_name = "FILE", value_parser = file_name())]
     pub stats: Option<PathBuf>,
-    /// Leave out of image and statistics what differs from run to run
+    /// Leave out of the image and its statistics everything that differs from run to run
     #[arg(long)]
     pub no_timings: bool,
     /// Print the cameras of SCENE
@@ -114,42 +122,7 @@ fn parse_crop(text: &str) -> Result<Crop, String> {
     }
 }
 
-fn parse_accuracy(text: &str) -> Result<f64, String> {
-    let accuracy = text.parse().ok().filter(|x: &f64| (1e-6..=1.0).contains(x));
-    accuracy.ok_or_else(|| "expected a number between 0.000001 and 1".into())
-}
-
 fn parse_stops(text: &str) -> Result<f64, String> {
     let stops = text.parse().ok().filter(|x: &f64| x.abs() <= 64.0);
     stops.ok_or_else(|| "expected a number between -64 and 64".into())
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum ModelName {
-    #[value(name = "directional-dipole")]
-    Directional,
-    #[value(name = "better-dipole")]
-    Better,
-    #[value(name = "standard-dipole")]
-    Standard,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum EstimatorName {
-    Cut,
-    Roulette,
-    Exhaustive,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum RuleName {
-    Mixture,
-    Mean,
-    Min,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum FilterName {
-    Box,
-    Point,
 }

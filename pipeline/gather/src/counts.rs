@@ -1,30 +1,30 @@
-//! What is counted while an image is rendered.
+//! Counts of what happens while an image is rendered.
 
-/// What happened on the paths of an image.
+/// Counts of the events on the paths of an image.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Counts {
     pub paths: u64,
-    /// Paths the first translucent surface of which they met from its outside.
+    /// Paths that met their first translucent surface from outside.
     pub from_outside: u64,
-    /// The same from within: the camera stands inside a medium, or looks into an open mesh.
+    /// Paths that met their first translucent surface from within: the camera is inside a medium, or looks into an open mesh.
     pub from_inside: u64,
     pub rays: u64,
     pub shadow_rays: u64,
     pub gathers: u64,
     pub evaluations: u64,
-    /// Nodes of the samples' trees that were looked at.
+    /// Nodes of the trees over the samples that were visited.
     pub nodes: u64,
-    /// Paths ended by the depth limit: their light is missing.
+    /// Paths that were ended by the depth limit, so that their light is missing.
     pub cut_by_depth: u64,
-    /// Paths that left a medium without meeting its surface: the mesh is open.
+    /// Paths that left a medium without meeting its surface, because the mesh is open.
     pub escaped_inside: u64,
-    /// Outer surfaces met from inside a medium, passed straight: objects overlap.
+    /// Outer surfaces that were met from inside a medium and passed undeflected, because objects overlap.
     pub nested: u64,
-    /// Points where the interpolated normal contradicts the triangle, whose own normal was taken.
+    /// Points at which the interpolated normal contradicts the triangle, so that the triangle's own was used.
     pub geometric_normals: u64,
-    /// Pixels whose share of light that gets through is known from more rays than paths.
+    /// Edge pixels, in which more rays than paths measure the transmittance of the first interface.
     pub edge_pixels: u64,
-    /// Those rays, and the ones that look for such pixels.
+    /// Rays of edge pixels, and the rays that search for them.
     pub edge_rays: u64,
 }
 

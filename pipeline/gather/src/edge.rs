@@ -1,36 +1,36 @@
-//! Pixels where translucent surfaces end or turn away: how much of the light below gets through to the camera varies
-//! more there than the light itself, and costs only a ray to know.
+//! A control variate for pixels at silhouettes, where the transmittance of the first interface varies more than the light
+//! below it. A single ray gives that transmittance.
 //!
-//! A path's scattered light is `f = g s`: `g` its share that gets through the first interface, 0 where the path meets
-//! something else, and `s` the light below. Of `g` a pixel has many more values than of `f`, with the mean `G`, so
-//! `f̄ + c (G − ḡ)` has the mean of `f` for any `c` that does not look at the same paths (a control variate). Each half
-//! of a pixel takes its `c` from the other half, and has rays of its own. A pixel may come out a little below zero: cutting
-//! that off would move the mean.
+//! A path's scattered light is `f = g s`, with the transmittance `g` of the first interface, 0 where the path meets
+//! something else, and the light `s` below it. Many rays give a precise mean `G` of `g`. With the means `f̄` and `ḡ` of the
+//! paths, `f̄ + c (G − ḡ)` has the expectation of `f` for any `c` that is independent of these paths. Each half of a pixel
+//! takes its `c` from the other half, and has rays of its own. A pixel may become slightly negative; clamping it would bias
+//! the mean.
 
 use crate::path_light::{Layer, PathLight};
 use scene::DVec3;
 
-/// A pixel is an edge if `g` at its corners differs by more.
-pub const LEAST: f64 = 0.1;
+/// A pixel is at an edge if `g` differs by more than this between its corners.
+pub const MIN_SPREAD: f64 = 0.1;
 
-/// Rays for each path.
+/// Rays of each path.
 pub const RAYS: u32 = 16;
 
-/// Sums over the paths and rays of one such pixel, by halves.
+/// Sums over the paths and rays of one edge pixel, by halves.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Edge([Half; 2]);
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Half {
     paths: f64,
-    /// Of `f`.
+    /// Sum of `f`.
     scattered: DVec3,
-    /// Of `g`, `g²`, and `g` times all light of the path.
+    /// Sums of `g`, of `g²`, and of `g` times all light of the path.
     through: f64,
     squares: f64,
     products: DVec3,
     rays: f64,
-    /// Of `g` of the rays.
+    /// Sum of `g` over the rays.
     through_rays: f64,
 }
 
@@ -51,7 +51,7 @@ impl Edge {
         self.0[half].through_rays += through;
     }
 
-    /// `c` of one half, from the other.
+    /// `c` of one half: `Σf/Σg` of the other.
     fn factor(&self, half: usize) -> DVec3 {
         let other = &self.0[1 - half];
         if other.through > 0.0 { other.scattered / other.through } else { DVec3::ZERO }
@@ -66,7 +66,7 @@ impl Edge {
         self.factor(half) * (own.through_rays / own.rays - own.through / own.paths)
     }
 
-    /// What `c g` takes from the mean and the mean square of the light of a half's paths.
+    /// What subtracting `c g` from the light of each path of a half takes from its mean and from its mean square.
     pub fn removed(&self, half: usize) -> (DVec3, DVec3) {
         let (own, factor) = (&self.0[half], self.factor(half));
         let (mean, square) = (factor * own.through, factor * (2.0 * own.products - factor * own.squares));
@@ -80,7 +80,7 @@ mod tests {
 
     /// Planted: the mean square without the square of `g`.
     #[test]
-    fn where_the_light_below_is_even_only_the_rays_decide() {
+    fn with_constant_light_below_the_rays_alone_decide() {
         let below = DVec3::new(3.0, 2.0, 1.0);
         let mut edge = Edge::default();
         for (half, through) in [(0, 0.9), (1, 0.0), (0, 0.5), (1, 0.8)] {

@@ -1,4 +1,4 @@
-//! Pixels: layers, mean and variance, and the channels of the image.
+//! Pixels: layers, mean and variance, and the channels of the image file.
 
 use crate::{
     Crop,
@@ -15,15 +15,15 @@ use sums::confidence::Estimate;
 pub struct PixelSum {
     layers: Layers,
     count: f64,
-    /// Even and odd paths, each as their half of the cloud has them.
+    /// Sums over even and odd paths, each as its half of the cloud estimates them.
     halves: [DVec3; 2],
-    /// Sums of squares of the same.
+    /// Sums of the squares of the same.
     squares: [DVec3; 2],
     counts: [f64; 2],
 }
 
 impl PixelSum {
-    /// Adds a path. A path alone in its pixel counts for both halves.
+    /// Adds a path. The only path of a pixel counts for both halves.
     pub fn add(&mut self, index: u32, alone: bool, path: &PathLight) {
         self.layers.iter_mut().zip(&path.layers).for_each(|(sum, x)| *sum += x);
         self.count += 1.0;
@@ -36,15 +36,16 @@ impl PixelSum {
         }
     }
 
-    /// What its halves differ by.
+    /// The difference of the means of the two halves.
     fn difference(&self, edge: Option<&Edge>) -> DVec3 {
         let mean = |half: usize| self.halves[half] / self.counts[half];
         let [even, odd] = [0, 1].map(|half| mean(half) + edge.map_or(DVec3::ZERO, |e| e.correction(half)));
         even - odd
     }
 
-    /// Variance of the pixel by what its halves differ by, and by what the paths of each half do: the second has the
-    /// paths' part of the first as its mean if they are independent, and more if they are well spread.
+    /// Two estimates of the pixel's variance: from the difference of the halves, which includes the error of the cloud, and
+    /// from the variance of the paths within each half. The second expects the paths' part of the first if paths are
+    /// independent, and more than that if they are stratified.
     fn variances(&self, edge: Option<&Edge>) -> [DVec3; 2] {
         let mean = |half: usize| self.halves[half] / self.counts[half];
         let difference = self.difference(edge);
@@ -54,12 +55,12 @@ impl PixelSum {
             let rest = mean(half) - of_mean;
             (self.squares[half] / n - of_square - rest * rest).max(DVec3::ZERO) / (n - 1.0).max(1.0)
         });
-        // Each half of an edge takes its factor from the other, so that both err together.
+        // Each half of an edge takes its factor from the other, which correlates the two.
         let together = edge.map_or(DVec3::ZERO, |e| e.correction(0) * e.correction(1));
         [difference * difference / 4.0 + together, (within[0] + within[1]) / 4.0]
     }
 
-    /// Light in each layer.
+    /// Mean light of each layer.
     fn layers(&self, edge: Option<&Edge>) -> Layers {
         let mut layers = self.layers.map(|sum| sum / self.count);
         if let Some(edge) = edge {
@@ -69,39 +70,39 @@ impl PixelSum {
         layers
     }
 
-    /// The finished pixel. The halves have one mean, so a quarter of the square of their difference has the variance of
-    /// their mean as its mean if they are independent; at edges their covariance is that of their corrections.
+    /// The finished pixel. The halves have the same expectation, so a quarter of the squared difference estimates the variance
+    /// of their mean if they are independent; at edges their covariance is that of their corrections.
     pub fn pixel(&self, edge: Option<&Edge>, guide: Guide) -> Pixel {
         Pixel { layers: self.layers(edge), variance: self.variances(edge)[0], guide }
     }
 }
 
-/// Relative standard errors of an image: root mean squares of the pixels' over the root mean square of their values.
+/// Relative standard errors of an image: the root mean square of the pixels' errors over that of their values.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Errors {
-    /// All of it.
+    /// The error of cloud and paths together.
     pub total: f64,
-    /// That of the paths, were they independent; well-spread ones have less.
+    /// The error of the paths if they were independent; stratified ones have less.
     pub paths: f64,
-    /// What more paths cannot remove, at least.
+    /// A lower bound of the error that more paths cannot remove.
     pub cloud: f64,
-    /// Degrees of freedom that the cloud's is estimated with.
+    /// Degrees of freedom of the estimate of the cloud's error.
     pub cloud_freedom: f64,
-    /// Degrees of freedom of the paths' part of the total.
+    /// Degrees of freedom of the estimate of the paths' error.
     pub paths_freedom: f64,
-    /// Paths of one half of a pixel.
+    /// Number of paths in one half of a pixel.
     pub half: f64,
     /// Root mean square of the scattered light, relative to that of all light.
     pub scattered: f64,
 }
 
 impl Errors {
-    /// Of the pixels of an image of this size, row by row; none of a black image.
+    /// The errors of an image of this size from its pixels, row by row; none for a black image.
     pub fn of<'a>(size: [usize; 2], pixels: impl Iterator<Item = (&'a PixelSum, Option<&'a Edge>)>) -> Option<Errors> {
         let (mut power, mut scattered, mut half) = (0.0, 0.0, 1.0);
         let (mut total, mut paths, mut squares) = (0.0, 0.0, 0.0);
         let mut cells = Cells::new(size);
-        for (place, (sum, edge)) in pixels.enumerate() {
+        for (pixel, (sum, edge)) in pixels.enumerate() {
             let layers = sum.layers(edge);
             let [between, within] = sum.variances(edge).map(DVec3::element_sum);
             power += layers.iter().sum::<DVec3>().length_squared();
@@ -110,41 +111,41 @@ impl Errors {
             paths += within;
             squares += within * within;
             half = sum.counts[1];
-            cells.add(place, sum.difference(edge));
+            cells.add(pixel, sum.difference(edge));
         }
         let relative = |variance: f64| (variance.max(0.0) / power).sqrt();
-        // The channels of a pixel are one value.
+        // The channels of a pixel are correlated and count as one value.
         let paths_freedom = if squares > 0.0 { (paths * paths / squares).max(1.0) } else { 1.0 };
         let cloud_freedom = cells.freedom();
         let [total, paths, cloud, scattered] = [total, paths, total - paths, scattered].map(relative);
         (power > 0.0).then_some(Errors { total, paths, cloud, cloud_freedom, paths_freedom, half, scattered })
     }
 
-    /// The error that is compared with a target. Where it has few degrees of freedom the halves may agree by luck, and
-    /// well-spread paths are not that much better than independent ones: their variance falls as their number to the
-    /// power 3/2 where edges cross a pixel. None if no two paths differ, which tells nothing.
+    /// The error that is compared with a target. With few degrees of freedom the halves may agree by chance; then the error
+    /// is at least that of stratified paths, whose variance falls with their number to the power 3/2 where edges cross a
+    /// pixel. None if all paths agree, which gives no estimate.
     pub fn estimate(&self) -> Option<Estimate> {
         let (paths, cloud) = (self.paths.min(self.total), self.cloud);
         let parts = [(paths * paths, self.paths_freedom), (cloud * cloud, self.cloud_freedom)];
         let freedom = freedom::of_sum(parts);
-        let least = self.paths / self.half.max(1.0).powf(0.25);
-        let error = if freedom < MANY { self.total.max(least) } else { self.total };
+        let floor = self.paths / self.half.max(1.0).powf(0.25);
+        let error = if freedom < MIN_FREEDOM { self.total.max(floor) } else { self.total };
         (error > 0.0).then_some(Estimate { error, freedom })
     }
 }
 
-/// Degrees of freedom with which an error is known to an eighth of itself.
-const MANY: f64 = 32.0;
+/// Degrees of freedom that give an error a relative uncertainty of an eighth.
+const MIN_FREEDOM: f64 = 32.0;
 
-/// The largest variance that a file holds.
-const LARGEST: DVec3 = DVec3::splat(f32::MAX as f64);
+/// The largest variance in a file.
+const MAX_VARIANCE: DVec3 = DVec3::splat(f32::MAX as f64);
 
 /// A pixel's values.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Pixel {
     layers: Layers,
-    /// Variance of the mean, an estimate: at edges it may be negative. As a square it leaves float32 long before the
-    /// pixel does; the file then has the largest float32 in its place.
+    /// Estimate of the variance of the mean; at edges it may be negative. As a square it exceeds float32 long before the
+    /// pixel does; the file then contains the largest float32.
     variance: DVec3,
     guide: Guide,
 }
@@ -159,22 +160,22 @@ impl Pixel {
         self.variance
     }
 
-    /// All numbers that reach the file, in the order of [`channel_names`]; the position is relative to `origin`, m.
+    /// The numbers of the file, in the order of [`channel_names`]; the position is relative to `origin`, m.
     fn values(&self, origin: DVec3) -> [f32; 28] {
         let mut values = [0.0; 28];
-        // Where nothing was met it is 0, whatever it is relative to.
+        // Where no surface was met it is 0, whatever the origin.
         let position = if self.guide.normal == DVec3::ZERO { DVec3::ZERO } else { self.guide.position - origin };
         let vectors = [
             &[self.beauty()],
             &self.layers[..],
-            &[self.variance.clamp(DVec3::ZERO, LARGEST), self.guide.normal, position],
+            &[self.variance.clamp(DVec3::ZERO, MAX_VARIANCE), self.guide.normal, position],
         ];
         let numbers = vectors.concat().into_iter().flat_map(|v| v.to_array()).chain([self.guide.depth]);
         values.iter_mut().zip(numbers).for_each(|(value, x)| *value = x as f32);
         values
     }
 
-    /// True if every number can go into a file.
+    /// True if all numbers are finite.
     pub fn is_finite(&self) -> bool {
         self.variance.is_finite() && self.values(DVec3::ZERO).iter().all(|x| x.is_finite())
     }
@@ -192,7 +193,7 @@ fn channel_names() -> Vec<String> {
     names
 }
 
-/// The pixels of a part of an image of this size, in its place there, without attributes. Positions are relative to
+/// The pixels of a part of an image of this size, at its place there, without attributes. Positions are relative to
 /// `origin`, m.
 pub fn part(pixels: &[Pixel], part: Crop, size: [usize; 2], origin: DVec3) -> Image {
     let whole = Window { position: [0, 0], size };
@@ -228,7 +229,8 @@ pub fn relative_error(pixels: &[Pixel]) -> Option<f64> {
     (power > 0.0).then(|| (variance.max(0.0) / power).sqrt())
 }
 
-/// What [`relative_error`] and the variance of an image cover, given the samples drawn for the second half of the cloud.
+/// The sources of error that [`relative_error`] and the variance of an image include, by the number of samples drawn for
+/// the second half of the cloud.
 pub fn covers(paths_per_pixel: u32, second_half: u64) -> &'static str {
     match (paths_per_pixel, second_half) {
         (1, 0) => "nothing: one path a pixel, one sample",
@@ -242,7 +244,7 @@ pub fn covers(paths_per_pixel: u32, second_half: u64) -> &'static str {
 mod tests {
     use super::*;
 
-    /// Positions are relative to what they should be, and 0 where nothing is met.
+    /// Positions are relative to the origin, and 0 where no surface is met.
     #[test]
     fn positions_relative_to_an_origin() {
         let met = Guide { normal: DVec3::Y, position: DVec3::new(1e6 + 0.25, 2.0, 3.0), depth: 1.0 };
@@ -268,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn one_path_knows_the_clouds_error() {
+    fn one_path_estimates_the_error_of_the_cloud() {
         let mut sum = PixelSum::default();
         sum.add(0, true, &PathLight { halves: [DVec3::splat(2.0), DVec3::splat(3.0)], ..PathLight::default() });
         assert_eq!(sum.pixel(None, Guide::default()).variance(), DVec3::splat(0.25));

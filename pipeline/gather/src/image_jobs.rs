@@ -1,11 +1,13 @@
-//! The images of one call: of a camera, of a turntable about a vertical axis, or of a list of views; and a file for each.
+//! The images of one run: of one camera, of a turntable about a vertical axis, or of a list of views; each has files of
+//! its own.
 
 use crate::{
-    arguments::Arguments,
-    settings::{Cameras, Chosen},
+    cameras::{Viewpoint, Viewpoints, viewpoints},
+    inputs::Inputs,
+    settings::{ImageNames, Request},
 };
-use cli::Failure;
-use gather::Settings;
+use cli::{Common, Failure, Need};
+use gather::{Crop, Settings};
 use glam::{DMat3, DVec3};
 use scene::{Camera, View, ViewFile};
 use std::{
@@ -13,96 +15,154 @@ use std::{
     path::{Path, PathBuf},
 };
 
+/// Pixels that an image can have.
+const MAX_PIXELS: u64 = 1 << 28;
+
+/// Memory that a pixel takes, bytes: sums, their copies while a pass is joined, the pixel and its channels, if all pixels
+/// are edges.
+const BYTES_PER_PIXEL: u64 = 1280;
+
 /// One image.
-pub struct Shot {
+pub struct ImageJob {
     pub camera: Camera,
     pub settings: Settings,
-    /// By how much an orbit has turned the camera.
+    /// The angle by which a turntable has turned the camera.
     pub degrees: f64,
-    /// What chose the camera.
+    /// The argument that chose the camera.
     pub argument: String,
-    /// What its files have before their ending; none if there is one image only.
+    /// The tag in the names of its files, before their extensions; none if there is only one image.
     tag: Option<String>,
 }
 
-/// All images, the sizes of which `settings` gives.
-pub fn shots(
-    arguments: &Arguments,
-    cameras: &Cameras,
-    settings: impl Fn(&Chosen) -> Result<Settings, Failure>,
-) -> Result<Vec<Shot>, Failure> {
-    match cameras {
-        Cameras::One(chosen) => {
-            let (count, settings) = (arguments.orbit.unwrap_or(1), settings(chosen)?);
-            let shot = |index: u32| {
-                let degrees = 360.0 * f64::from(index) / f64::from(count);
-                let camera = turned(&chosen.camera, chosen.target, degrees);
-                let tag = arguments.orbit.map(|_| view_tag(None, index as usize));
-                Shot { camera, settings: settings.clone(), degrees, argument: chosen.argument.clone(), tag }
-            };
-            Ok((0..count).map(shot).collect())
+/// All images of a request. Refuses those that cannot be rendered, before any work is done.
+pub fn image_jobs(request: &Request, inputs: &Inputs) -> Result<Vec<ImageJob>, Failure> {
+    let jobs = match viewpoints(request, &inputs.scene, || inputs.middle())? {
+        Viewpoints::One(viewpoint) => turntable(request, &viewpoint)?,
+        Viewpoints::List(views) => {
+            views.into_iter().enumerate().map(|(k, view)| listed(request, k, view)).collect::<Result<_, _>>()?
         }
-        Cameras::List(list) => {
-            let shot = |(index, (name, chosen)): (usize, &(Option<String>, Chosen))| {
-                let tag = view_tag(name.as_deref(), index);
-                let settings = settings(chosen).map_err(|e| e.within(place(&tag)))?;
-                let (camera, argument) = (chosen.camera.clone(), chosen.argument.clone());
-                Ok(Shot { camera, settings, degrees: 0.0, argument, tag: Some(tag) })
-            };
-            list.iter().enumerate().map(shot).collect()
-        }
-    }
+    };
+    warn_of_aspects(&jobs, &request.common);
+    jobs.iter().try_for_each(|job| check_memory(&job.settings).map_err(|e| job.failure(e)))?;
+    Ok(jobs)
 }
 
-/// The files of the images that `output` becomes, in their order.
-pub fn image_paths(arguments: &Arguments, output: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let tags: Vec<String> = match (arguments.orbit, &arguments.view) {
-        (Some(count), _) => (0..count as usize).map(|index| view_tag(None, index)).collect(),
+/// The images of one camera: one, or as many as a turntable has steps.
+fn turntable(request: &Request, viewpoint: &Viewpoint) -> Result<Vec<ImageJob>, Failure> {
+    let (count, settings) = (request.orbit.unwrap_or(1), settings(request, viewpoint)?);
+    let job = |index: u32| {
+        let degrees = 360.0 * f64::from(index) / f64::from(count);
+        let camera = turned(&viewpoint.camera, viewpoint.target, degrees);
+        let tag = request.orbit.map(|_| tag(None, index as usize));
+        ImageJob { camera, settings: settings.clone(), degrees, argument: viewpoint.argument.clone(), tag }
+    };
+    Ok((0..count).map(job).collect())
+}
+
+/// The image of a view in a list.
+fn listed(request: &Request, index: usize, view: Viewpoint) -> Result<ImageJob, Failure> {
+    let tag = tag(view.name.as_deref(), index);
+    let settings = settings(request, &view).map_err(|e| e.within(label(&tag)))?;
+    Ok(ImageJob { camera: view.camera, settings, degrees: 0.0, argument: view.argument, tag: Some(tag) })
+}
+
+/// The files of the images that the output becomes, in their order.
+pub fn image_paths(names: &ImageNames) -> Result<Vec<PathBuf>, Failure> {
+    let tags: Vec<String> = match (names.orbit, &names.view) {
+        (Some(count), _) => (0..count as usize).map(|index| tag(None, index)).collect(),
         (None, Some(path)) => match View::read(path)? {
             ViewFile::One(_) => Vec::new(),
             ViewFile::List(views) => {
-                views.iter().enumerate().map(|(index, (view, _))| view_tag(view.name.as_deref(), index)).collect()
+                views.iter().enumerate().map(|(index, (view, _))| tag(view.name.as_deref(), index)).collect()
             }
         },
         (None, None) => Vec::new(),
     };
     if tags.is_empty() {
-        return Ok(vec![output.to_owned()]);
+        return Ok(vec![names.output.clone()]);
     }
-    Ok(tags.iter().map(|tag| tagged(output, tag)).collect())
+    Ok(tags.iter().map(|tag| tagged(&names.output, tag)).collect())
 }
 
-/// What the files of a view have before their ending: its name, or else its place in the list.
-fn view_tag(name: Option<&str>, index: usize) -> String {
-    name.map_or_else(|| format!("{index:04}"), str::to_owned)
+/// How to render the image of a camera.
+fn settings(request: &Request, viewpoint: &Viewpoint) -> Result<Settings, Failure> {
+    let (width, height) = size(request, viewpoint)?;
+    Ok(Settings {
+        width,
+        height,
+        crop: request.crop.map(|crop| inside(crop, width, height)).transpose()?,
+        paths_per_pixel: request.paths,
+        filter: request.filter,
+        estimator: request.estimator,
+        model: request.model,
+        normals: cli::normal_kind(request.scene.normals),
+        max_depth: request.max_depth,
+        seed: request.common.seed,
+    })
+}
+
+/// Width and height: options beat the view file, and what is missing follows from the camera's aspect.
+fn size(request: &Request, viewpoint: &Viewpoint) -> Result<(usize, usize), Failure> {
+    let [width, height] = if request.size == [None; 2] { viewpoint.size } else { request.size };
+    let aspect = viewpoint.camera.aspect.unwrap_or(1.0);
+    let (width, height) = match (width.map(f64::from), height.map(f64::from)) {
+        (Some(width), Some(height)) => (width, height),
+        (Some(width), None) => (width, (width / aspect).round()),
+        (None, Some(height)) => ((height * aspect).round(), height),
+        (None, None) => (512.0, (512.0 / aspect).round()),
+    };
+    let refused = |why: &str| Failure::usage(format!("--width, --height: {width} x {height} {why}"));
+    if ![width, height].iter().all(|side| (1.0..=65536.0).contains(side)) {
+        return Err(refused("pixels; each must lie between 1 and 65536"));
+    }
+    if width * height > MAX_PIXELS as f64 {
+        return Err(refused(&format!("is more than {MAX_PIXELS} pixels")));
+    }
+    Ok((width as usize, height as usize))
+}
+
+/// The crop, if it lies inside the image.
+fn inside(crop: Crop, width: usize, height: usize) -> Result<Crop, Failure> {
+    let Crop { x, y, width: columns, height: rows } = crop;
+    if x + columns <= width && y + rows <= height {
+        return Ok(crop);
+    }
+    let image = format!("the image of {width} x {height} pixels");
+    Err(Failure::usage(format!("--crop: {x},{y},{columns},{rows} is not inside {image}")))
+}
+
+/// Refuses an image that cannot fit into memory. The cloud is mapped.
+fn check_memory(settings: &Settings) -> Result<(), Failure> {
+    let held = (settings.part().pixels() as u64).saturating_mul(BYTES_PER_PIXEL);
+    cli::require_memory("this image", Need { held, mapped: 0 }, "make it smaller")
 }
 
 /// Says once if images have other proportions than their cameras ask for.
-pub fn warn_of_aspects(shots: &[Shot], arguments: &Arguments) {
-    let aspects = |shot: &Shot| Some((shot.camera.aspect?, shot.settings.width as f64 / shot.settings.height as f64));
+fn warn_of_aspects(jobs: &[ImageJob], common: &Common) {
+    let aspects = |job: &ImageJob| Some((job.camera.aspect?, job.settings.width as f64 / job.settings.height as f64));
     let misfit = |(wanted, own): &(f64, f64)| (wanted / own - 1.0).abs() > 0.01;
-    if let Some((wanted, own)) = shots.iter().filter_map(aspects).find(misfit) {
-        arguments.common.warn(format_args!(
+    if let Some((wanted, own)) = jobs.iter().filter_map(aspects).find(misfit) {
+        common.warn(format_args!(
             "the camera's aspect is {wanted:.3}, the image's {own:.3}: its vertical field of view is kept"
         ));
     }
 }
 
-impl Shot {
-    /// A failure of this image, which says which it is if there are several.
+impl ImageJob {
+    /// A failure of this image, which names the image if there are several.
     pub fn failure(&self, failure: Failure) -> Failure {
         match &self.tag {
-            Some(tag) => failure.within(place(tag)),
+            Some(tag) => failure.within(label(tag)),
             None => failure,
         }
     }
 
-    /// A line about this image, which says which it is if there are several.
+    /// A line about this image, which names the image if there are several.
     pub fn line(&self, line: &str) -> String {
-        self.tag.as_ref().map_or_else(|| line.to_owned(), |tag| format!("{}: {line}", place(tag)))
+        self.tag.as_ref().map_or_else(|| line.to_owned(), |tag| format!("{}: {line}", label(tag)))
     }
 
-    /// `NAME.exr` as `NAME.0007.exr`.
+    /// The file of this image: `NAME.0007.exr` for `NAME.exr`, if there are several images.
     pub fn file(&self, path: &Path) -> PathBuf {
         self.tag.as_ref().map_or_else(|| path.to_owned(), |tag| tagged(path, tag))
     }
@@ -111,7 +171,8 @@ impl Shot {
 /// A camera turned about +Y through `target` (world, m), counter-clockwise seen from above.
 fn turned(camera: &Camera, target: DVec3, degrees: f64) -> Camera {
     if degrees == 0.0 {
-        return camera.clone(); // to the last digit
+        // A rotation by 0 would round the camera.
+        return camera.clone();
     }
     let turn = DMat3::from_rotation_y(degrees.to_radians());
     Camera {
@@ -123,7 +184,13 @@ fn turned(camera: &Camera, target: DVec3, degrees: f64) -> Camera {
     }
 }
 
-fn place(tag: &str) -> String {
+/// The tag of an image: the name of its view, or else its index.
+fn tag(name: Option<&str>, index: usize) -> String {
+    name.map_or_else(|| format!("{index:04}"), str::to_owned)
+}
+
+/// The name of an image in messages.
+fn label(tag: &str) -> String {
     format!("view {tag}")
 }
 
@@ -141,7 +208,7 @@ mod tests {
     use super::*;
     use scene::Projection;
 
-    /// A quarter of a turn, on paper. Seen to catch: a turn the other way, and about the origin.
+    /// A quarter of a turn, computed on paper. Seen to catch: a turn the other way, and one about the origin.
     #[test]
     fn a_quarter_turn_goes_from_the_front_to_the_right() {
         let camera = Camera {
@@ -162,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn files_are_numbered_before_their_ending() {
+    fn files_are_numbered_before_their_extension() {
         assert_eq!(tagged(Path::new("a.b/turn.v2.exr"), "0007"), Path::new("a.b/turn.v2.0007.exr"));
         assert_eq!(tagged(Path::new("turn"), "front"), Path::new("turn.front"));
     }

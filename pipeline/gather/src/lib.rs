@@ -1,14 +1,47 @@
 //! Phase two: a cloud, media and a camera to an image.
 //!
-//! Never samples a light for a translucent surface: their light is the cloud's. Parallel over pixels, never within a
-//! sum, so the image is the same for any number of threads.
+//! [`render`] follows camera paths through the interfaces of translucent objects to exitant points, where it sums the
+//! cloud; [`Passes`] adds paths in passes, until an error target is met. No light is sampled for a translucent surface: its
+//! light is that of the cloud. Pixels are rendered in parallel and each sum in a fixed order, so that the image is the same
+//! for any number of threads.
+//!
+//! The example renders four pixels of a scene without a cloud, so that all of its surfaces are opaque.
+//!
+//! ```
+//! use bssrdf::Model;
+//! use gather::{Filter, Input, Settings, estimator::Estimator, render};
+//! use scene::{ImportOptions, LightUnit, NormalKind, Rays, Scene};
+//!
+//! let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/scenes/slab.glb");
+//! let unit = LightUnit::Radiometric;
+//! let import = ImportOptions { metres_per_unit: 1.0, light_unit: unit, emission_unit: unit };
+//! let scene = Scene::import(file.as_ref(), &import)?;
+//! let rays = Rays::of_scene(&scene, |_| false);
+//! let settings = Settings {
+//!     width: 2,
+//!     height: 2,
+//!     crop: None,
+//!     paths_per_pixel: 4,
+//!     filter: Filter::Box,
+//!     estimator: Estimator::Exhaustive,
+//!     model: Model::DirectionalDipole,
+//!     normals: NormalKind::Shading,
+//!     max_depth: 16,
+//!     seed: 0,
+//! };
+//! let input = Input { scene: &scene, rays: &rays, clouds: &[], media: &[], camera: &scene.cameras[0] };
+//! let rendered = render(&input, &settings, |_| ());
+//! assert_eq!((rendered.pixels.len(), rendered.counts.paths), (4, 16));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod calibration;
 pub mod counts;
+mod crop;
 mod edge;
 pub mod film;
 mod freedom;
-pub mod media;
+mod image;
 mod passes;
 mod path;
 pub mod path_light;
@@ -18,94 +51,7 @@ pub mod renderer;
 pub mod shards;
 mod subsurface;
 
-pub use passes::Passes;
+pub use crop::Crop;
+pub use image::{Filter, Input, Rendered, Settings};
+pub use passes::{Passes, render};
 pub use sums::{Summation, estimator, samples};
-
-use bssrdf::{Medium, Model};
-use counts::Counts;
-use estimator::Estimator;
-use film::Pixel;
-use formats::cloud::Cloud;
-use scene::{Camera, NormalKind, Rays, Scene};
-
-/// Over what part of a pixel its paths are spread.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Filter {
-    /// All of it, evenly.
-    Box,
-    /// Its centre.
-    Point,
-}
-
-/// A part of an image, pixels: its left column, its upper row, columns, rows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Crop {
-    pub x: usize,
-    pub y: usize,
-    pub width: usize,
-    pub height: usize,
-}
-
-/// How to render.
-#[derive(Clone, Debug)]
-pub struct Settings {
-    /// Of the whole image, of which a crop is a part.
-    pub width: usize,
-    pub height: usize,
-    /// What is rendered of it, inside it, if not all: the same to the last bit as in the whole image.
-    pub crop: Option<Crop>,
-    pub paths_per_pixel: u32,
-    pub filter: Filter,
-    pub estimator: Estimator,
-    pub model: Model,
-    pub normals: NormalKind,
-    pub max_depth: u32,
-    pub seed: u64,
-}
-
-impl Settings {
-    /// What is rendered of the image.
-    pub fn part(&self) -> Crop {
-        self.crop.unwrap_or(Crop { x: 0, y: 0, width: self.width, height: self.height })
-    }
-}
-
-impl Crop {
-    pub fn pixels(&self) -> usize {
-        self.width * self.height
-    }
-
-    /// Column and row in the whole image of pixel `place` of the part, which are counted row by row.
-    pub fn pixel(&self, place: usize) -> [usize; 2] {
-        [self.x + place % self.width, self.y + place / self.width]
-    }
-}
-
-/// What to render.
-pub struct Input<'a> {
-    pub scene: &'a Scene,
-    pub rays: &'a Rays<'a>,
-    /// One or more of this scene, see [`shards::join`].
-    pub clouds: &'a [Cloud],
-    /// The medium of each material that the clouds sampled, in their order.
-    pub media: &'a [Medium],
-    pub camera: &'a Camera,
-}
-
-/// A rendered image.
-pub struct Rendered {
-    /// Those of [`Settings::part`], rows from top to bottom.
-    pub pixels: Vec<Pixel>,
-    pub paths_per_pixel: u32,
-    pub counts: Counts,
-    /// Indices of pixels with a number that is not finite; the first few.
-    pub non_finite: Vec<usize>,
-    pub non_finite_count: u64,
-}
-
-/// Renders an image of `settings.paths_per_pixel` paths; `progress` is called with numbers of pixels that are done.
-pub fn render(input: &Input, settings: &Settings, progress: impl Fn(u64) + Sync) -> Rendered {
-    let mut passes = Passes::new(input, settings);
-    passes.pass(settings.paths_per_pixel, progress);
-    passes.finish()
-}

@@ -103,7 +103,7 @@ impl<'a> Passes<'a> {
             let (x, y) = (index % width, index / width);
             let corners = [rows[y].0[x], rows[y].0[x + 1], rows[y + 1].0[x], rows[y + 1].0[x + 1]];
             let spread = corners.into_iter().fold(0.0, f64::max) - corners.into_iter().fold(1.0, f64::min);
-            self.edges[index] = (spread > edge::LEAST).then(Box::default);
+            self.edges[index] = (spread > edge::MIN_SPREAD).then(Box::default);
         }
         rows.iter().for_each(|(_, counts)| self.counts.add(counts));
         self.counts.edge_pixels = self.edges.iter().flatten().count() as u64;
@@ -205,6 +205,13 @@ impl<'a> Passes<'a> {
         let (non_finite, non_finite_count) = (bad().take(8).collect(), bad().count() as u64);
         Rendered { pixels, paths_per_pixel: self.paths, counts: self.counts, non_finite, non_finite_count }
     }
+}
+
+/// Renders an image of `settings.paths_per_pixel` paths; `progress` is called with numbers of pixels that are done.
+pub fn render(input: &Input, settings: &Settings, progress: impl Fn(u64) + Sync) -> Rendered {
+    let mut passes = Passes::new(input, settings);
+    passes.pass(settings.paths_per_pixel, progress);
+    passes.finish()
 }
 
 /// Width and height of the whole image, pixels.

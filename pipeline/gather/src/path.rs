@@ -1,4 +1,5 @@
-//! note: [split] One camera path: Fresnel roulette at the interfaces, and `L_o = L_e + L_t + L_r` where light leaves.
+//! note: [split] One camera path: `L_o = L_e + L_t + L_r` where it refracts at a surface (docs/method.md 6.6), and what
+//! reflects there. A [`Bsdf`] says what happens at the surface; the path chooses between its lobes.
 
 use crate::{
     counts::Counts,
@@ -7,15 +8,15 @@ use crate::{
     renderer::{Renderer, TranslucentObject},
     shards::ShardPick,
 };
-use bssrdf::fresnel;
+use bsdf::{Bsdf, Lobe, Side, Surface, View};
 use scene::{DVec3, Hit, SurfacePoint, light::all_light_at};
-use std::f64::consts::PI;
 
-/// Dimensions of the random numbers that one branch of a path may use.
+/// The second branch of a path uses the random numbers from this dimension on.
 const BRANCH: u64 = 1 << 32;
 
 impl Renderer<'_> {
-    /// Light that arrives at the camera along one path. At its first interface the path splits in two.
+    /// Light that arrives at the camera along one path. At its first interface the path splits into a refracted and a
+    /// reflected branch.
     pub fn trace(&self, index: PathIndex, origin: DVec3, direction: DVec3, context: &mut ThreadContext) -> PathLight {
         let item = index.pixel << 32 | u64::from(index.path);
         let half = index.path as usize % 2;
@@ -43,16 +44,17 @@ impl Renderer<'_> {
         light
     }
 
-    /// Among the paths of its half that are added at once.
+    /// The shard that a path gathers from, chosen among the paths of its half that are added in the same pass.
     fn turn(&self, index: PathIndex) -> ShardPick {
         let half = index.path % 2;
-        // The first path of this half, at `path` or after it.
+        // How many paths of this half come before `path`.
         let first = |path: u32| (path + 1 - half) / 2;
         let (start, end) = (first(self.pass.start), first(self.pass.end));
         let random = || self.shard_picks.item(index.pixel).uniform(u64::from(2 * start + half));
         self.drawn.pick_shard(half as usize, index.path / 2 - start, end - start, random)
     }
 
+    /// Follows a branch until it ends; `mirrored` becomes the second one if it splits.
     fn follow(
         &self,
         state: &mut PathState,
@@ -69,7 +71,7 @@ impl Renderer<'_> {
         }
     }
 
-    /// Follows the path to its next interface; false if it ends.
+    /// Follows the path to its next surface; false if it ends.
     fn step(
         &self,
         state: &mut PathState,
@@ -86,34 +88,33 @@ impl Renderer<'_> {
             return false;
         };
         let point = self.scene.mesh.point(hit.triangle, hit.weights, self.normals);
-        let front = state.direction.dot(point.geometric_normal) < 0.0;
+        let side = if state.direction.dot(point.geometric_normal) < 0.0 { Side::Outside } else { Side::Inside };
         let object = self.objects[point.material as usize].as_ref();
         if object.is_some() && state.from.is_none() && state.inside.is_none() {
-            context.counts.from_outside += u64::from(front);
-            context.counts.from_inside += u64::from(!front);
+            context.counts.from_outside += u64::from(side == Side::Outside);
+            context.counts.from_inside += u64::from(side == Side::Inside);
         }
-        if !self.attenuate(state, &point, front, hit.distance) {
+        if !self.attenuate(state, point.material, side, hit.distance) {
             return false;
         }
-        match object {
-            None => {
-                self.opaque(state, &point, &hit, light, &mut context.counts);
-                false
-            }
-            Some(_) if front && state.inside.is_some() => {
-                // Straight on, a little beyond: two triangles that meet in the ray would send it to and fro.
+        let point = point.facing(-state.direction);
+        match (object, side) {
+            (None, _) => self.meet_opaque(state, &point, side, &hit, light, &mut context.counts),
+            (Some(_), Side::Outside) if state.inside.is_some() => {
+                // The path is inside an object already and goes straight on. It starts a little beyond the surface, because
+                // two triangles at the same point of the ray would send it back and forth.
                 context.counts.nested += 1;
                 state.origin = point.position + state.direction * self.clearance;
                 state.from = None;
                 true
             }
-            Some(object) if front => self.meet_from_outside(state, object, &point, mirrored, light, context),
-            Some(object) => self.meet_from_inside(state, object, &point, &mut context.counts),
+            (Some(object), Side::Outside) => self.meet_from_outside(state, object, &point, mirrored, light, context),
+            (Some(object), Side::Inside) => self.meet_from_inside(state, object, &point, &mut context.counts),
         }
     }
 
-    /// How far a ray inside a medium goes without being scattered or absorbed, by one of the three channels (method.md
-    /// 6.9). A ray that meets a surface within has survived with the mean of their transmittances.
+    /// Distance at which a ray inside a medium is scattered or absorbed, m, drawn by the extinction of one of the three
+    /// channels (docs/method.md 6.9). So the ray reaches a surface with the mean of their transmittances as its probability.
     fn free_path(&self, state: &mut PathState) -> f64 {
         let Some(object) = state.inside.and_then(|m| self.objects[m as usize].as_ref()) else {
             return f64::INFINITY;
@@ -123,25 +124,28 @@ impl Renderer<'_> {
         if sigma > 0.0 { -(1.0 - state.uniform()).ln() / sigma } else { f64::INFINITY }
     }
 
-    /// A ray that meets nothing more.
+    /// A ray that meets no further surface sees the environment.
     fn escape(&self, state: &PathState, light: &mut PathLight, counts: &mut Counts) {
         let mut seen = self.lights.distant_radiance(state.origin, state.direction);
         if let Some(object) = state.inside.and_then(|m| self.objects[m as usize].as_ref()) {
             counts.escaped_inside += 1;
+            // Only channels without extinction see through an infinite medium. The ray escaped because one of them was
+            // drawn for its free path, which has the probability of a third for each.
             let clear = object.unscattered.map(|sigma| f64::from(u8::from(sigma == 0.0)));
-            // An infinite way through the medium; the channel of an infinite free path was one of the clear ones.
             seen *= DVec3::from_array(clear) * (3.0 / clear.iter().sum::<f64>().max(1.0));
         }
         light.add(state, Layer::Emission, seen);
     }
 
-    /// Transmittance `e^{−σ̃_t s}` of the way through a medium (method.md 6.9), over the probability of having come so far:
-    /// no channel grows by more than 3. False if the path ends.
-    fn attenuate(&self, state: &mut PathState, point: &SurfacePoint, front: bool, distance: f64) -> bool {
-        // A back face met from outside: the camera is inside, or the mesh is open. No free path was chosen then.
+    /// Multiplies the throughput by the transmittance `e^{−σ̃_t s}` of a medium (docs/method.md 6.9) over the probability
+    /// that the ray came so far: no channel grows by more than a factor of 3. False if the path ends.
+    fn attenuate(&self, state: &mut PathState, material: u16, side: Side, distance: f64) -> bool {
+        // Without a known medium, a back face is met if the camera is inside or the mesh is open. Then no free path was
+        // drawn for this ray.
         let chosen = state.inside.is_some();
-        let medium = state.inside.unwrap_or(point.material);
-        let Some(object) = self.objects[medium as usize].as_ref().filter(|_| chosen || !front) else {
+        let medium = state.inside.unwrap_or(material);
+        let within = |_: &&TranslucentObject| chosen || side == Side::Inside;
+        let Some(object) = self.objects[medium as usize].as_ref().filter(within) else {
             return true;
         };
         let transmittance = DVec3::from_array(object.unscattered.map(|sigma| (-sigma * distance).exp()));
@@ -153,28 +157,35 @@ impl Renderer<'_> {
         survival > 0.0
     }
 
-    /// A Lambertian surface that may emit: the path ends here, lit directly.
-    fn opaque(
+    /// An opaque surface that may emit. A specular one sends the path on; any other is lit directly and ends the path.
+    fn meet_opaque(
         &self,
         state: &mut PathState,
         point: &SurfacePoint,
+        side: Side,
         hit: &Hit,
         light: &mut PathLight,
         counts: &mut Counts,
-    ) {
-        let front = state.direction.dot(point.geometric_normal) < 0.0;
+    ) -> bool {
         let material = &self.scene.materials[point.material as usize];
-        if material.emits() && (front || material.double_sided) {
+        if material.emits() && (side == Side::Outside || material.double_sided) {
             light.add(state, Layer::Emission, material.emission);
         }
-        let facing = point.facing(-state.direction);
+        let bsdf = Surface::opaque(self.scene.color(hit.triangle, hit.weights).truncate());
+        if bsdf.is_specular() {
+            let meeting = Meeting::new(point, bsdf, side, -state.direction, counts);
+            return meeting.scatter(state, Lobe::Reflection, Layer::Specular, counts);
+        }
+        let view = View { normal: point.normal, direction: -state.direction, side };
         let xi = || [state.uniform(), state.uniform()];
-        let irradiance = all_light_at(&self.lights, self.rays, &facing, xi, &mut counts.shadow_rays);
-        light.add(state, Layer::Diffuse, self.scene.color(hit.triangle, hit.weights).truncate() / PI * irradiance);
+        let irradiance = all_light_at(&self.lights, self.rays, point, xi, &mut counts.shadow_rays);
+        // A diffuse BSDF has one value for all directions, which the irradiance of all lights is multiplied by.
+        light.add(state, Layer::Diffuse, bsdf.evaluate(&view, view.normal) * irradiance);
+        false
     }
 
-    /// Reflection with probability R, else refraction, which shows emitted and scattered light and goes on inside. The
-    /// first interface of a path does both: choosing there would be most of the noise of an image.
+    /// Reflection with probability `R`, otherwise refraction, which shows emitted and scattered light and goes on inside.
+    /// The first interface of a path does both: a choice there would be most of the noise of an image.
     fn meet_from_outside(
         &self,
         state: &mut PathState,
@@ -185,53 +196,33 @@ impl Renderer<'_> {
         context: &mut ThreadContext,
     ) -> bool {
         let counts = &mut context.counts;
-        let eta = object.medium.eta;
-        let view = -state.direction;
-        let mut normal = facing_normal(point.normal, point.geometric_normal, view, counts);
-        let transmittance = fresnel::transmittance(normal.dot(view), eta);
+        let meeting = Meeting::new(point, object.surface(), Side::Outside, -state.direction, counts);
+        let transmittance = meeting.transmittance();
         let splits = state.layer.is_none() && transmittance > 0.0;
         if !splits && state.uniform() >= transmittance {
-            self.mirror(state, normal, point, counts);
-            return true;
+            return meeting.scatter(state, Lobe::Reflection, Layer::Specular, counts);
         }
         if splits {
             if transmittance < 1.0 {
                 let mut branch = PathState { dimension: state.dimension + BRANCH, events: state.events + 1, ..*state };
                 branch.throughput *= 1.0 - transmittance;
-                self.mirror(&mut branch, normal, point, counts);
-                *mirrored = (branch.events < self.max_depth).then_some(branch);
-                counts.cut_by_depth += u64::from(mirrored.is_none());
+                let follows = meeting.scatter(&mut branch, Lobe::Reflection, Layer::Specular, counts);
+                *mirrored = (follows && branch.events < self.max_depth).then_some(branch);
+                counts.cut_by_depth += u64::from(follows && mirrored.is_none());
             }
             state.throughput *= transmittance;
             light.through = if object.is_dark() { 0.0 } else { transmittance };
         }
         let emission = self.scene.materials[point.material as usize].emission;
         light.add(state, Layer::Emission, emission);
-        self.gather(state, object, point, normal, light, context);
-        if fresnel::enter(normal, view, eta).is_none_or(|e| e.direction.dot(point.geometric_normal) >= 0.0) {
-            context.counts.geometric_normals += 1;
-            normal = point.geometric_normal;
-        }
-        let Some(entry) = fresnel::enter(normal, view, eta) else {
-            return false; // only the interpolated normal lets light through
-        };
+        self.gather(state, object, point, meeting.view.normal, light, context);
         state.inside = Some(point.material);
-        state.leave(point, entry.direction, Layer::Transmission);
-        true
+        // If only the interpolated normal lets light through, the path ends here.
+        meeting.scatter(state, Lobe::Transmission, Layer::Transmission, &mut context.counts)
     }
 
-    /// Sends the path back from the outside of a surface.
-    fn mirror(&self, state: &mut PathState, normal: DVec3, point: &SurfacePoint, counts: &mut Counts) {
-        let view = -state.direction;
-        let mut mirrored = fresnel::reflect(normal, view);
-        if mirrored.dot(point.geometric_normal) <= 0.0 {
-            counts.geometric_normals += 1;
-            mirrored = fresnel::reflect(point.geometric_normal, view);
-        }
-        state.leave(point, mirrored, Layer::Specular);
-    }
-
-    /// Reflection inside with probability R_in, else out into the scene. Nothing is gathered from inside.
+    /// Reflection inside with probability `R_in` (docs/method.md 6.9), otherwise refraction out into the scene. Nothing is
+    /// gathered from inside.
     fn meet_from_inside(
         &self,
         state: &mut PathState,
@@ -239,30 +230,16 @@ impl Renderer<'_> {
         point: &SurfacePoint,
         counts: &mut Counts,
     ) -> bool {
-        let (inward, geometric) = (-point.normal, -point.geometric_normal);
-        let view = -state.direction;
-        let normal = facing_normal(inward, geometric, view, counts);
-        let eta_out = 1.0 / object.medium.eta;
-        let transmittance = fresnel::transmittance(normal.dot(view), eta_out);
-        if state.uniform() < transmittance
-            && let Some(exit) = fresnel::enter(normal, view, eta_out)
-        {
-            state.inside = None;
-            let mut direction = exit.direction;
-            if direction.dot(geometric) >= 0.0 {
-                counts.geometric_normals += 1;
-                direction = fresnel::enter(geometric, view, eta_out).map_or(state.direction, |e| e.direction);
-            }
-            state.leave(point, direction, Layer::Transmission);
-            return true;
+        let meeting = Meeting::new(point, object.surface(), Side::Inside, -state.direction, counts);
+        if state.uniform() >= meeting.transmittance() {
+            state.inside = Some(point.material);
+            return meeting.scatter(state, Lobe::Reflection, Layer::Transmission, counts);
         }
-        state.inside = Some(point.material);
-        let mut mirrored = fresnel::reflect(normal, view);
-        if mirrored.dot(geometric) <= 0.0 {
-            counts.geometric_normals += 1;
-            mirrored = fresnel::reflect(geometric, view);
+        state.inside = None;
+        if !meeting.scatter(state, Lobe::Transmission, Layer::Transmission, counts) {
+            // Only the interpolated normal lets light through: the path goes straight on.
+            state.leave(point, state.direction, Layer::Transmission);
         }
-        state.leave(point, mirrored, Layer::Transmission);
         true
     }
 
@@ -276,15 +253,13 @@ impl Renderer<'_> {
         let view = -direction;
         match &self.objects[point.material as usize] {
             Some(object) if view.dot(point.geometric_normal) > 0.0 && !object.is_dark() => {
-                // What these rays meet is no event of a path.
-                let normal = facing_normal(point.normal, point.geometric_normal, view, &mut Counts::default());
-                fresnel::transmittance(normal.dot(view), object.medium.eta)
+                Meeting::new(&point, object.surface(), Side::Outside, view, &mut Counts::default()).transmittance()
             }
             _ => 0.0,
         }
     }
 
-    /// What the ray meets first.
+    /// Normal, position and depth of what the ray meets first.
     pub fn guide(&self, origin: DVec3, direction: DVec3) -> Guide {
         let Some(hit) = self.rays.closest(origin, direction, None) else {
             return Guide::default();
@@ -298,11 +273,52 @@ impl Renderer<'_> {
     }
 }
 
-/// The normal for cosines with `view`: the interpolated one unless it turns away where the triangle does not.
-fn facing_normal(normal: DVec3, geometric: DVec3, view: DVec3, counts: &mut Counts) -> DVec3 {
-    if normal.dot(view) > 0.0 {
-        return normal;
+/// A surface point where a path meets a BSDF.
+struct Meeting<'a> {
+    /// Its normals are on the side that the path comes from.
+    point: &'a SurfacePoint,
+    bsdf: Surface,
+    view: View,
+}
+
+impl Meeting<'_> {
+    /// The view is about the interpolated normal, unless that turns away from `direction` where the triangle does not.
+    fn new<'a>(
+        point: &'a SurfacePoint,
+        bsdf: Surface,
+        side: Side,
+        direction: DVec3,
+        counts: &mut Counts,
+    ) -> Meeting<'a> {
+        let interpolated = point.normal.dot(direction) > 0.0;
+        counts.geometric_normals += u64::from(!interpolated);
+        let normal = if interpolated { point.normal } else { point.geometric_normal };
+        Meeting { point, bsdf, view: View { normal, direction, side } }
     }
-    counts.geometric_normals += 1;
-    geometric
+
+    fn transmittance(&self) -> f64 {
+        self.bsdf.transmittance(&self.view)
+    }
+
+    /// Sends the path on in a direction of one lobe, and files its light under `event`. The direction is sampled about the
+    /// geometric normal if the interpolated one puts it on the wrong side of the triangle. False if there is none.
+    fn scatter(&self, state: &mut PathState, lobe: Lobe, event: Layer, counts: &mut Counts) -> bool {
+        let geometric = self.point.geometric_normal;
+        let mut sample = |view: &View| self.bsdf.sample(view, lobe, || [state.uniform(), state.uniform()]);
+        let mut sampled = sample(&self.view);
+        let on_wrong_side = |direction: DVec3| match lobe {
+            Lobe::Reflection => direction.dot(geometric) <= 0.0,
+            Lobe::Transmission => direction.dot(geometric) >= 0.0,
+        };
+        if sampled.is_none_or(|sample| on_wrong_side(sample.direction)) {
+            counts.geometric_normals += 1;
+            sampled = sample(&View { normal: geometric, ..self.view });
+        }
+        let Some(sample) = sampled else {
+            return false;
+        };
+        state.throughput *= sample.weight;
+        state.leave(self.point, sample.direction, event);
+        true
+    }
 }

@@ -1,24 +1,24 @@
-//! The light of one camera path, by the layers of the image.
+//! The light of one camera path, by layers of the image.
 
 use scene::DVec3;
 
-/// What a path's light is filed under: its first event.
+/// The layer of a path's light is its first event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(usize)]
 pub enum Layer {
     /// Light sources and the environment, seen directly or through the first interface.
     Emission = 0,
-    /// Through the first interface and out again without being scattered.
+    /// Light that crosses the first interface and leaves again without being scattered.
     Transmission = 1,
-    /// Scattered below the first surface.
+    /// Light that is scattered below the first interface.
     Subsurface = 2,
-    /// Mirrored by the first interface.
+    /// Light that the first interface mirrors.
     Specular = 3,
-    /// Reflected by an opaque surface.
+    /// Light that an opaque surface reflects.
     Diffuse = 4,
 }
 
-/// Their names in the channels of an image.
+/// The names of the layers in the channels of an image.
 pub const LAYERS: [&str; 5] = ["emission", "transmission", "subsurface", "specular", "diffuse"];
 
 /// Light of one path, by layer, W/(m² sr).
@@ -28,13 +28,14 @@ pub type Layers = [DVec3; 5];
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PathLight {
     pub layers: Layers,
-    /// All of it as each half of the cloud alone has it; of a half that the path did not gather from, what is left.
+    /// The sum of the layers as each half of the cloud alone estimates it; without scattered light for a half that the path
+    /// did not gather from.
     pub halves: [DVec3; 2],
-    /// Which share of the light below the first interface gets through to the camera; 0 without such an interface.
+    /// Transmittance of the first interface for scattered light; 0 without such an interface.
     pub through: f64,
 }
 
-/// What the ray through the pixel's centre meets first; zero where it meets nothing.
+/// The first surface that the ray through a pixel's center meets; zero where there is none.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Guide {
     pub normal: DVec3,

@@ -1,4 +1,4 @@
-//! What a camera path carries with it, and what its thread keeps for it.
+//! The state of one camera path, and the memory of its thread.
 
 use crate::{
     counts::Counts,
@@ -8,24 +8,24 @@ use crate::{
 };
 use scene::{DVec3, SurfacePoint, random::Item};
 
-/// Which path.
+/// The index of a path.
 #[derive(Clone, Copy, Debug)]
 pub struct PathIndex {
     pub pixel: u64,
-    /// Its number in the pixel. Even ones gather from the first half of the cloud, odd ones from the second.
+    /// Index in the pixel. Even paths gather from the first half of the cloud, odd ones from the second.
     pub path: u32,
 }
 
-/// What one thread counts and keeps between paths.
+/// Counts and memory of one thread.
 #[derive(Clone, Debug, Default)]
 pub struct ThreadContext {
     pub counts: Counts,
-    /// One for each material.
+    /// Of each material.
     scratch: Vec<Scratch>,
 }
 
 impl ThreadContext {
-    /// For a scene of so many materials.
+    /// The context for a scene with this number of materials.
     pub fn new(materials: usize) -> ThreadContext {
         ThreadContext { counts: Counts::default(), scratch: vec![Scratch::default(); materials] }
     }
@@ -35,7 +35,7 @@ impl ThreadContext {
     }
 }
 
-/// A path on its way.
+/// A path between two surfaces.
 #[derive(Clone, Copy)]
 pub struct PathState {
     pub origin: DVec3,
@@ -45,15 +45,17 @@ pub struct PathState {
     /// The material whose medium the ray is in.
     pub inside: Option<u16>,
     pub throughput: DVec3,
-    /// The layer of all further light, once there was an event.
+    /// The layer of all further light, after the first event.
     pub layer: Option<Layer>,
     pub events: u32,
-    /// Which half of the cloud it gathers from, if it is one.
+    /// The half of the cloud that it gathers from, if paths alternate between the halves.
     pub half: usize,
-    /// Which of several clouds, if it is one.
+    /// The shard that it gathers from, if paths alternate between the shards.
     pub turn: ShardPick,
+    /// Random numbers of the path, and the dimension of the next one.
     pub random: Item,
     pub dimension: u64,
+    /// Random numbers of its gathers.
     pub key: Item,
 }
 
@@ -64,7 +66,7 @@ impl PathState {
         self.random.uniform(self.dimension - 1)
     }
 
-    /// Sends the path on from a point of the surface, and files its light under this event if it is its first.
+    /// Sends the path on from a surface point. The layer of its light becomes `event` if this is its first event.
     pub fn leave(&mut self, point: &SurfacePoint, direction: DVec3, event: Layer) {
         self.origin = point.position;
         self.direction = direction;
@@ -74,12 +76,12 @@ impl PathState {
 }
 
 impl PathLight {
-    /// Files light under the path's layer, or under `layer` if nothing happened to it yet.
+    /// Adds light to the path's layer, or to `layer` before its first event.
     pub fn add(&mut self, state: &PathState, layer: Layer, radiance: DVec3) {
         self.add_halves(state, layer, radiance, [radiance; 2]);
     }
 
-    /// The same of light that the halves of the cloud know each in its own way.
+    /// The same for light of which each half of the cloud has an estimate of its own.
     pub fn add_halves(&mut self, state: &PathState, layer: Layer, radiance: DVec3, halves: [DVec3; 2]) {
         self.layers[state.layer.unwrap_or(layer) as usize] += state.throughput * radiance;
         self.halves.iter_mut().zip(halves).for_each(|(sum, half)| *sum += state.throughput * half);

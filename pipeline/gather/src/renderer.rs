@@ -1,28 +1,29 @@
-//! What all camera paths of an image share: the scene, and the translucent objects with their media and samples.
+//! The data that all camera paths of an image share: the scene, and translucent objects with their media and samples.
 
 use crate::{estimator::Estimator, shards::DrawnCounts};
+use bsdf::Surface;
 use bssrdf::Medium;
 use scene::{Camera, NormalKind, Rays, Scene, light::LightTree, random::Stream};
 use std::ops::Range;
 use sums::Summation;
 
-/// Everything a path needs; shared by all threads.
+/// The data of an image, shared by all threads.
 pub struct Renderer<'a> {
     pub scene: &'a Scene,
     pub rays: &'a Rays<'a>,
     pub lights: LightTree<'a>,
     pub camera: &'a Camera,
-    /// One entry for each material; none for opaque ones.
+    /// Of each material; none for opaque ones.
     pub objects: Vec<Option<TranslucentObject<'a>>>,
     pub normals: NormalKind,
     pub estimator: Estimator,
     /// Samples of each cloud, the unlit ones included.
     pub drawn: DrawnCounts,
     pub paths_per_pixel: u32,
-    /// Paths of each pixel that are added at once.
+    /// Paths of each pixel that the current pass adds.
     pub pass: Range<u32>,
     pub max_depth: u32,
-    /// How far beyond a surface a ray goes on that passes it straight, m.
+    /// Distance beyond a surface at which a ray continues that crosses it straight, m.
     pub clearance: f64,
     pub paths: Stream,
     pub gathers: Stream,
@@ -32,13 +33,18 @@ pub struct Renderer<'a> {
 /// A translucent material with its medium and its samples.
 pub struct TranslucentObject<'a> {
     pub medium: Medium,
-    /// `σ̃_t` of light that is not scattered, 1/m.
+    /// Extinction `σ̃_t` of unscattered light, 1/m (docs/method.md 5.11).
     pub unscattered: [f64; 3],
     pub summation: Summation<'a>,
 }
 
 impl TranslucentObject<'_> {
-    /// Nothing leaves it scattered.
+    /// What happens to light at its surface.
+    pub fn surface(&self) -> Surface {
+        Surface::dielectric(self.medium.eta)
+    }
+
+    /// True if no scattered light leaves it.
     pub fn is_dark(&self) -> bool {
         self.medium.is_clear() || self.summation.is_empty()
     }

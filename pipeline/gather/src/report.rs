@@ -1,64 +1,57 @@
 //! What an image and its statistics say of how they were made.
 
-use crate::arguments::Arguments;
+use crate::{image_jobs::ImageJob, inputs::Inputs, settings::Request};
 use bssrdf::Medium;
-use formats::{
-    Attribute,
-    cloud::{Cloud, hex},
-};
+use cli::Seconds;
+use formats::{Attribute, cloud::hex};
 use gather::{Rendered, Settings, film, shards};
-use scene::{Camera, MeshDefects};
 use std::collections::BTreeMap;
 
-/// Facts about one image.
+/// A rendered image, and the facts that its files state.
 pub struct Facts<'a> {
-    pub settings: &'a Settings,
-    pub clouds: &'a [Cloud],
-    pub media: &'a [Medium],
-    pub camera: &'a Camera,
-    /// The argument that chose it.
-    pub camera_argument: &'a str,
-    /// How far an orbit has turned it.
-    pub turned_degrees: f64,
-    /// What was left out of the scene or looks wrong.
-    pub warnings: &'a [String],
-    pub defects: MeshDefects,
+    pub request: &'a Request,
+    pub inputs: &'a Inputs,
+    pub job: &'a ImageJob,
+    /// The settings of the job, with the number of paths that were rendered.
+    pub settings: Settings,
+    pub rendered: &'a Rendered,
 }
 
-fn filter_name(settings: &Settings) -> &'static str {
-    match settings.filter {
-        gather::Filter::Box => "box",
-        gather::Filter::Point => "point",
+impl<'a> Facts<'a> {
+    pub fn new(request: &'a Request, inputs: &'a Inputs, job: &'a ImageJob, rendered: &'a Rendered) -> Facts<'a> {
+        let settings = Settings { paths_per_pixel: rendered.paths_per_pixel, ..job.settings.clone() };
+        Facts { request, inputs, job, settings, rendered }
     }
 }
 
 impl Facts<'_> {
-    /// Attributes of the image's header. Nothing in them depends on the machine, the threads or the time, unless
-    /// SOURCE_DATE_EPOCH gives one.
-    pub fn attributes(&self, arguments: &Arguments) -> BTreeMap<String, Attribute> {
+    /// Attributes of the image's header. None depends on the machine or the threads, and only `capDate` on the time, by
+    /// SOURCE_DATE_EPOCH.
+    pub fn attributes(&self) -> BTreeMap<String, Attribute> {
+        let clouds = self.inputs.clouds();
         let mut all = BTreeMap::new();
         let mut put = |name: &str, value: Attribute| {
             all.insert(name.to_owned(), value);
         };
         let text = |s: &str| Attribute::Text(s.to_owned());
         let version = env!("CARGO_PKG_VERSION");
-        put("worldToCamera", Attribute::Matrix(self.camera.world_to_camera()));
+        put("worldToCamera", Attribute::Matrix(self.job.camera.world_to_camera()));
         put("comments", text("W/(m^2 sr), scene-linear; lengths in m"));
         put("software", Attribute::Text(format!("gather {version}")));
         // Rec. 709 primaries and D65.
         put("chromaticities", Attribute::Chromaticities([0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329]));
         put("samplesPerPixel", Attribute::Int(self.settings.paths_per_pixel as i32));
-        if let Some(date) = capture_date().filter(|_| !arguments.no_timings) {
+        if let Some(date) = capture_date().filter(|_| self.request.outputs.timings) {
             put("capDate", Attribute::Text(date));
             put("utcOffset", Attribute::Float(0.0));
         }
-        let first = self.clouds[0].meta();
-        put("pcsss/cloud", Attribute::Text(hex(&shards::identity(self.clouds))));
+        let first = clouds[0].meta();
+        put("pcsss/cloud", Attribute::Text(hex(&shards::identity(clouds))));
         put("pcsss/scene", Attribute::Text(hex(&first.geometry)));
-        put("pcsss/samplesDrawn", Attribute::Double(shards::drawn(self.clouds) as f64));
-        match self.clouds {
+        put("pcsss/samplesDrawn", Attribute::Double(shards::drawn(clouds) as f64));
+        match clouds {
             [_] => put("pcsss/cloudSeed", Attribute::Text(first.options.seed.to_string())),
-            _ => put("pcsss/clouds", Attribute::Texts(shards::describe(self.clouds))),
+            _ => put("pcsss/clouds", Attribute::Texts(shards::describe(clouds))),
         }
         put("pcsss/metresPerUnit", Attribute::Double(first.options.metres_per_unit));
         put("pcsss/lightUnit", Attribute::Text(first.options.light_unit.to_string()));
@@ -68,21 +61,20 @@ impl Facts<'_> {
         put("pcsss/bssrdf", text(self.settings.model.name()));
         put("pcsss/estimator", Attribute::Text(self.settings.estimator.to_string()));
         put("pcsss/version", text(version));
-        put("pcsss/arguments", Attribute::Text(self.arguments(arguments)));
+        put("pcsss/arguments", Attribute::Text(self.arguments()));
         put("pcsss/varianceCovers", text(self.covers()));
-        let media = shards::materials(self.clouds).iter().zip(self.media);
+        let media = shards::materials(clouds).iter().zip(&self.inputs.media);
         put("pcsss/media", Attribute::Texts(media.map(|(m, medium)| describe(&m.name, medium)).collect()));
-        if !self.warnings.is_empty() {
-            put("pcsss/warnings", Attribute::Texts(self.warnings.to_vec()));
+        if !self.inputs.scene.warnings.is_empty() {
+            put("pcsss/warnings", Attribute::Texts(self.inputs.scene.warnings.clone()));
         }
         all
     }
 
-    /// The arguments that change values, in one order; not where files lie, nor threads, nor of what part of the image.
-    fn arguments(&self, arguments: &Arguments) -> String {
-        let s = self.settings;
-        let camera = self.camera_argument;
-        let turned = match self.turned_degrees {
+    /// The arguments that change values, in a fixed order; neither paths of files, nor threads, nor the crop.
+    fn arguments(&self) -> String {
+        let (s, camera) = (&self.settings, &self.job.argument);
+        let turned = match self.job.degrees {
             0.0 => String::new(),
             degrees => format!(" turned by {degrees} degrees"),
         };
@@ -94,20 +86,21 @@ impl Facts<'_> {
             s.model.name(),
             s.estimator,
             s.paths_per_pixel,
-            filter_name(s),
+            s.filter.name(),
             s.max_depth,
             s.seed,
-            self.clouds[0].meta().options.environment,
-            arguments.scene_args.normals.name(),
+            self.inputs.scene.environment.identity(),
+            self.request.scene.normals,
         )
     }
 
     /// Statistics as JSON.
-    pub fn statistics(&self, rendered: &Rendered, seconds: Option<&Seconds>, threads: usize) -> Vec<u8> {
+    pub fn statistics(&self, seconds: &Seconds) -> Vec<u8> {
+        let (rendered, clouds) = (self.rendered, self.inputs.clouds());
         let counts = &rendered.counts;
         let mut value = serde_json::json!({
             "schema": 1,
-            "threads": threads,
+            "threads": self.request.common.thread_count(),
             "pixels": rendered.pixels.len(),
             "paths": counts.paths,
             "gathers": counts.gathers,
@@ -126,18 +119,18 @@ impl Facts<'_> {
             "estimated_relative_error": film::relative_error(&rendered.pixels),
             "estimated_relative_error_covers": self.covers(),
             "negative_pixels": film::negative_count(&rendered.pixels),
-            "mesh": self.defects.counts().into_iter().collect::<BTreeMap<_, _>>(),
+            "mesh": self.inputs.defects.counts().into_iter().collect::<BTreeMap<_, _>>(),
             "non_finite": rendered.non_finite_count,
             "non_finite_pixels": rendered.non_finite.iter().map(|p| self.pixel(*p)).collect::<Vec<_>>(),
-            "cloud": hex(&shards::identity(self.clouds)),
-            "clouds": self.clouds.len(),
-            "samples_drawn": shards::drawn(self.clouds),
+            "cloud": hex(&shards::identity(clouds)),
+            "clouds": clouds.len(),
+            "samples_drawn": shards::drawn(clouds),
             "estimator": self.settings.estimator.to_string(),
             "bssrdf": self.settings.model.name(),
         });
-        if let Some(seconds) = seconds {
-            let rate = counts.evaluations as f64 / seconds.of("render").max(1e-9);
-            value["seconds"] = seconds.0.iter().map(|(k, v)| ((*k).to_owned(), *v)).collect();
+        if self.request.outputs.timings {
+            let rate = seconds.of("render").map(|s| counts.evaluations as f64 / s.max(1e-9));
+            value["seconds"] = serde_json::json!(seconds.table());
             value["bssrdf_evaluations_per_second"] = rate.into();
             value["peak_memory_bytes"] = cli::peak_memory_bytes().into();
         }
@@ -146,7 +139,7 @@ impl Facts<'_> {
 
     /// What variance and estimated error cover.
     pub fn covers(&self) -> &'static str {
-        film::covers(self.settings.paths_per_pixel, shards::DrawnCounts::of(self.clouds).half(1))
+        film::covers(self.settings.paths_per_pixel, shards::DrawnCounts::of(self.inputs.clouds()).half(1))
     }
 
     /// Column and row of a pixel in the whole image.
@@ -155,16 +148,7 @@ impl Facts<'_> {
     }
 }
 
-/// Seconds per step.
-#[derive(Default)]
-pub struct Seconds(pub Vec<(&'static str, f64)>);
-
-impl Seconds {
-    pub fn of(&self, step: &str) -> f64 {
-        self.0.iter().find(|(name, _)| *name == step).map_or(0.0, |(_, s)| *s)
-    }
-}
-
+/// A medium and its material in one line.
 fn describe(material: &str, medium: &Medium) -> String {
     let three = |v: [f64; 3]| format!("{},{},{}", v[0], v[1], v[2]);
     format!(

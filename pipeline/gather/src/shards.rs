@@ -13,18 +13,17 @@ use std::path::PathBuf;
 /// Why clouds cannot be gathered together.
 #[derive(Debug, thiserror::Error)]
 pub enum JoinError {
-    #[error("{} and {}: clouds of different scenes: {differs}; sample them again, alike but for --shard", one.display(), two.display())]
+    #[error("{} and {}: they do not belong together: {differs} differ; sample them again, as shards of one cloud", one.display(), two.display())]
     Differ { one: PathBuf, two: PathBuf, differs: &'static str },
     #[error(
         "{} and {}: both are shard {shard} of seed {seed}, samples of the same random numbers; leave one out, or sample it \
-         again with another --shard or --seed",
+         again as another shard or with another seed",
         one.display(), two.display()
     )]
     Same { one: PathBuf, two: PathBuf, shard: String, seed: u64 },
 }
 
-/// Clouds that were opened, in an order that does not depend on that of the files; refuses those that do not belong
-/// together.
+/// Sorts open clouds into an order that does not depend on that of the files; refuses those that do not belong together.
 pub fn join(mut files: Vec<(PathBuf, Cloud)>) -> Result<(Vec<PathBuf>, Vec<Cloud>), JoinError> {
     files.sort_by_key(|(_, cloud)| key(cloud.meta()));
     for pair in files.windows(2) {
@@ -41,44 +40,46 @@ pub fn join(mut files: Vec<(PathBuf, Cloud)>) -> Result<(Vec<PathBuf>, Vec<Cloud
     Ok(files.into_iter().unzip())
 }
 
-/// What tells the random numbers of one cloud from those of another.
+/// The key of a cloud's random numbers.
 fn key(meta: &Meta) -> (u64, u32, u32) {
     (meta.options.seed, meta.options.shard.count, meta.options.shard.index)
 }
 
-/// What keeps samples from having one mean. How they are spread, and over which triangles, does not.
+/// A difference that gives the samples of two clouds different means. How the samples are spread, and over which triangles,
+/// makes none.
 fn difference(one: &Meta, two: &Meta) -> Option<&'static str> {
     let names = |meta: &Meta| meta.materials.iter().map(|m| (m.index, m.name.clone())).collect::<Vec<_>>();
     let (a, b) = (&one.options, &two.options);
     let differences = [
-        (a.metres_per_unit != b.metres_per_unit, "--metres-per-unit"),
-        (a.light_unit != b.light_unit, "--light-unit"),
-        (a.emission_unit != b.emission_unit, "--emission-unit"),
-        (one.geometry != two.geometry, "their meshes or materials differ"),
-        (names(one) != names(two), "their translucent materials differ"),
-        (one.lights != two.lights, "their lights differ"),
-        (a.environment != b.environment, "--environment"),
-        (a.normals != b.normals, "--normals"),
+        (a.metres_per_unit != b.metres_per_unit, "their metres per unit"),
+        (a.light_unit != b.light_unit, "their units of lights"),
+        (a.emission_unit != b.emission_unit, "their units of emission"),
+        (one.geometry != two.geometry, "their meshes or materials"),
+        (names(one) != names(two), "their translucent materials"),
+        (one.lights != two.lights, "their lights"),
+        (a.environment != b.environment, "their environments"),
+        (a.normals != b.normals, "their normals"),
     ];
     differences.into_iter().find(|(differ, _)| *differ).map(|(_, what)| what)
 }
 
-/// `K`: samples drawn for all clouds, the unlit ones included.
+/// `K`: the number of samples drawn for all clouds, the unlit ones included.
 pub fn drawn(clouds: &[Cloud]) -> u64 {
     clouds.iter().map(|cloud| cloud.meta().samples_drawn).sum()
 }
 
-/// The sampled materials, which all clouds share; where their samples lie is known of the first cloud.
+/// The sampled materials, which all clouds share; the groups of samples are those of the first cloud.
 pub fn materials(clouds: &[Cloud]) -> &[SampledMaterial] {
     clouds.first().map_or(&[], |cloud| &cloud.meta().materials)
 }
 
-/// Stored samples of a sampled material in all clouds.
+/// The number of stored samples of a sampled material in all clouds.
 pub fn count(clouds: &[Cloud], slot: usize) -> u64 {
     clouds.iter().map(|cloud| cloud.meta().materials[slot].count()).sum()
 }
 
-/// Identity of everything that the samples depend on: the cloud's own, or the BLAKE3 digest of those of all in order.
+/// Identity of everything that the samples depend on: that of the cloud, or the BLAKE3 digest of those of all clouds in
+/// order.
 pub fn identity(clouds: &[Cloud]) -> [u8; 32] {
     match clouds {
         [cloud] => cloud.meta().content,

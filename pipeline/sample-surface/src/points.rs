@@ -53,7 +53,7 @@ impl<'a> Points<'a> {
         let materials = &sampled.meta.materials;
         let summations: Vec<Summation> = materials.iter().map(|material| self.summation(sampled, material)).collect();
         let at = |scratch: &mut Scratch, (index, sample): (usize, &SamplePoint)| {
-            let point = self.scene.mesh.point(sample.triangle, sample.weights, self.settings.normals);
+            let point = self.scene.mesh.point(sample.triangle, sample.weights, self.settings.normals());
             let key = 2 * (stream * self.points.len() as u64 + index as u64) + half as u64;
             let exit = Exit::new(point.position, point.normal, key);
             let slot = materials.iter().position(|material| material.index == point.material);

@@ -1,4 +1,4 @@
-//! What the models are worth, against random walks: `accuracy.md` and its pictures.
+//! Errors of the models against random walks: `accuracy.md` and its pictures.
 
 mod picture;
 mod sphere;

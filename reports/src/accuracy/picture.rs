@@ -9,16 +9,16 @@ use test_support::{
     pipeline::{Lit, MODELS, by_area, cloud, orthographic},
 };
 
-/// Photons of each channel.
+/// Number of photons of each channel.
 const PHOTONS: u64 = 6_000_000;
 
-/// Samples of the cloud.
+/// Number of samples of the cloud.
 const SAMPLES: u64 = 400_000;
 
 /// The medium of the pictures.
 pub const MEDIUM: &str = "skimmilk";
 
-/// How one model's sphere compares.
+/// Comparison of one model's sphere with brute force.
 pub struct Ratios {
     pub model: Model,
     /// Mean radiance over that of brute force, on the lit and on the dark side, per channel.
@@ -49,7 +49,7 @@ pub fn spheres(folder: &Path) -> Result<Vec<Ratios>, Box<dyn Error>> {
     Ok(all)
 }
 
-/// Mean ratios where the normal turns to the light by more than 30 degrees, or away by more than 30.
+/// Mean ratios over the points whose normal turns to the light by more than 30 degrees, or away by more than 30.
 fn ratios(setting: &Setting, model: Model, exact: &[Plane; 3], shown: &[Plane; 3]) -> Ratios {
     let over = |accept: &dyn Fn(f64) -> bool| {
         let inside = |k: usize| setting.pixel_normal(k).is_some_and(|n| accept(n.dot(setting.to_light)));
@@ -62,7 +62,8 @@ fn ratios(setting: &Setting, model: Model, exact: &[Plane; 3], shown: &[Plane; 3
 /// Enlargement of a pixel.
 const ZOOM: usize = 4;
 
-/// Brute force, model, and their relative difference (red: the model is brighter, blue: darker; full color at 50 %).
+/// Three panels: brute force, model, and their relative difference (red: the model is brighter, blue: darker; full
+/// color at 50 %).
 fn panels(exact: &[Plane; 3], shown: &[Plane; 3]) -> Result<Vec<u8>, png::EncodingError> {
     let tone = |x: f64| (255.0 * (1.0 - (-1.5 * x.max(0.0)).exp()).powf(1.0 / 2.2)).round() as u8;
     let picture = |planes: &[Plane; 3], k: usize| [0, 1, 2].map(|c| tone(planes[c][k]));

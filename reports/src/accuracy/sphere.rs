@@ -12,11 +12,12 @@ use test_support::{
     random::Random,
 };
 
-/// Pixels of a side; the sphere fills all of them.
+/// Side of the image, pixels; the sphere fills it.
 pub const SIDE: usize = 48;
 
-/// Exit directions count that lie this close to the cone about the light through the viewer, rad. Turned about the
-/// light, all of the cone looks like the viewer: sphere and light have that symmetry.
+/// Half width of the band of exit directions that count, about the cone around the light through the viewer, rad. By
+/// the symmetry of sphere and light, every direction of that cone is equivalent to the viewer's after a rotation
+/// about the light.
 const BAND: f64 = 0.03;
 
 /// The scene: radius in m, unit direction towards the light, irradiance across it in W/m², orthographic camera.
@@ -41,7 +42,7 @@ impl Setting {
         DVec2::new(p.dot(self.camera.right), -p.dot(self.camera.up))
     }
 
-    /// The unit normal seen at image coordinates in [−1, 1]; none beside the sphere.
+    /// The unit normal at image coordinates in [−1, 1]; none beside the sphere.
     fn normal(&self, q: DVec2) -> Option<DVec3> {
         let depth = 1.0 - q.length_squared();
         (depth > 0.0).then(|| q.x * self.camera.right - q.y * self.camera.up + depth.sqrt() * self.to_viewer())
@@ -53,7 +54,8 @@ impl Setting {
         self.normal(centre * (2.0 / SIDE as f64) - DVec2::ONE)
     }
 
-    /// The two azimuths about the light (by the mirror symmetry) at which an exit looks as the viewer sees it.
+    /// The exit point turned about the light, to the two azimuths (by the mirror symmetry) at which its direction is
+    /// the viewer's.
     fn turned(&self, point: DVec3, direction: DVec3) -> [DVec3; 2] {
         let z = self.to_light;
         let flat = |v: DVec3| (v - v.dot(z) * z).normalize_or_zero();
@@ -67,7 +69,7 @@ impl Setting {
     }
 }
 
-/// Follows `photons` of light through the sphere, one channel; light that was never scattered does not count.
+/// Follows `photons` through the sphere, one channel; light that was never scattered does not count.
 pub fn brute_force(setting: &Setting, medium: &Medium, channel: usize, photons: u64, seed: u64) -> Plane {
     const PORTION: u64 = 20_000;
     let portion = |index: u64| {
@@ -110,7 +112,7 @@ fn record(setting: &Setting, point: DVec3, direction: DVec3, counts: &mut [u32])
     }
 }
 
-/// Where (on the unit sphere) and into which direction a photon leaves after scattering; lengths in radii.
+/// The point (on the unit sphere) and direction in which a photon leaves after scattering; lengths in radii.
 fn exit(setting: &Setting, medium: &Medium, channel: usize, random: &mut Random) -> Option<(DVec3, DVec3)> {
     let c = &medium.channels[channel];
     let albedo = c.sigma_s / c.extinction();

@@ -9,7 +9,7 @@ use test_support::{
     walk::{Balance, Matter, chandrasekhar, slab},
 };
 
-/// Walks of each table entry.
+/// Number of walks for each table entry.
 const WALKS: u64 = 1_000_000;
 
 const ALBEDOS: [f64; 12] = [0.02, 0.1, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 0.999, 1.0];
@@ -35,31 +35,31 @@ pub fn document(spheres: &[Ratios]) -> Result<String, Error> {
     Ok(text)
 }
 
-const INTRODUCTION: &str = "# What the models are worth
+const INTRODUCTION: &str = "# Errors of the models
 
-Made by `make accuracy`; do not edit. Everything here is about the published models themselves: the point cloud sums them
-without bias, so an image converges to what its model says, right or wrong. The reference is a random walk in the medium
-behind the same smooth boundary, which knows no diffusion.
+Made by `make accuracy`; do not edit. These are errors of the published models themselves: the point cloud sums a model
+without bias, so an image converges to the prediction of its model, right or wrong. The reference is a random walk in the
+medium behind the same smooth boundary, without the diffusion approximation.
 
 **Read this before you choose.** All figures are reflectances of a half-space under normal incidence.
 
-* The *directional dipole* alone shows where the light comes from, and is too bright everywhere: by a quarter at high
-  albedo, twice below 0.8, and by orders of magnitude where most light is absorbed.
-* The *better dipole* is within 5 per cent above a reduced albedo of 0.98 and too dark below 0.95, the more so the more is
-  absorbed.
+* The *directional dipole* is the only one that depends on the direction of the light. It is too bright everywhere: by a
+  quarter at high albedo, by a factor of two below 0.8, and by orders of magnitude where most light is absorbed.
+* The *better dipole* is within 5 per cent above a reduced albedo of 0.98 and too dark below 0.95, increasingly with
+  absorption.
 * The *standard dipole* is within 11 per cent for index 1.3 at any albedo; for 1.5 it is 10 per cent too dark at high albedo
   and up to half too bright at low.
-* None of them knows how thick an object is: slabs thinner than two reduced mean free paths let far too much light through,
-  thick ones too little, and the dark side of a round thing is too dark.
+* None of them accounts for the thickness of an object: slabs thinner than two reduced mean free paths transmit far too much
+  light, thick ones too little, and the dark side of a round object is too dark.
 
-`gather` says when the reflectance of the chosen model is off by more than ten per cent for the chosen medium.
+`gather` warns when the reflectance of the chosen model is off by more than ten per cent for the chosen medium.
 
 ";
 
 fn checks(text: &mut String) -> Result<(), Error> {
-    writeln!(text, "## The walk itself\n")?;
+    writeln!(text, "## Test of the random walk\n")?;
     writeln!(text, "A half-space of isotropic scatterers without a boundary reflects `1 - H(mu) sqrt(1 - albedo)`")?;
-    writeln!(text, "(Chandrasekhar 1950). Differences in standard errors:\n")?;
+    writeln!(text, "(Chandrasekhar 1950). Differences are in standard errors:\n")?;
     writeln!(text, "| albedo | angle | exact | walk | difference |\n|---|---|---|---|---|")?;
     for (k, (albedo, angle)) in [(0.5, 0.0f64), (0.9, 0.0), (0.9, 60.0), (0.99, 30.0)].into_iter().enumerate() {
         let cosine = angle.to_radians().cos();
@@ -77,15 +77,15 @@ fn reflectances(text: &mut String, eta: f64) -> Result<(), Error> {
     writeln!(text, "## Half-space, index {eta}\n")?;
     writeln!(
         text,
-        "Share of the light that comes back scattered; in brackets, by how much a model differs. The walk's"
+        "Share of the light that is scattered back; in brackets, the relative difference of a model. The standard"
     )?;
-    writeln!(text, "standard error is below 0.0005; at albedo 1 all that enters comes back.\n")?;
+    writeln!(text, "error of the walk is below 0.0005; at albedo 1 all light that enters comes back.\n")?;
     writeln!(text, "| reduced albedo | angle | walk | directional | better | standard |\n|---|---|---|---|---|---|")?;
     for (i, albedo) in ALBEDOS.into_iter().enumerate() {
         for (j, angle) in ANGLES.into_iter().enumerate() {
             let cosine = angle.to_radians().cos();
             let seed = 1000 + (eta * 10.0) as u64 * 100 + (i * ANGLES.len() + j) as u64;
-            // Without absorption all that enters leaves again, after any number of steps.
+            // Without absorption all light that enters leaves again, after any number of steps.
             let walk = match albedo {
                 1.0 => fresnel::transmittance(cosine, eta),
                 _ => half_space(albedo, 0.0, eta, cosine, seed).reflected.mean,
@@ -104,7 +104,10 @@ fn reflectances(text: &mut String, eta: f64) -> Result<(), Error> {
 
 fn similarity(text: &mut String) -> Result<(), Error> {
     writeln!(text, "## Forward scattering\n")?;
-    writeln!(text, "The models know `g` only by the reduced coefficients. Walks of the same reduced albedo, normal")?;
+    writeln!(
+        text,
+        "The models depend on `g` only through the reduced coefficients. Walks of the same reduced albedo, normal"
+    )?;
     writeln!(text, "incidence, index 1.3:\n")?;
     writeln!(text, "| reduced albedo | g = 0 | g = 0.5 | g = 0.9 |\n|---|---|---|---|")?;
     for (k, reduced) in [0.5, 0.9, 0.99].into_iter().enumerate() {
@@ -122,14 +125,14 @@ fn similarity(text: &mut String) -> Result<(), Error> {
 }
 
 fn slabs(text: &mut String) -> Result<(), Error> {
-    writeln!(text, "## How thin a thing may be\n")?;
+    writeln!(text, "## Thin slabs\n")?;
     writeln!(
         text,
-        "A slab of index 1.3 under normal incidence; thickness in reduced mean free paths. The models reflect"
+        "A slab of index 1.3 under normal incidence; thickness in reduced mean free paths. The models reflect as"
     )?;
     writeln!(
         text,
-        "what a half-space does; `T` is what they let through the back when its points gather the front's.\n"
+        "much as a half-space; `T` is what they transmit when points of the back gather the samples of the front.\n"
     )?;
     writeln!(text, "| reduced albedo | thickness | walk R | walk T | T directional | T better | T standard |")?;
     writeln!(text, "|---|---|---|---|---|---|---|")?;

@@ -5,7 +5,7 @@ use crate::{
     scale::linear::Linear,
 };
 
-/// A cloud, and a call of `gather` for `views` images of it, wide as they are high or wider.
+/// The size of a cloud and of a call of `gather` for `views` images of it, each at least as wide as high.
 #[derive(Clone, Copy, Debug)]
 pub struct Size {
     pub samples: f64,
@@ -20,7 +20,7 @@ impl Size {
         (self.width * self.height * self.views) as f64
     }
 
-    /// Pixels of the middle squares of all images, which hold what is translucent.
+    /// Pixels of the middle squares of all images, which hold the translucent object.
     fn inner(&self) -> f64 {
         (self.height * self.height * self.views) as f64
     }
@@ -35,31 +35,31 @@ impl Size {
     }
 }
 
-/// One figure of a run: what it is, how it is written, and what it is made of.
+/// One cost of a run: its name, its unit, and its parts.
 pub struct Figure {
     pub name: &'static str,
     pub unit: &'static str,
-    /// Units a second, byte, ...
+    /// Divisor that turns seconds or bytes into the unit.
     pub scale: f64,
     parts: &'static [Part],
 }
 
-/// A part of a cost: its name, and how much of it a run has.
+/// A part of a cost: its name, and its amount in a run.
 pub type Part = (&'static str, fn(&Size) -> f64);
 
 const START: Part = ("start", |_| 1.0);
 const SAMPLE: Part = ("sample", |size| size.samples);
 const IMAGE: Part = ("image", |size| size.views as f64);
-/// All but the figure's own square are background.
+/// Background lies outside the middle square.
 const PIXEL: Part = ("pixel", Size::pixels);
 const PIXEL_OF_ONE: Part = ("pixel of one image", |size| (size.width * size.height) as f64);
 const INNER: Part = ("pixel of the middle square", Size::inner);
 const OUTER: Part = ("path beside the middle square", |size| (size.pixels() - size.inner()) * size.spp as f64);
-/// Pixels at edges take more rays.
+/// Silhouette pixels trace more rays.
 const EDGE: Part = ("path of a row of the middle square", |size| (size.height * size.views * size.spp) as f64);
 const PATH: Part = ("path of the middle square", Size::paths);
 const LEVEL: Part = ("such a path and doubling of K from 10k on", |size| size.paths() * (size.samples / 1e4).log2());
-/// How finely a path cuts: its own share of the accuracy is the larger the more paths a pixel has.
+/// Refinement of the cut: the more paths a pixel has, the looser the accuracy of each.
 const CUT: Part = ("such a path x (K / 10k)^(1/3) / (paths a pixel)^(3/4)", |size| {
     size.paths() * (size.samples / 1e4).cbrt() * (size.spp as f64).powf(-0.75)
 });

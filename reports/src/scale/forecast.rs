@@ -1,20 +1,20 @@
-//! What the model says of farms: how long a batch takes there, and what holds it up.
+//! Forecast for farms: how long a batch takes, and what limits it.
 
 use crate::{
     markdown::{count, table, three, time},
     scale::cost::{Model, Size},
 };
 
-/// What a farm has.
+/// The resources of a farm.
 struct Site {
     nodes: f64,
     cores: f64,
     /// Bytes of memory of a node.
     memory: f64,
-    /// Bytes a second that a node, and that the shared storage, can move.
+    /// Bytes per second to one node, and of the shared storage.
     link: f64,
     storage: f64,
-    /// Tasks that the queue starts in a second: what `make farm-test` measures.
+    /// Tasks that the queue starts per second, as measured by `make farm-test`.
     tasks: f64,
 }
 
@@ -31,18 +31,18 @@ impl Site {
     }
 }
 
-/// Views of the batch, 1920 x 1080 with 16 paths a pixel.
+/// Number of views of the batch, 1920 x 1080 with 16 paths a pixel.
 const VIEWS: f64 = 1e4;
 
 const fn frame(samples: f64, views: u64) -> Size {
     Size { samples, width: 1920, height: 1080, spp: 16, views }
 }
 
-/// One kind of batch: the samples of its cloud, and the views of one task.
+/// Kinds of batches: the samples of the cloud, and the views of one task.
 const BATCHES: [Size; 6] =
     [frame(1e6, 1), frame(1e6, 10), frame(1e8, 1), frame(1e8, 10), frame(1e10, 1), frame(1e10, 10)];
 
-/// Samples of the clouds that are spoken of.
+/// Sizes of the clouds in the table.
 const CLOUDS: [f64; 4] = [1e6, 1e8, 1e9, 1e10];
 
 /// The second half of the document.
@@ -89,12 +89,12 @@ fn clouds(model: &Model, samples: f64) -> Vec<String> {
     vec![count(samples as u64), time(whole[0]), size(whole[1]), size(whole[2]), parts.to_string(), time(wall)]
 }
 
-/// What a batch takes of everything.
+/// The demand of a batch on each resource.
 struct Batch {
     core_seconds: f64,
-    /// Of the whole farm: computing, queue, reading, writing.
+    /// Seconds of the whole farm: computing, queue, reading, writing.
     seconds: [f64; 4],
-    /// Of one task, bytes; what is mapped of the cloud included.
+    /// Memory of one task, bytes, the mapped cloud included.
     memory: f64,
     written: f64,
     read: f64,
@@ -108,7 +108,7 @@ impl Batch {
         let [processor, memory, images] = model.gather(size);
         let cloud = model.sampling(size)[2];
         let (core_seconds, written, read) = (tasks * processor, tasks * images, tasks * cloud);
-        // No task is spread over nodes, and there may be fewer tasks than nodes.
+        // A task runs on one node, and there may be fewer tasks than nodes.
         let busy = SITE.nodes.min(tasks);
         let through = |bytes: f64| (bytes / SITE.storage).max(bytes / (busy * SITE.link));
         let seconds = [core_seconds / (busy * SITE.cores), tasks / SITE.tasks, through(read), through(written)];
@@ -138,7 +138,7 @@ fn size(bytes: f64) -> String {
     }
 }
 
-/// What follows for the user; figures are the model's.
+/// Advice to the user, with figures of the model.
 fn advice(small: &Batch, large: &Batch, [view, memory, image]: [f64; 3], most: f64) -> String {
     let seconds = time(view / SITE.cores);
     format!(
@@ -185,7 +185,7 @@ mod tests {
         assert_eq!([2.5e6, 3e9, 4.56e13, 7e16].map(size), ["2.50 MB", "3.00 GB", "45.6 TB", "70.0 PB"]);
     }
 
-    /// On paper: 1000 tasks of 16 000 core seconds each.
+    /// By hand: 1000 tasks of 16 000 core seconds each.
     #[test]
     fn the_longest_of_four_binds() {
         let seconds = [1000.0, 100.0, 30.0, 80.0];

@@ -1,6 +1,6 @@
-//! Sums of several parts, each in proportion to something known, fitted to measurements.
+//! Fits of sums of several parts, each proportional to something known.
 
-/// `y = Σ coefficient x`, no coefficient negative.
+/// `y = Σ coefficient x`, with no coefficient negative.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linear {
     pub coefficients: Vec<f64>,
@@ -8,7 +8,7 @@ pub struct Linear {
 
 impl Linear {
     /// Least squares of the relative errors of the points `(x, y)`, with `y` positive, over coefficients that are not
-    /// negative; by descent along one coefficient after the other, which cannot fail.
+    /// negative, by coordinate descent, which always converges here.
     pub fn fit(points: &[(Vec<f64>, f64)]) -> Linear {
         let rows: Vec<Vec<f64>> = points.iter().map(|(x, y)| x.iter().map(|x| x / y).collect()).collect();
         let parts = rows.first().map_or(0, Vec::len);

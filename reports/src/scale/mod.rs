@@ -1,5 +1,5 @@
-//! `scale.md`: what sampling and gathering cost in processor time, memory and files, from runs of many sizes; how well
-//! that predicts runs of other sizes; and what it says of farms.
+//! `scale.md`: the cost of sampling and gathering in processor time, memory and files, from runs of many sizes; how
+//! well a model of it predicts runs of other sizes; and a forecast for farms.
 
 mod cost;
 mod forecast;
@@ -18,7 +18,7 @@ const fn size(samples: f64, [width, height]: [u64; 2], spp: u64, views: u64) -> 
     Size { samples, width, height, spp, views }
 }
 
-/// What the model is fitted to: each part of it weighs most in one of them.
+/// Runs that the model is fitted to: each part of it dominates one of them.
 const FITTED: [Size; 16] = [
     size(1e5, [16, 16], 4, 1),
     size(1e5, [16, 16], 4, 40),
@@ -38,7 +38,7 @@ const FITTED: [Size; 16] = [
     size(1e7, [128, 128], 64, 1),
 ];
 
-/// What it is held against: within the range of the others, and beyond it.
+/// Runs that the model is tested with, inside the range of the others and beyond it.
 const CHECKED: [Size; 3] = [size(2e5, [200, 150], 8, 12), size(2e6, [512, 384], 4, 1), size(2e7, [800, 450], 16, 1)];
 
 /// Measures, and returns the text of `scale.md`.
@@ -57,7 +57,7 @@ pub fn document(programs: &Path, data: &Path) -> Result<String, Error> {
     ))
 }
 
-/// What the model says beside what was measured.
+/// A table of predicted and measured costs.
 fn comparison(model: &Model, fitted: &[(Size, [f64; 6])], checked: &[(Size, [f64; 6])]) -> String {
     let error = |size: &Size, costs: &[f64; 6], k: usize| model.at(k, size) / costs[k] - 1.0;
     let mut rows = Vec::new();
@@ -75,19 +75,19 @@ fn comparison(model: &Model, fitted: &[(Size, [f64; 6])], checked: &[(Size, [f64
         errors.fold(0.0, f64::max)
     };
     let (worst, own) = (percent(all(checked)), percent(all(fitted)));
-    let verdict = format!("The worst of them is off by {worst}; of the runs that it was fitted to, by {own}.\n");
+    let verdict = format!("The largest error is {worst}; among the runs that the model was fitted to it is {own}.\n");
     format!("{}\n{verdict}", table(&["run", "what", "model", "measured", "off by"], &rows))
 }
 
 const HEAD: &str = "\
-# Past one machine
+# Sizes and farms
 
-Made by `make scale`; do not edit. `data/scenes/figure.glb` (its front view, skin1, all settings as they are by default) on \
-one thread. The figure fills most of the middle square of an image; a wide one has floor and background beside it.
+Made by `make scale`; do not edit. The scene is `data/scenes/figure.glb` (its front view, skin1, all settings at their defaults) \
+on one thread. The figure fills most of the middle square of an image; a wider image has floor and background beside it.
 
-What a run costs is the sum of these. Seconds are of one processor, user and system.
+The cost of a run is the sum of the following parts. Seconds are of one processor, user and system.
 ";
 
 const CHECK: &str = "\
-The model against runs of other sizes than those it was fitted to (K of 100k to 10M, images up to 384 x 384, 4 to 64 paths a pixel):
+The model against runs of other sizes than those that it was fitted to (K of 100k to 10M, images up to 384 x 384, 4 to 64 paths a pixel):
 ";

@@ -1,4 +1,4 @@
-//! Runs of `sample-surface` and `gather` of many sizes, and what they cost.
+//! Runs of `sample-surface` and `gather` of many sizes, and their costs.
 
 use crate::{
     error::Error,
@@ -11,10 +11,10 @@ use std::{
 };
 use tempfile::TempDir;
 
-/// Runs of one size, of which the mean is taken: ticks of the clock are 10 ms.
+/// Number of runs of one size, whose mean is taken: the clock ticks in 10 ms.
 const RUNS: usize = 3;
 
-/// The programs, the scene, and a place to work.
+/// The programs, the scene, and a working folder.
 pub struct Farm {
     sample_surface: Program,
     gather: Program,
@@ -35,7 +35,7 @@ impl Farm {
         })
     }
 
-    /// The costs of a size, in the order of `FIGURES`.
+    /// Mean costs of runs of one size, in the order of `FIGURES`.
     pub fn mean(&self, size: &Size) -> Result<[f64; 6], Error> {
         eprintln!("scale: {}", size.text());
         let mut sum = [0.0; 6];
@@ -70,7 +70,7 @@ impl Farm {
         Ok([sampling.cpu, memory(&sampling), file, gathering.cpu, memory(&gathering), images])
     }
 
-    /// A view file: one view, or a list of it as often as that.
+    /// Writes a view file: one view, or a list that repeats it.
     fn write_views(&self, path: &Path, views: u64) -> Result<(), Error> {
         let text = match views {
             1 => self.view.clone(),
@@ -79,7 +79,7 @@ impl Farm {
         fs::write(path, text).map_err(Error::file(path))
     }
 
-    /// Bytes of all images, which are removed.
+    /// Removes all images; returns their bytes.
     fn take_images(&self) -> Result<f64, Error> {
         let mut sum = 0.0;
         for entry in self.folder.path().read_dir().map_err(Error::file(self.folder.path()))? {

@@ -1,4 +1,4 @@
-//! Whether `--accuracy` keeps its word: one gather against the sum over all samples of the same cloud.
+//! Tests `--accuracy`: one gather against the exhaustive sum over the same cloud.
 
 use crate::{
     error::Error,
@@ -12,7 +12,7 @@ use crate::{
     },
 };
 
-/// Every medium and a few accuracies.
+/// Measures every medium with several accuracies.
 pub fn accuracy(harness: &mut Harness, subjects: &[Subject]) -> Result<Findings, Error> {
     let mut findings = Findings::default();
     let what = "error of a gather over --accuracy, worst";

@@ -1,4 +1,4 @@
-//! Measures what a configuration does: the two errors and the times apart, each where it is cheap to see.
+//! Measures both errors and the times of a configuration, each separately where it is cheap to measure.
 
 use crate::{
     error::Error,
@@ -12,7 +12,7 @@ use crate::{
     },
 };
 
-/// What is measured, and at which size of image.
+/// A scene, a medium and an image size to measure.
 #[derive(Clone, Copy)]
 pub struct Case<'a> {
     pub subject: &'a Subject,
@@ -20,7 +20,7 @@ pub struct Case<'a> {
     /// Width and height, pixels.
     pub side: u64,
     pub reference: &'a Reference,
-    /// How the paths' error falls: see [`Behaviour`].
+    /// Exponent of the error of the paths: see [`Behaviour`].
     pub falls: f64,
 }
 
@@ -31,7 +31,7 @@ impl Case<'_> {
     }
 }
 
-/// A kind of cloud: its error and its time, as measured and as fitted.
+/// The error and the time of a kind of cloud, as measured and as fitted.
 #[derive(Clone, Debug)]
 pub struct CloudFacts {
     pub kind: CloudKind,
@@ -42,7 +42,7 @@ pub struct CloudFacts {
     pub sampling: Line,
 }
 
-/// The same cloud seeds under both seeds of the gather.
+/// Images of several clouds, each gathered with both seeds.
 pub fn crossed(harness: &mut Harness, shot: &Shot, clouds: u64) -> Result<Vec<[Picture; 2]>, Error> {
     let mut pictures = Vec::new();
     for cloud_seed in 1..=clouds {
@@ -55,7 +55,8 @@ pub fn crossed(harness: &mut Harness, shot: &Shot, clouds: u64) -> Result<Vec<[P
     Ok(pictures)
 }
 
-/// Errors of clouds of one kind, at the full size of the image: larger pixels would average some of it away.
+/// Measures the errors of one kind of cloud at the full size of the image: larger pixels would average some of it
+/// away.
 pub fn cloud_facts(harness: &mut Harness, case: &Case, kind: CloudKind) -> Result<CloudFacts, Error> {
     let effort = harness.effort;
     let counts = effort.of(vec![2_000, 8_000], vec![100_000, 400_000, 1_600_000], vec![100_000, 400_000, 1_600_000]);
@@ -73,7 +74,7 @@ pub fn cloud_facts(harness: &mut Harness, case: &Case, kind: CloudKind) -> Resul
     Ok(CloudFacts { kind, errors, law, sampling })
 }
 
-/// How the paths' squared error falls with their number, on a small cloud.
+/// Measures how the squared error of the paths falls with their number, on a small cloud.
 pub fn falls(harness: &mut Harness, case: &Case) -> Result<f64, Error> {
     let samples = harness.effort.of(1_000, 30_000, 30_000);
     let mut points = Vec::new();
@@ -82,11 +83,11 @@ pub fn falls(harness: &mut Harness, case: &Case) -> Result<f64, Error> {
         let pictures = crossed(harness, &shot, 1)?;
         points.push((spp as f64, measure::parts(&pictures, case.reference.mean_square()).paths));
     }
-    // Steeper than 2 or flatter than 1/2 is noise.
+    // An exponent above 2 or below 1/2 is noise.
     Ok(PowerLaw::fit(&points).map_or(1.0, |law| (-law.exponent).clamp(0.5, 2.0)))
 }
 
-/// Variance and time of the paths of a configuration, joined with what is known of its clouds.
+/// Measures variance and time of the paths of a configuration, and joins them with the facts of its clouds.
 pub fn behaviour(
     harness: &mut Harness,
     case: &Case,
@@ -134,8 +135,8 @@ pub fn behaviour(
     })
 }
 
-/// One over `K` and the squared error of one path, of a cloud so large that the roulette's share, which falls as 1/K,
-/// is nothing beside the paths': another estimator stands for it, as the roulette itself would take minutes.
+/// 1/K and the squared error of one path on a cloud so large that the share of the roulette, which falls as 1/K, is
+/// negligible. Another estimator stands for the roulette, which would take minutes.
 fn without_roulette(harness: &mut Harness, case: &Case, kind: CloudKind) -> Result<(f64, f64), Error> {
     let samples = harness.effort.of(20_000, 1_000_000, 1_000_000);
     let shot = Shot { samples, ..case.shot(harness, harness.best_on(kind)) };
@@ -143,12 +144,12 @@ fn without_roulette(harness: &mut Harness, case: &Case, kind: CloudKind) -> Resu
     Ok((1.0 / samples as f64, measure::parts(&pictures, case.reference.mean_square()).paths))
 }
 
-/// Seconds of one path a pixel, from a run with more paths than the one that took `wall` seconds: beside short sums,
-/// what is done once for all of them would count as paths.
+/// Seconds of one path a pixel, from a second run with more paths than the one that took `wall` seconds, so that the
+/// cost that is independent of the paths cancels.
 fn more_paths(harness: &mut Harness, shot: &Shot, wall: f64) -> Result<f64, Error> {
     const MORE: u64 = 4;
     let long = harness.take(&Shot { spp: shot.spp + MORE, gather_seed: 3, ..shot.clone() })?;
-    // Noise of the clock may eat a difference of short runs: it is never taken for less than a tenth of the mean.
+    // Timing noise may hide the difference of short runs: the result is at least a tenth of the mean.
     let least = 0.1 * long.gathering.wall / (shot.spp + MORE) as f64;
     Ok(((long.gathering.wall - wall) / MORE as f64).max(least))
 }

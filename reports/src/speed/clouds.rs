@@ -1,4 +1,4 @@
-//! The error of clouds alone: well-spread samples against independent ones, and how fast it falls.
+//! The error of clouds alone: stratified samples against independent ones, and how fast it falls.
 
 use crate::{
     error::Error,
@@ -21,7 +21,7 @@ struct Series {
     medium: Medium,
     /// `K`, and relative RMSE of each channel.
     errors: Vec<(u64, [f64; 3])>,
-    /// The `K` from which on samples lie closer than the mean free path, per channel.
+    /// The `K` above which the distance of samples is below the mean free path, per channel.
     resolved: [f64; 3],
 }
 
@@ -40,7 +40,7 @@ impl Series {
     }
 }
 
-/// Both kinds and both media, under one directional light.
+/// Measures both kinds of clouds and both media, under one directional light.
 pub fn clouds(harness: &mut Harness, subject: &Subject) -> Result<Findings, Error> {
     let mut all = Vec::new();
     for kind in [INDEPENDENT_AREA, STRATIFIED_AREA] {
@@ -58,7 +58,7 @@ pub fn clouds(harness: &mut Harness, subject: &Subject) -> Result<Findings, Erro
     Ok(findings)
 }
 
-/// `K` of the ratios that are wanted.
+/// `K` of the ratios with a target.
 const COMPARED: u64 = 1_000_000;
 
 fn series(harness: &mut Harness, subject: &Subject, medium: Medium, kind: CloudKind) -> Result<Series, Error> {

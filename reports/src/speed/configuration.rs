@@ -1,8 +1,8 @@
-//! What is compared: one row for each way to use the programs, and the scenes and media.
+//! The configurations, scenes and media that are compared.
 
 use std::path::{Path, PathBuf};
 
-/// How phase one draws its samples.
+/// How `sample-surface` draws its samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CloudKind {
     /// `--choice`
@@ -11,14 +11,14 @@ pub struct CloudKind {
     pub pattern: &'static str,
 }
 
-/// How phase two sums them.
+/// How `gather` sums them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Summing {
-    /// The note's, with the acceptance rule that suits the medium.
+    /// The note's roulette, with the acceptance rule that suits the medium.
     Roulette,
-    /// All samples.
+    /// The exhaustive sum.
     Exhaustive,
-    /// Hierarchical; none is the default accuracy.
+    /// The cut; none is the default accuracy.
     Cut(Option<f64>),
 }
 
@@ -38,10 +38,10 @@ pub const STRATIFIED_AREA: CloudKind = CloudKind { choice: "area", pattern: "str
 /// Accuracy of a gather that is as good as exact beside the error of a cloud.
 pub const FINE: Summing = Summing::Cut(Some(0.003));
 
-/// The configuration for errors that the cut's default accuracy would show in.
+/// The configuration for errors so small that the default accuracy of the cut would show.
 pub const FINE_NAME: &str = "all, accuracy 0.003";
 
-/// All that is compared: the note's settings, each ingredient alone, and all together.
+/// All configurations: the note's settings, each ingredient alone, and all together.
 pub const CONFIGURATIONS: [Configuration; 7] = [
     Configuration { name: "note", cloud: INDEPENDENT_UNIFORM, summing: Summing::Roulette },
     Configuration { name: "area", cloud: INDEPENDENT_AREA, summing: Summing::Roulette },
@@ -52,12 +52,12 @@ pub const CONFIGURATIONS: [Configuration; 7] = [
     Configuration { name: FINE_NAME, cloud: STRATIFIED_AREA, summing: FINE },
 ];
 
-/// The sum over all samples, of a cloud of the default kind.
+/// The exhaustive sum over a cloud of the default kind.
 pub const EXHAUSTIVE: Configuration =
     Configuration { name: "exhaustive", cloud: STRATIFIED_AREA, summing: Summing::Exhaustive };
 
 impl CloudKind {
-    /// Words for tables.
+    /// The name in tables.
     pub fn name(self) -> String {
         format!("{}, {}", self.choice, self.pattern)
     }
@@ -108,7 +108,7 @@ pub const MEDIA: [Medium; 4] =
 pub struct Subject {
     pub name: String,
     pub path: PathBuf,
-    /// Cameras in the file.
+    /// Number of cameras in the file.
     pub cameras: usize,
     /// Flags of both programs.
     pub flags: &'static [&'static str],
@@ -122,19 +122,20 @@ impl Subject {
     }
 }
 
-/// Scenes, of a folder of meshes that need not be there.
+/// The scenes that were found; those of the folder of meshes may be missing.
 pub struct Subjects {
-    /// Bunny and dragon, or what is there instead.
+    /// Bunny and dragon, or their replacement.
     pub main: Vec<Subject>,
     /// The scenes that other renderers were measured on.
     pub sphere_of_peers: Option<Subject>,
     pub bunny_of_peers: Option<Subject>,
-    /// What is missing, in words.
+    /// What is missing, in sentences.
     pub remarks: Vec<String>,
 }
 
 impl Subjects {
-    /// Bunny and dragon of `meshes`, the peers' scenes of the folder `peers` beside it, else the scene of the gallery.
+    /// Finds bunny and dragon in `meshes` and the scenes of the peers in the folder `peers` beside it, else takes the
+    /// figure of the gallery.
     pub fn find(meshes: &Path, gallery: &Path) -> Subjects {
         let mut remarks = Vec::new();
         let mut found = |name: &str, path: PathBuf, cameras: usize| {
@@ -159,13 +160,13 @@ impl Subjects {
     }
 }
 
-/// The gallery's own mesh; its cameras are view files.
+/// The figure of the gallery, whose cameras are view files.
 fn figure(gallery: &Path) -> Subject {
     let view = vec!["--view".into(), gallery.join("views/figure/front.json").display().to_string()];
     Subject { view, ..Subject::new("figure", gallery.join("scenes/figure.glb"), 0) }
 }
 
-/// The last two names of a path: documents say nothing about the machine's folders.
+/// The last two components of a path: documents do not mention folders of the machine.
 fn short(path: &Path) -> String {
     let mut names: Vec<_> = path.iter().rev().take(2).map(|n| n.to_string_lossy()).collect();
     names.reverse();

@@ -1,9 +1,9 @@
-//! How long the measurements may take.
+//! The effort of the measurements.
 
-/// Minutes, an hour or so, or just long enough to see that the program works.
+/// Half a minute, minutes, or about an hour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effort {
-    /// Half a minute; the figures mean nothing.
+    /// A trial of the program: the figures mean nothing.
     Tiny,
     /// `make curve`.
     Quick,
@@ -12,7 +12,7 @@ pub enum Effort {
 }
 
 impl Effort {
-    /// The setting for this effort.
+    /// Chooses the setting for this effort.
     pub fn of<T>(self, tiny: T, quick: T, full: T) -> T {
         match self {
             Effort::Tiny => tiny,
@@ -21,7 +21,7 @@ impl Effort {
         }
     }
 
-    /// The longest single run that is started, seconds as predicted.
+    /// Predicted seconds of the longest single run that is started.
     pub fn longest_run(self) -> f64 {
         self.of(2.0, 100.0, 100.0)
     }

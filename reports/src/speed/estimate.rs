@@ -1,4 +1,4 @@
-//! Whether the error that `gather` estimates is the error that there is.
+//! Compares the error that `gather` estimates with the actual one.
 
 use crate::{
     error::Error,
@@ -13,7 +13,7 @@ use crate::{
     },
 };
 
-/// Root mean squares over a few seeds.
+/// Root mean squares over several seeds.
 struct Found {
     estimated: f64,
     measured: f64,
@@ -21,7 +21,7 @@ struct Found {
     reference: f64,
 }
 
-/// Every scene and medium.
+/// Measures every scene and medium.
 pub fn estimate(harness: &mut Harness, subjects: &[Subject]) -> Result<Findings, Error> {
     let (mut rows, mut worst) = (Vec::new(), 0.0f64);
     for subject in subjects {

@@ -1,4 +1,5 @@
-//! No slower than the note anywhere: the same samples and paths on every scene, medium and size of cloud.
+//! Compares the time with that of the note's settings: the same samples and paths on every scene, medium and size of
+//! cloud.
 
 use crate::{
     error::Error,
@@ -11,11 +12,11 @@ use crate::{
     },
 };
 
-/// Rounds end after two that took this long together, s: the times of short runs vary most.
+/// Seconds after which two rounds suffice: the times of short runs vary most.
 const ENOUGH: f64 = 3.0;
 const MAX_ROUNDS: u32 = 6;
 
-/// Every scene, medium and number of samples.
+/// Measures every scene, medium and number of samples.
 pub fn everywhere(harness: &mut Harness, subjects: &[Subject]) -> Result<Findings, Error> {
     let mut findings = Findings::default();
     let Some(note) = harness.configuration("note") else { return Ok(findings) };
@@ -44,7 +45,8 @@ pub fn everywhere(harness: &mut Harness, subjects: &[Subject]) -> Result<Finding
     Ok(findings)
 }
 
-/// Seconds of both programs, sampling anew each time, of two configurations in turn: the least of several rounds.
+/// Seconds of both programs, sampling included, for two configurations in alternation: the shortest of several
+/// rounds.
 fn shortest(harness: &mut Harness, shot: &Shot, rivals: [Configuration; 2]) -> Result<[f64; 2], Error> {
     let (mut least, mut spent) = ([f64::INFINITY; 2], 0.0);
     for round in 0..MAX_ROUNDS {

@@ -1,8 +1,8 @@
-//! What the measurements say: targets, plots and tables, before they are put into a document.
+//! Results of the measurements: targets, plots and tables, before they are put into a document.
 
 use crate::{markdown::three, speed::plot::Plot};
 
-/// One target, and what came of it.
+/// One target and its result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target {
     pub what: String,
@@ -15,12 +15,12 @@ pub struct Target {
 }
 
 impl Target {
-    /// A figure that should be this large or larger.
+    /// A figure that should be at least this large.
     pub fn at_least(what: impl Into<String>, wanted: f64, found: Option<f64>, basis: impl Into<String>) -> Target {
         Target::new(what.into(), format!("≥ {wanted}"), found, found.map(|x| x >= wanted), basis.into())
     }
 
-    /// A figure that should be this small or smaller.
+    /// A figure that should be at most this large.
     pub fn at_most(what: impl Into<String>, wanted: f64, found: Option<f64>, basis: impl Into<String>) -> Target {
         Target::new(what.into(), format!("≤ {wanted}"), found, found.map(|x| x <= wanted), basis.into())
     }
@@ -37,7 +37,7 @@ pub struct Section {
     pub text: String,
 }
 
-/// All that one part or all of them found.
+/// Results of one part of the measurements, or of all.
 #[derive(Clone, Debug, Default)]
 pub struct Findings {
     pub targets: Vec<Target>,

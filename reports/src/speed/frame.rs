@@ -11,17 +11,17 @@ use crate::{
     },
 };
 
-/// The error wanted, as `gather` estimates it.
+/// The target error, as `gather` estimates it.
 const ERROR: f64 = 0.01;
 
-/// What is known of a cloud before the frame is rendered.
+/// Estimates for a cloud before the frame is rendered.
 struct Trial {
     samples: u64,
-    /// Squared estimated error that more paths do not lower.
+    /// Squared estimated error that more paths do not reduce.
     floor: f64,
-    /// Squared estimated error of one path a pixel, beside that.
+    /// Squared estimated error of one path a pixel, without that.
     one_path: f64,
-    /// Seconds of both programs without paths, and of one path a pixel.
+    /// Seconds of both programs without paths, and per path a pixel.
     fixed: f64,
     per_path: f64,
     taken: Taken,
@@ -65,13 +65,13 @@ pub fn frame(harness: &mut Harness, subject: &Subject) -> Result<Findings, Error
     Ok(findings)
 }
 
-/// A figure that has to be stated, whatever it is.
+/// A figure without a target.
 fn stated(what: String, seconds: Option<f64>, basis: &str) -> Target {
     let found = seconds.map_or("–".into(), time);
     Target { what, wanted: "stated".into(), found, met: seconds.map(|_| true), basis: basis.into() }
 }
 
-/// The smallest cloud whose own estimated error takes less than half of the squared error wanted.
+/// Finds the smallest cloud whose estimated error takes less than half of the squared target error.
 fn choose(harness: &mut Harness, shot: &Shot) -> Result<Option<Trial>, Error> {
     let counts = harness.effort.of(
         vec![10_000],
@@ -83,7 +83,7 @@ fn choose(harness: &mut Harness, shot: &Shot) -> Result<Option<Trial>, Error> {
         let few = harness.take(&Shot { samples, spp: 2, ..shot.clone() })?;
         let more = harness.take(&Shot { samples, spp: 6, ..shot.clone() })?;
         let one_path = (estimate(&few) - estimate(&more)).max(0.0) / (1.0 / 2.0 - 1.0 / 6.0);
-        // A floor within the noise of two estimates is none.
+        // A floor within the noise of the two estimates counts as none.
         let floor = Some(estimate(&more) - one_path / 6.0).filter(|f| *f > 0.05 * one_path / 6.0).unwrap_or(0.0);
         let per_path = (more.gathering.wall - few.gathering.wall).max(0.0) / 4.0;
         let fixed = more.seconds() - 6.0 * per_path;
@@ -106,7 +106,7 @@ fn estimate(taken: &Taken) -> f64 {
     taken.gathering.number("estimated_relative_error").map_or(f64::NAN, |e| e * e)
 }
 
-/// The finished frame and its paths a pixel, or the trial again if the frame would take too long.
+/// Renders the frame; returns it with its paths a pixel, or the trial if the frame would take too long.
 fn render(harness: &mut Harness, shot: &Shot, trial: Trial) -> Result<(Result<Taken, Trial>, u64), Error> {
     let mut spp = (1.02 * trial.paths()).ceil() as u64;
     if trial.seconds() > harness.effort.longest_run() {
@@ -122,7 +122,7 @@ fn render(harness: &mut Harness, shot: &Shot, trial: Trial) -> Result<(Result<Ta
     Ok((Ok(taken), spp))
 }
 
-/// The steps of both programs by what they cost; the largest three are first.
+/// The costs of the steps of both programs, the three largest first.
 fn costs(taken: &Taken, spp: u64, predicted: Option<(u64, f64)>) -> String {
     let mut steps = Vec::new();
     for (program, spent) in [("sample-surface", &taken.sampling), ("gather", &taken.gathering)] {

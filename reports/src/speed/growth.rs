@@ -1,4 +1,4 @@
-//! What more samples cost: both programs from 10^4 samples up.
+//! The cost of more samples: both programs from 10^4 samples up.
 
 use crate::{
     error::Error,
@@ -50,7 +50,7 @@ pub fn growth(harness: &mut Harness, subject: &Subject) -> Result<Findings, Erro
     Ok(findings)
 }
 
-/// The note's seconds, for clouds that it gathers in reasonable time.
+/// Seconds of the note's settings, for clouds that they gather in reasonable time.
 fn note(harness: &mut Harness, shot: &Shot) -> Result<Vec<(f64, f64)>, Error> {
     let Some(note) = harness.configuration("note") else { return Ok(Vec::new()) };
     let mut points = Vec::new();

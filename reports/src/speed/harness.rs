@@ -18,10 +18,10 @@ use std::{
 };
 use tempfile::TempDir;
 
-/// A finished image and its cost.
+/// A rendered image and its cost.
 pub struct Taken {
     pub picture: Picture,
-    /// Of `sample-surface`, however often its cloud was used since.
+    /// Cost of `sample-surface`, also if its cloud was used before.
     pub sampling: Spent,
     pub gathering: Spent,
     record: usize,
@@ -48,15 +48,15 @@ struct CloudKey {
     threads: usize,
 }
 
-/// The programs, a place to work, and what was done there.
+/// The programs, a working folder, and the records of all runs.
 pub struct Harness {
     pub effort: Effort,
-    /// Threads unless a shot asks for others.
+    /// Number of threads unless a shot asks for another.
     pub threads: usize,
-    /// The rows that these programs can do.
+    /// The configurations that these programs support.
     pub configurations: Vec<Configuration>,
     pub records: Vec<Record>,
-    /// What could not be measured, in words.
+    /// What could not be measured, in sentences.
     pub remarks: Vec<String>,
     sample_surface: Program,
     gather: Program,
@@ -99,7 +99,7 @@ impl Harness {
         Ok(harness)
     }
 
-    /// Says so if it is not the complete configuration that is tried as ours; in earnest it has to be.
+    /// Notes it if another configuration has to stand in for `all`, which only a trial permits.
     fn stand_in(&mut self) -> Result<(), Error> {
         let ours = self.ours().ok_or_else(|| Error::Usage(format!("no configuration runs: {:?}", self.remarks)))?;
         if ours.name != "all" && self.effort != Effort::Tiny {
@@ -112,27 +112,27 @@ impl Harness {
         Ok(())
     }
 
-    /// A row by name, if the programs can do it.
+    /// A configuration by name, if the programs support it.
     pub fn configuration(&self, name: &str) -> Option<Configuration> {
         self.configurations.iter().copied().find(|c| c.name == name)
     }
 
-    /// All ingredients together, or as many as there are.
+    /// The configuration with all ingredients, or with as many as the programs support.
     fn ours(&self) -> Option<Configuration> {
         self.configuration("all").or_else(|| self.configurations.last().copied())
     }
 
-    /// All ingredients together with the default accuracy, or what stands in for it.
+    /// The configuration with all ingredients and the default accuracy, or its stand-in.
     pub fn all(&self) -> Configuration {
         self.ours().expect("a harness without any configuration is not made")
     }
 
-    /// The best way to sum this kind of cloud.
+    /// The best configuration for this kind of cloud.
     pub fn best_on(&self, cloud: CloudKind) -> Configuration {
         Configuration { name: "best", cloud, summing: self.all().summing }
     }
 
-    /// A way to sum this kind of cloud that is as good as exact beside the cloud's error.
+    /// A configuration for this kind of cloud whose sums are as good as exact beside the error of the cloud.
     pub fn fine_on(&self, cloud: CloudKind) -> Configuration {
         let summing = match self.all().summing {
             Summing::Cut(_) => FINE,
@@ -141,7 +141,7 @@ impl Harness {
         Configuration { name: "fine", cloud, summing }
     }
 
-    /// The kinds of clouds that the programs can make.
+    /// The kinds of clouds that the programs support.
     pub fn kinds(&self) -> Vec<CloudKind> {
         let mut kinds = Vec::new();
         for row in &self.configurations {
@@ -152,7 +152,7 @@ impl Harness {
         kinds
     }
 
-    /// A shot with seeds 1 and 1, to be changed where it should differ.
+    /// A shot with seeds 1 and 1, to be changed where another one is needed.
     pub fn shot<'a>(&self, subject: &'a Subject, medium: Medium, configuration: Configuration) -> Shot<'a> {
         Shot {
             subject,
@@ -168,7 +168,7 @@ impl Harness {
         }
     }
 
-    /// A line on stderr with the time since the start.
+    /// Writes a line with the time since the start to stderr.
     pub fn say(&self, line: &str) {
         let seconds = self.start.elapsed().as_secs();
         eprintln!("{:3}:{:02} {line}", seconds / 60, seconds % 60);
@@ -179,7 +179,7 @@ impl Harness {
         self.start.elapsed().as_secs_f64()
     }
 
-    /// The cloud of a shot, sampled unless it is there.
+    /// The cloud of a shot, sampled if it does not exist.
     pub fn cloud(&mut self, shot: &Shot) -> Result<(PathBuf, Spent), Error> {
         let key = CloudKey {
             scene: shot.subject.path.clone(),
@@ -226,7 +226,7 @@ impl Harness {
         Ok(Taken { picture, sampling, gathering, record: self.records.len() - 1 })
     }
 
-    /// Adds to a run's record what became of it.
+    /// Adds the error of an image to the record of its run.
     pub fn judge(&mut self, taken: &Taken, relative_rmse: f64, bias: Option<f64>) {
         let record = &mut self.records[taken.record];
         (record.relative_rmse, record.bias) = (Some(relative_rmse), bias);

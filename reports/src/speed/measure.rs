@@ -1,11 +1,11 @@
-//! Errors of images. Nothing here knows how they were made.
+//! Errors of images, however they were made.
 //!
-//! A reference is the mean of a few independent images, and has an error of its own. Its square is estimated from their
-//! spread and subtracted, which is unbiased because the tested images are independent of them.
+//! A reference is the mean of several independent images, and has an error of its own. Its square is estimated from
+//! their spread and subtracted, which is unbiased because the tested images are independent of them.
 
 use crate::speed::picture::Picture;
 
-/// A converged image, as far as it is.
+/// A converged image and its remaining error.
 pub struct Reference {
     mean: Vec<f64>,
     /// Squared standard error of each value of `mean`.
@@ -57,13 +57,13 @@ impl Reference {
         inside.iter().map(|k| error(*k)).sum::<f64>() / inside.len().max(1) as f64
     }
 
-    /// How much too bright the whole image is, relatively; a single cloud's share of its error is in it.
+    /// Relative excess of the mean brightness of the whole image; the error of a single cloud contributes to it.
     pub fn bias(&self, test: &Picture) -> f64 {
         test.values.iter().sum::<f64>() / self.mean.iter().sum::<f64>() - 1.0
     }
 }
 
-/// The relative RMSE of a squared one that may be negative by chance.
+/// The root of a squared relative RMSE, which may be negative by chance.
 pub fn root(squared: f64) -> f64 {
     squared.max(0.0).sqrt()
 }
@@ -71,16 +71,19 @@ pub fn root(squared: f64) -> f64 {
 /// The parts of the squared relative error of an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parts {
-    /// Of the paths and of the estimator: what another seed of `gather` changes.
+    /// Part of the paths and the estimator, which another seed of `gather` changes.
     pub paths: f64,
-    /// Of the cloud: what another seed of `sample-surface` changes, free of the paths' noise. None of one cloud alone.
+    /// Part of the cloud, which another seed of `sample-surface` changes, without the noise of the paths; none for a
+    /// single cloud.
     pub cloud: Option<f64>,
 }
 
-/// Images of several clouds, each with the same two seeds of the gather; `mean_square` is that of the true image.
+/// Splits the error of images of several clouds, each with the same two seeds of the gather; `mean_square` is that of
+/// the true image.
 ///
-/// Two images of one cloud differ by the paths alone. Differences of two clouds under one seed and under the other
-/// share nothing but the clouds: the mean of their products is the clouds' squared error, however few the paths.
+/// Two images of one cloud differ by the paths alone. The difference between two clouds under one seed and that under
+/// the other share nothing but the clouds, so the mean of their products is the squared error of the clouds, however
+/// few the paths.
 pub fn parts(crossed: &[[Picture; 2]], mean_square: f64) -> Parts {
     let (clouds, size) = (crossed.len(), crossed[0][0].values.len());
     let scale = 1.0 / (2.0 * mean_square * size as f64);
@@ -95,7 +98,7 @@ pub fn parts(crossed: &[[Picture; 2]], mean_square: f64) -> Parts {
     Parts { paths, cloud: (clouds > 1).then_some(cloud) }
 }
 
-/// Relative RMSE of each channel, from the spread of images that differ by their clouds alone (same paths).
+/// Relative RMSE of each channel, from the spread of images that differ by their clouds alone, with the same paths.
 pub fn spread(pictures: &[Picture]) -> [f64; 3] {
     let count = pictures.len() as f64;
     let mut sums = [(0.0, 0.0); 3];
@@ -109,7 +112,7 @@ pub fn spread(pictures: &[Picture]) -> [f64; 3] {
     sums.map(|(error, power)| (error / power).sqrt())
 }
 
-/// Relative RMSE of one image against another that is exact.
+/// Relative RMSE of one image against an exact one.
 pub fn difference(test: &Picture, exact: &Picture) -> f64 {
     let error: f64 = test.values.iter().zip(&exact.values).map(|(t, r)| (t - r).powi(2)).sum();
     (error / exact.values.iter().map(|r| r * r).sum::<f64>()).sqrt()
@@ -122,7 +125,7 @@ mod tests {
 
     const PIXELS: usize = 20_000;
 
-    /// An image of ones with independent noise of standard deviation `paths`, times one plus `cloud` of each pixel.
+    /// An image of ones with independent noise of standard deviation `paths`, times one plus `cloud` in each pixel.
     fn noisy(paths: f64, cloud: &[f64], random: &mut Random) -> Picture {
         let normal = |random: &mut Random| (0..12).map(|_| random.uniform()).sum::<f64>() - 6.0;
         let values = cloud.iter().map(|c| 1.0 + c + paths * normal(random)).collect();

@@ -32,7 +32,8 @@ use harness::Harness;
 use std::{fs, path::Path};
 
 /// Measures, and writes the report into the folder `output`. The folder `meshes` should hold `bunny.glb` and
-/// `dragon.glb`, and `../peers` beside it the scenes that other renderers were measured on; `data` is the repository's.
+/// `dragon.glb`, and the folder `../peers` beside it the scenes that other renderers were measured with; `data` is
+/// the folder of the repository.
 pub fn write(meshes: &Path, programs: &Path, data: &Path, effort: Effort, output: &Path) -> Result<(), Error> {
     let subjects = Subjects::find(meshes, data);
     let mut harness = Harness::new(programs, effort, &subjects.main[0])?;

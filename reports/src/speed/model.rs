@@ -1,4 +1,4 @@
-//! From a few measured points to time and error of any cloud and any number of paths.
+//! A model of time and error for any cloud and any number of paths, fitted to a few measurements.
 
 /// `y = factor x^exponent`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -8,8 +8,8 @@ pub struct PowerLaw {
 }
 
 impl PowerLaw {
-    /// Least squares of the logarithms; a constant from one point, nothing from none. Points that are not positive are
-    /// left out: an error that is nothing but noise may be zero.
+    /// Least squares of the logarithms; a constant from one point, none from no points. Points that are not positive
+    /// are left out, since an error that is nothing but noise may be zero.
     pub fn fit(points: &[(f64, f64)]) -> Option<PowerLaw> {
         let logs: Vec<(f64, f64)> =
             points.iter().filter(|(x, y)| *x > 0.0 && *y > 0.0).map(|(x, y)| (x.ln(), y.ln())).collect();
@@ -39,7 +39,7 @@ pub struct Line {
 }
 
 impl Line {
-    /// Least squares of the relative errors, as values span decades; nothing from no points.
+    /// Least squares of the relative errors, as values span decades; none from no points.
     pub fn fit(points: &[(f64, f64)]) -> Option<Line> {
         let sum = |f: &dyn Fn(f64, f64, f64) -> f64| -> f64 {
             points.iter().filter(|(_, y)| *y > 0.0).map(|(x, y)| f(*x, *y, 1.0 / (y * y))).sum()
@@ -70,9 +70,9 @@ impl Line {
 /// Seconds of a path that depend on the samples `K`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PathCost {
-    /// Every sample is looked at.
+    /// Every sample is visited.
     Every(Line),
-    /// A tree is walked.
+    /// A tree is traversed.
     Tree(PowerLaw),
 }
 
@@ -85,37 +85,37 @@ impl PathCost {
     }
 }
 
-/// What one configuration does on one scene with one medium, at one image size.
+/// The behavior of one configuration on one scene with one medium, at one image size.
 #[derive(Clone, Copy, Debug)]
 pub struct Behaviour {
     pub pixels: f64,
-    /// Relative RMSE of the cloud, of `K`.
+    /// Relative RMSE of the cloud as a function of `K`.
     pub cloud: PowerLaw,
-    /// Squared relative RMSE of one path a pixel, of `1/K`.
+    /// Squared relative RMSE of one path a pixel as a function of `1/K`.
     pub paths: Line,
-    /// It falls with the number of paths to the power of minus this: 1 for independent ones, more for well-spread ones.
+    /// Exponent by which that falls with the number of paths: 1 for independent ones, more for stratified ones.
     pub falls: f64,
-    /// Seconds of `sample-surface`, of `K`.
+    /// Seconds of `sample-surface` as a function of `K`.
     pub sampling: Line,
-    /// Seconds of `gather` beside its paths, of `K`.
+    /// Seconds of `gather` without its paths as a function of `K`.
     pub overhead: Line,
     /// Seconds of a path of one pixel, on all threads together.
     pub per_path: PathCost,
 }
 
-/// A way to spend time.
+/// A number of samples and paths, with its time and error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spending {
     pub samples: f64,
     /// Paths a pixel.
     pub spp: f64,
-    /// Both programs together.
+    /// Seconds of both programs.
     pub seconds: f64,
     /// Relative RMSE of the image.
     pub error: f64,
 }
 
-/// The most paths a pixel that `gather` takes.
+/// The largest number of paths a pixel that `gather` accepts.
 const MAX_PATHS: f64 = 1_048_576.0;
 
 impl Behaviour {
@@ -127,7 +127,7 @@ impl Behaviour {
         Spending { samples, spp, seconds, error }
     }
 
-    /// The least time that reaches an error, over clouds of a thousand to 10^13 samples.
+    /// The shortest time that reaches an error, over clouds of a thousand to 10^13 samples.
     pub fn cheapest(&self, error: f64) -> Option<Spending> {
         let all = (0..=400).map(|step| 10f64.powf(3.0 + f64::from(step) / 40.0));
         let one = |samples: f64| {
@@ -138,7 +138,7 @@ impl Behaviour {
         all.filter_map(one).min_by(|a, b| a.seconds.total_cmp(&b.seconds))
     }
 
-    /// The least error within a time and up to a number of samples.
+    /// The smallest error within a time and up to a number of samples.
     pub fn best_within(&self, seconds: f64, max_samples: f64) -> Option<Spending> {
         let errors = (0..=300).map(|step| 10f64.powf(-3.0 + f64::from(step) / 100.0));
         errors.filter_map(|e| self.cheapest(e)).find(|s| s.seconds <= seconds && s.samples <= max_samples)
@@ -149,7 +149,7 @@ impl Behaviour {
 mod tests {
     use super::*;
 
-    /// Within a millionth.
+    /// Equality to within a millionth.
     fn near(a: f64, b: f64) -> bool {
         (a - b).abs() <= 1e-6 * b.abs()
     }
@@ -195,8 +195,8 @@ mod tests {
         assert!(near(s.error.powi(2), 1e-4 + 0.0401 / 8.0));
     }
 
-    /// Where time is paths times K, the cloud's share of the squared error is half: with `c²/K + v/n = e²` and time
-    /// `K n`, the product is least at `c²/K = e²/2`, and time is then `4 c² v / e⁴`.
+    /// Where the time is `K n`, paths times K, and the squared error `c²/K + v/n = e²`, the time is shortest at `c²/K
+    /// = e²/2`, where it is `4 c² v / e⁴`.
     #[test]
     fn the_optimum_shares_the_error_evenly() {
         let mut b = behaviour();

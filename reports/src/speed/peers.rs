@@ -1,4 +1,4 @@
-//! Against the renderers that one would take instead: relMSE over the object times CPU seconds, as they were measured.
+//! Comparison with other renderers: relMSE over the object times CPU seconds.
 
 use crate::{
     error::Error,
@@ -13,15 +13,16 @@ use crate::{
     },
 };
 
-/// The best of the others on this scene, relMSE times CPU seconds, each against its own converged image: POV-Ray 3.7
-/// (dipole, 200 samples; biased) on the sphere, Cycles 4.5 (Burley) on the bunny; 128 x 128, on a like machine.
+/// The best relMSE times CPU seconds of another renderer on each scene, each against its own converged image: POV-Ray
+/// 3.7 (dipole, 200 samples; biased) on the sphere, Cycles 4.5 (Burley) on the bunny; 128 x 128, on a similar
+/// machine.
 const BEST_ON_SPHERE: (&str, f64) = ("POV-Ray 3.7, dipole", 0.0003);
 const BEST_ON_BUNNY: (&str, f64) = ("Cycles 4.5, Burley", 0.0085);
 
-/// Pixels of a side.
+/// Side of the image, pixels.
 const SIDE: u64 = 128;
 
-/// Means over the seeds of one choice of samples and paths.
+/// Means over the seeds, for one number of samples and paths.
 struct Point {
     configuration: &'static str,
     samples: u64,
@@ -36,7 +37,7 @@ impl Point {
     }
 }
 
-/// Both scenes, if they are there.
+/// Measures both scenes, if they are there.
 pub fn peers(harness: &mut Harness, subjects: &Subjects) -> Result<Findings, Error> {
     let mut findings = Findings::default();
     let pairs =
@@ -64,7 +65,7 @@ fn row(subject: &Subject, medium: Medium, p: &Point) -> Vec<String> {
     names.into_iter().chain(numbers).collect()
 }
 
-/// Every choice of samples and paths on one scene.
+/// Measures all numbers of samples and paths on one scene.
 fn scene(harness: &mut Harness, subject: &Subject, medium: Medium) -> Result<Vec<Point>, Error> {
     let effort = harness.effort;
     let side = effort.of(32, SIDE, SIDE);
@@ -102,7 +103,7 @@ fn point(
         cpu += taken.cpu() / seeds as f64;
     }
     let (samples, spp) = (shot.samples, shot.spp);
-    // A mean below the reference's own noise is zero as far as can be told, which is no measurement.
+    // A mean below the noise of the reference cannot be told from zero, and counts as no measurement.
     let relative_mse = if error > 0.0 { error } else { f64::INFINITY };
     Ok(Point { configuration: configuration.name, samples, spp, relative_mse, cpu })
 }

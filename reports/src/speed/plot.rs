@@ -1,8 +1,9 @@
-//! Log-log plots as SVG. Background is left out and greys are in the middle, so that they read on light and on dark.
+//! Log-log plots as SVG. The background is transparent and the greys are medium, so that they are legible on light
+//! and dark pages.
 
 use std::fmt::Write;
 
-/// One line with dots.
+/// One curve with dots.
 #[derive(Clone, Debug, Default)]
 pub struct Curve {
     pub label: String,
@@ -23,12 +24,12 @@ const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 440.0;
 /// Left, top, right and bottom of the area that the curves fill.
 const AREA: [f64; 4] = [70.0, 40.0, 560.0, 385.0];
-/// Text and axes: contrast above 4 on white and on the dark grey of code hosts alike.
+/// Color of text and axes: its contrast is above 4 both on white and on the dark grey of code hosts.
 const INK: &str = "#7b8087";
-/// Distinct for most color-blind eyes, and neither very dark nor very light.
+/// Colors that are distinct for most color-blind eyes, and neither very dark nor very light.
 const COLORS: [&str; 8] = ["#8c8c8c", "#d98b00", "#2f9bd6", "#00a077", "#b9a400", "#d5557f", "#8d6bd1", "#d9582b"];
 
-/// Decades or parts of one, on one axis.
+/// A logarithmic axis.
 struct Axis {
     low: f64,
     high: f64,
@@ -37,7 +38,7 @@ struct Axis {
 }
 
 impl Axis {
-    /// Widened to thirds of a decade, at least a decade.
+    /// The range of values, widened to thirds of a decade and to at least a decade.
     fn of(values: impl Iterator<Item = f64>, from: f64, to: f64) -> Axis {
         let logs = values.filter(|v| *v > 0.0 && v.is_finite()).map(f64::log10);
         let (low, high) = logs.fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(x), b.max(x)));
@@ -49,7 +50,7 @@ impl Axis {
         self.from + (value.log10() - self.low) / (self.high - self.low) * (self.to - self.from)
     }
 
-    /// Decades, and 2 and 5 times them where there are few.
+    /// Decades, and 2 and 5 times them if there are few.
     fn ticks(&self) -> Vec<f64> {
         let steps: &[f64] = if self.high - self.low > 3.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
         let decades = self.low.floor() as i32..=self.high.ceil() as i32;

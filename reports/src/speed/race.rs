@@ -16,13 +16,13 @@ use crate::{
     },
 };
 
-/// A run at a point that the model chose.
+/// A run with the samples and paths that the model chose.
 struct Run {
     samples: u64,
     spp: u64,
     seconds: f64,
     error: f64,
-    /// What the model said of the same samples and paths.
+    /// Prediction of the model for the same samples and paths.
     predicted: Spending,
 }
 
@@ -33,10 +33,10 @@ struct Runner {
     runs: Vec<Run>,
 }
 
-/// Measures everything about one scene and medium.
+/// Measures all configurations on one scene with one medium.
 pub fn race(harness: &mut Harness, subject: &Subject, medium: Medium) -> Result<Findings, Error> {
     let effort = harness.effort;
-    // Smaller pictures do for media without a target.
+    // Smaller images suffice for media without a target.
     let side = effort.of(64, 512, if is_target(subject, medium) { 512 } else { 192 });
     let shot = Shot { size: [side; 2], ..harness.shot(subject, medium, harness.all()) };
     let quality = Quality { clouds: 4, samples: effort.of(20_000, 4_000_000, 4_000_000), spp: effort.of(4, 8, 8) };
@@ -71,12 +71,13 @@ pub fn race(harness: &mut Harness, subject: &Subject, medium: Medium) -> Result<
     Ok(findings)
 }
 
-/// Whether times are to be reached on this scene with this medium.
+/// Whether there are target times for this scene and medium.
 fn is_target(subject: &Subject, medium: Medium) -> bool {
     subject.name != "dragon" && (medium == MARBLE || medium == SKIM_MILK)
 }
 
-/// Runs a configuration where the model says that it spends a given time best, as far as its clouds were measured.
+/// Runs a configuration with the samples and paths that the model finds best for a given time, within the range of
+/// measured clouds.
 fn check(harness: &mut Harness, case: &Case, runner: &mut Runner, cloud: &CloudFacts) -> Result<(), Error> {
     let most = cloud.errors.iter().map(|(k, _)| *k).fold(0.0, f64::max);
     for seconds in harness.effort.of(vec![0.5], vec![4.0], vec![4.0]) {
@@ -89,7 +90,7 @@ fn check(harness: &mut Harness, case: &Case, runner: &mut Runner, cloud: &CloudF
     Ok(())
 }
 
-/// Renders with the samples and paths of `spending`, rounded, and seeds of its own.
+/// Renders with the samples and paths of `spending`, rounded, and with its own seeds.
 fn run(harness: &mut Harness, case: &Case, runner: &Runner, spending: Spending, seed: u64) -> Result<Run, Error> {
     let (samples, spp) = (round(spending.samples), spending.spp.ceil() as u64);
     let name = runner.configuration.name;
@@ -103,13 +104,14 @@ fn run(harness: &mut Harness, case: &Case, runner: &Runner, spending: Spending, 
     Ok(Run { samples, spp, seconds: taken.seconds(), error, predicted })
 }
 
-/// Two significant digits.
+/// Rounds to two significant digits.
 fn round(samples: f64) -> u64 {
     let unit = 10f64.powf(samples.log10().floor() - 1.0);
     ((samples / unit).round() * unit) as u64
 }
 
-/// The note's time to an error over ours, ours really run if it does not take too long.
+/// The time of the note's settings to reach an error over that of ours, which is measured if it does not take too
+/// long.
 fn time_to(
     harness: &mut Harness,
     case: &Case,
@@ -138,7 +140,7 @@ fn time_to(
     Ok(Target::at_least(what, wanted, Some(note.seconds / seconds), basis))
 }
 
-/// The cheapest run that reached an error, of a few attempts that come closer to it.
+/// The cheapest run that reaches an error, found by several attempts that approach it.
 fn reach<'a>(harness: &mut Harness, case: &Case, ours: &'a mut Runner, error: f64) -> Result<Option<&'a Run>, Error> {
     let mut aim = 0.98 * error;
     for attempt in 0..5 {

@@ -18,9 +18,9 @@ pub struct Record {
     seconds_sample: f64,
     seconds_gather: f64,
     cpu_seconds: f64,
-    /// Of the whole image, where there was something to compare it with.
+    /// Error of the whole image, if there was a reference.
     pub relative_rmse: Option<f64>,
-    /// Relative, of the whole image.
+    /// Relative bias of the whole image.
     pub bias: Option<f64>,
 }
 
@@ -51,7 +51,7 @@ impl Record {
     fn line(&self) -> String {
         let optional = |x: Option<f64>| x.map_or(String::new(), |x| format!("{x:.5}"));
         let [width, height] = self.size;
-        // Names may hold a comma, never a quotation mark.
+        // Names may contain a comma, but no quotation mark.
         format!(
             "{},{},\"{}\",{},{},{},{},{},{},{width},{height},{:.4},{:.4},{:.2},{},{}\n",
             self.scene,

@@ -5,7 +5,7 @@ use crate::{
     speed::{harness::Harness, measure::Reference, picture::Picture, shot::Shot},
 };
 
-/// How a reference is made.
+/// The effort of a reference.
 #[derive(Clone, Copy, Debug)]
 pub struct Quality {
     /// Independent clouds, each gathered under its own seed.
@@ -14,7 +14,7 @@ pub struct Quality {
     pub spp: u64,
 }
 
-/// First seed of references: none of their seeds is used for anything else.
+/// First seed of references, whose seeds are used for nothing else.
 const FIRST_SEED: u64 = 1000;
 
 /// The converged image of a shot, with the best configuration there is.

@@ -1,4 +1,4 @@
-//! Cameras off one cloud, threads, and sizes of the image.
+//! Several cameras on one cloud, numbers of threads, and image sizes.
 
 use crate::{
     error::Error,
@@ -11,7 +11,7 @@ use crate::{
     },
 };
 
-/// All three.
+/// Measures all three.
 pub fn scaling(harness: &mut Harness, subject: &Subject) -> Result<Findings, Error> {
     let samples = harness.effort.of(3_000, 1_000_000, 1_000_000);
     let side = harness.effort.of(32, 256, 256);
@@ -27,7 +27,7 @@ pub fn scaling(harness: &mut Harness, subject: &Subject) -> Result<Findings, Err
     Ok(findings)
 }
 
-/// Ten cameras: those of the scene in turn.
+/// Ten cameras: those of the scene, cyclically.
 fn cameras(harness: &mut Harness, shot: &Shot) -> Result<String, Error> {
     harness.say("ten cameras off one cloud");
     let (mut rows, mut sum) = (Vec::new(), 0.0);
@@ -46,7 +46,7 @@ fn cameras(harness: &mut Harness, shot: &Shot) -> Result<String, Error> {
     Ok(table(&["camera", "its seconds", "seconds of all so far"], &rows))
 }
 
-/// One thread and twice as many, up to all.
+/// Powers of two of threads, up to all.
 fn threads(harness: &mut Harness, shot: &Shot) -> Result<String, Error> {
     let all = harness.threads;
     let mut counts: Vec<usize> = (0..).map(|power| 1 << power).take_while(|n| *n < all).collect();

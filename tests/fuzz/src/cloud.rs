@@ -1,4 +1,4 @@
-//! Clouds. Checksums keep random damage out, so that what lies behind them is only reached if they are made right again.
+//! Clouds. Checksums reject random damage, so the code behind them is reached only if the checksums are corrected.
 
 use crate::file::with_file;
 use bssrdf::{Model, built_in};
@@ -10,9 +10,9 @@ use gather::{
 use std::{ops::Range, path::Path, sync::LazyLock};
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
-/// An accepted cloud has the groups that it speaks of; one that was verified has samples that are points with normals,
-/// directions and flux, and sums over them are finite, unless they are absurd. Sums over one that was not verified do no
-/// harm. The bytes are tried as they are, and with version, length and checksums that fit.
+/// An accepted cloud has the groups that its facts name. In a verified cloud, samples have finite positions, unit vectors
+/// and a flux that is not negative, and sums over them are finite unless their numbers are absurd. Sums over a cloud that
+/// was not verified do no harm. The bytes are tried as they are, and with a version, length and checksums that fit.
 pub fn cloud(bytes: &[u8]) -> bool {
     let mut sealed = bytes.to_vec();
     seal(&mut sealed);
@@ -23,9 +23,9 @@ fn look_at(path: &Path) -> bool {
     let Ok(cloud) = Cloud::open(path) else { return false };
     let good = cloud.verify(path).is_ok();
     let mut samples = 0;
-    // The models are held to places of a scene.
-    let placed = |record: &Record| record.position.iter().all(|x| x.abs() < FARTHEST);
-    let sums = good || cloud.tiles().as_flattened().iter().all(placed);
+    // The models need not accept positions that no scene has.
+    let inside = |record: &Record| record.position.iter().all(|x| x.abs() < FARTHEST);
+    let sums = good || cloud.tiles().as_flattened().iter().all(inside);
     for material in &cloud.meta().materials {
         for half in &material.halves {
             let (tiles, nodes) = cloud.group(half);
@@ -47,12 +47,12 @@ fn look_at(path: &Path) -> bool {
     true
 }
 
-/// Beyond, numbers may get too large for float32.
+/// Sums of larger numbers may exceed float32.
 const SANE: f32 = 1e12;
-/// No scene is wider, m.
+/// No scene has a larger coordinate, m.
 const FARTHEST: f32 = 1e18;
 
-/// Sums over all groups at a sample, and at a point beside it; of a `good` cloud they are finite.
+/// Sums over all groups at a sample and at a point beside it; those of a `good` cloud must be finite.
 fn check_sums(cloud: &Cloud, sample: &Sample, good: bool) {
     static MARBLE: LazyLock<Scatterer> = LazyLock::new(|| {
         let medium = built_in("marble").expect("it is built in");
@@ -82,8 +82,8 @@ fn check_sums(cloud: &Cloud, sample: &Sample, good: bool) {
 const HEADER: usize = 64;
 const ENTRY: usize = 64;
 
-/// Makes the version, the length and all checksums right as far as the file has them; the layout is that of
-/// `formats::cloud`, where a section is one block, as in all files that are small.
+/// Corrects the version, the length and all checksums, as far as the file has them. The layout is that of
+/// `formats::cloud`, in which each section of a small file is one block.
 pub fn seal(file: &mut [u8]) -> Option<()> {
     let length = file.len() as u64;
     file.get_mut(8..10)?.copy_from_slice(&version().to_le_bytes());
@@ -106,7 +106,7 @@ pub fn seal(file: &mut [u8]) -> Option<()> {
     Some(())
 }
 
-/// Where the bytes of a section lie, by its entry in the table.
+/// The bytes of a section, by its entry in the table.
 fn section(entry: &[u8]) -> Option<Range<usize>> {
     let number = |at: usize| usize::try_from(u64::from_le_bytes(entry[at..at + 8].try_into().ok()?)).ok();
     let (start, length) = (number(24)?, number(32)?);

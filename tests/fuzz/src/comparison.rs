@@ -1,13 +1,13 @@
-//! Comparisons of images that were accepted.
+//! Comparisons of accepted images.
 
 use compare::{Gate, Mismatch, Settings, compare, difference, heatmap, html};
 use formats::Image;
 
-/// Larger images say nothing more, and take longer.
+/// Larger images take longer and find no more.
 const MAX_SAMPLES: usize = 1 << 9;
 
-/// An image is equal to itself, and with its samples in another order as it may be: both are measured, judged, drawn and
-/// put on a page.
+/// An image equals itself, and differs in any way from itself with its samples in another order: both comparisons are
+/// measured, judged, drawn and put on a page.
 pub fn check_comparison(image: &Image) {
     if image.channels.iter().map(|c| c.samples.len()).sum::<usize>() > MAX_SAMPLES {
         return;

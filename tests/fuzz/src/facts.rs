@@ -1,4 +1,4 @@
-//! The facts of a cloud: the block that `bincode` decodes, in a cloud without samples whose checksums are right.
+//! The metadata of a cloud, which `bincode` decodes, in a cloud without samples and with correct checksums.
 
 use crate::{cloud::seal, file::with_file};
 use formats::{
@@ -13,7 +13,7 @@ const ENTRY: usize = 64;
 /// Sections by name, element type and components, as in `formats::cloud`.
 const SECTIONS: [(&str, u16, u16); 4] = [("meta", 5, 1), ("provenance", 5, 1), ("tile", 3, 128), ("node", 1, 8)];
 
-/// Accepted facts are those of a cloud without samples, and the same once they were written and read again.
+/// Accepted metadata describes a cloud without samples, and is the same after it was written and read again.
 pub fn facts(block: &[u8]) -> bool {
     with_file("a.cloud", &wrapped(block), look_at)
 }
@@ -32,7 +32,7 @@ fn look_at(path: &Path) -> bool {
     true
 }
 
-/// A cloud file around the block: all other sections are empty.
+/// A cloud file around the metadata; all other sections are empty.
 fn wrapped(block: &[u8]) -> Vec<u8> {
     let start = HEADER + ENTRY * SECTIONS.len();
     let end = start + block.len();

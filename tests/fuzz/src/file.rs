@@ -1,8 +1,8 @@
-//! Bytes as a file: the programs open files by their names.
+//! Bytes as a file, because the programs open files by their names.
 
 use std::path::Path;
 
-/// In memory where the system has such a folder: a fuzzer writes thousands of files a second.
+/// A folder in memory, where the system has one: a fuzzer writes thousands of files a second.
 const IN_MEMORY: &str = "/dev/shm";
 
 /// Calls `use_file` with a file of these bytes that lies alone in its folder.

@@ -4,11 +4,11 @@ use crate::{comparison::check_comparison, file::with_file};
 use formats::{Image, ImageError, Panorama};
 use scene::{DVec3, Vec3, light::EnvironmentMap};
 
-/// Larger pictures are read and no more: what follows takes time that says nothing.
+/// Larger images are only read: the checks would take long and find no more.
 const MAX_PIXELS: usize = 1 << 14;
 
-/// An accepted image is compared, written and read again as the same; an accepted panorama has its pixels, and as an environment a
-/// radiance in every direction.
+/// An accepted image is compared, written and read again as the same; an accepted panorama has all its pixels, and as
+/// an environment a radiance in every direction.
 pub fn image(bytes: &[u8]) -> bool {
     with_file("image.exr", bytes, |path| {
         let (image, panorama) = (Image::read(path), Panorama::read(path));
@@ -32,12 +32,12 @@ fn check_image(image: &Image) {
             assert_eq!(bytes, again.encode().expect("is written again"), "another image");
             assert_eq!(bits(image), bits(&again), "other samples");
         }
-        // Other programs name channels and attributes as they like.
+        // Other programs may give channels and attributes any name.
         Err(error) => assert!(matches!(error, ImageError::Unwritable(_)), "{error}"),
     }
 }
 
-/// The samples: those that are no numbers are equal to nothing.
+/// The bits of the samples, since NaN equals nothing.
 fn bits(image: &Image) -> Vec<(&str, Vec<u32>)> {
     image.channels.iter().map(|c| (c.name.as_str(), c.samples.iter().map(|x| x.to_bits()).collect())).collect()
 }

@@ -1,8 +1,8 @@
-//! Fuzz targets: what must hold of any bytes that are given to the programs as a file.
+//! Fuzz targets: what must hold for any bytes that the programs are given as a file.
 //!
-//! Each target reads bytes through the door that the programs use, and looks at what was accepted as they do. It returns
-//! whether the bytes were accepted; it panics, aborts, takes much memory or does not end where a promise is broken. The
-//! fuzzer's programs in `fuzz/` and the ordinary test of this package call the same functions.
+//! Each target reads bytes with the function that the programs use, and checks the result. It returns whether the
+//! bytes were accepted; a panic, an abort, high memory or an endless run is a failure. The programs of the fuzzer in
+//! `fuzz/` and the ordinary test of this package call the same functions.
 
 mod cloud;
 mod comparison;
@@ -27,7 +27,7 @@ pub use view::view;
 /// Reads bytes and checks what was accepted; true if they were.
 pub type Target = fn(&[u8]) -> bool;
 
-/// All targets by name; first the one that a decoder stands behind which nobody maintains any more.
+/// All targets by name. The first one tests `bincode`, which is no longer maintained.
 pub const TARGETS: [(&str, Target); 7] = [
     ("facts", facts),
     ("cloud", cloud),

@@ -3,7 +3,7 @@
 use crate::file::with_file;
 use compare::read_limits;
 
-/// Accepted limits are numbers that an image can be held to.
+/// Accepted limits are numbers that images can be compared with.
 pub fn limits(bytes: &[u8]) -> bool {
     let Ok(limits) = with_file("limits.json", bytes, read_limits) else { return false };
     assert!(!limits.is_empty());

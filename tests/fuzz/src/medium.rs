@@ -4,7 +4,8 @@ use crate::file::with_file;
 use bssrdf::{Medium, Model, Separation};
 use scene::DVec3;
 
-/// An accepted medium has finite coefficients and constants, and every model of it finite values that are not negative.
+/// An accepted medium has finite coefficients and constants, and the values of every model are finite and not
+/// negative.
 pub fn medium(bytes: &[u8]) -> bool {
     let read = with_file("medium.json", bytes, |path| cli::read_medium(&path.to_string_lossy()));
     let Ok(medium) = read else { return false };
@@ -12,7 +13,7 @@ pub fn medium(bytes: &[u8]) -> bool {
     true
 }
 
-/// The promises of a medium.
+/// Checks what holds of every medium.
 pub fn check_medium(medium: &Medium) {
     for c in &medium.channels {
         assert!([c.sigma_a, c.sigma_s].iter().all(|x| x.is_finite() && *x >= 0.0), "{c:?}");

@@ -1,13 +1,14 @@
-//! Damage to a file: the same in every run, and after the checks that it would meet first.
+//! Deterministic mutations of a file.
 //!
-//! A .glb is damaged within its chunks as often as from outside: a length that does not fit hides all else.
+//! Two of three mutations of a .glb change one chunk and adjust its length: a wrong length is refused before anything
+//! else is read.
 
 use test_support::{
     Random,
     glb::{chunks, container},
 };
 
-/// Numbers that lengths, counts and offsets are replaced by.
+/// Numbers that replace lengths, counts and offsets.
 const LENGTHS: [u64; 14] = [
     0,
     1,
@@ -25,7 +26,7 @@ const LENGTHS: [u64; 14] = [
     u64::MAX,
 ];
 
-/// What stands for a number in a text.
+/// Texts that replace numbers.
 const TEXTS: [&str; 26] = [
     "0",
     "1",
@@ -55,7 +56,7 @@ const TEXTS: [&str; 26] = [
     "\"1\"",
 ];
 
-/// What stands for a byte.
+/// Values that replace bytes.
 const BYTES: [u8; 9] = [0, 1, 0x7f, 0x80, 0xff, b'0', b'9', b'-', b'{'];
 
 /// Mutation `number` of a file.
@@ -97,7 +98,7 @@ fn flip(bytes: &mut [u8], random: &mut Random) {
     }
 }
 
-/// Two, four or eight bytes become another number.
+/// Replaces two, four or eight bytes by another number.
 fn overwrite_length(bytes: &mut [u8], random: &mut Random) {
     let size = random.pick(&[2, 4, 8]).min(bytes.len());
     let at = random.below(bytes.len() - size + 1) & !(random.pick(&[0, 1, 3, 7]));
@@ -106,7 +107,7 @@ fn overwrite_length(bytes: &mut [u8], random: &mut Random) {
     bytes[at..at + size].copy_from_slice(&number.to_le_bytes()[..size]);
 }
 
-/// A part of the file is put in the place of another part of any length.
+/// Replaces a part of the file by a copy of another part, of any length.
 fn splice(bytes: &mut Vec<u8>, random: &mut Random) {
     let mut range = || {
         let start = random.below(bytes.len());
@@ -117,7 +118,7 @@ fn splice(bytes: &mut Vec<u8>, random: &mut Random) {
     bytes.splice(to, copy);
 }
 
-/// A run of digits becomes another number; bytes without one are flipped.
+/// Replaces a run of digits by another number; bytes without one are flipped.
 fn replace_number(bytes: &mut Vec<u8>, random: &mut Random) {
     let is_part = |b: &u8| b.is_ascii_digit() || b"+-.eE".contains(b);
     let from = random.below(bytes.len());

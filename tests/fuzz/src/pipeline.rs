@@ -1,4 +1,4 @@
-//! Both phases, on a scene that was accepted.
+//! Sampling and gathering on an accepted scene.
 
 use bssrdf::{Medium, Model, built_in};
 use formats::cloud::Cloud;
@@ -6,20 +6,20 @@ use gather::{
     Filter, Input,
     estimator::{Estimator, Rule},
 };
-use sample_surface::{Choice, Pattern, Plan, SampleError, Sampled, sample};
+use sample_surface::{Choice, Pattern, Plan, SampleError, Sampled, Surfaces, sample};
 use scene::{NormalKind, Rays, Scene};
 use test_support::pipeline::{self, Sampling, by_area, sample_settings};
 
 const SAMPLES: u64 = 40;
 
-/// Pixels a side.
+/// Side of the image, pixels.
 const SIDE: usize = 2;
 
-/// Beyond, numbers may get too large for float32; then the programs end with 3.
+/// Beyond this, numbers may leave float32; the programs then end with exit code 3.
 const SANE: f64 = 1e12;
 
-/// A cloud is drawn or refused. One that was drawn can be read again, and an image is made of it: of finite numbers, unless
-/// the scene's are absurd.
+/// A cloud is drawn or refused. A drawn cloud can be read again, and an image of it has finite numbers, unless those
+/// of the scene are absurd.
 pub fn check_pipeline(scene: &Scene, rays: &Rays) {
     let ways = [
         (Choice::Area, Pattern::Stratified, NormalKind::Shading, Estimator::Cut { accuracy: 0.01 }),
@@ -28,7 +28,8 @@ pub fn check_pipeline(scene: &Scene, rays: &Rays) {
     for (choice, pattern, normals, estimator) in ways {
         let sampling = Sampling { choice, pattern, ..by_area(SAMPLES, 0) };
         let settings = sample_settings(&sampling, normals, "");
-        let Ok(plan) = Plan::new(scene, &settings) else { return };
+        let Ok((surfaces, _)) = Surfaces::translucent(scene) else { return };
+        let Ok(plan) = Plan::new(scene, &settings, surfaces) else { return };
         match sample(scene, rays, &settings, &plan, |_| ()) {
             Ok(sampled) => render(scene, rays, &filed(&sampled), normals, estimator),
             Err(error) => assert!(matches!(error, SampleError::NotFinite { .. }), "{error}"),

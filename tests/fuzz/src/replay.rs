@@ -1,6 +1,6 @@
-//! Runs files through a target, each also with so many mutations: `replay TARGET MUTATIONS FILE...`.
+//! Runs files and mutations of them through a target: `replay TARGET MUTATIONS FILE...`.
 //!
-//! Prints the name of each case before it runs, so that the last line names the one that ended it.
+//! Prints the name of each case before it runs, so that the last line names the one that failed.
 
 use fuzz_targets::{mutation::mutate, target};
 use std::process::ExitCode;

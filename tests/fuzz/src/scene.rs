@@ -7,13 +7,13 @@ use scene::{
 };
 use test_support::glb::OPTIONS;
 
-/// Larger scenes are read and no more.
+/// Larger scenes are only read.
 const MAX_TRIANGLES: usize = 1 << 12;
-/// So many triangles are lit.
+/// Number of triangles that are lit.
 const LIT: usize = 64;
 
-/// An accepted scene has triangles with area, normals, light that is finite and not negative, and cameras; its media are
-/// media or are refused.
+/// An accepted scene has triangles with area, normals, light that is finite and not negative, and cameras; its media
+/// are valid or refused.
 pub fn gltf(bytes: &[u8]) -> bool {
     let imported = with_file("scene.glb", bytes, |path| {
         Scene::import(path, &OPTIONS).inspect_err(|e| assert!(e.to_string().contains("scene.glb"), "{e}"))

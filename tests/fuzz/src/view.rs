@@ -4,7 +4,7 @@ use crate::file::with_file;
 use scene::{Camera, Projection, View, ViewFile};
 use std::collections::HashSet;
 
-/// An accepted view is a camera whose rays have directions; views of a list have names that can be parts of file names.
+/// The rays of an accepted view have directions; names of the views of a list can be parts of file names.
 pub fn view(bytes: &[u8]) -> bool {
     let Ok(file) = with_file("view.json", bytes, View::read) else { return false };
     match file {
@@ -31,10 +31,10 @@ fn check_names<'a>(names: impl Iterator<Item = &'a str>) {
     }
 }
 
-/// Pixels of the image that rays are sent through.
+/// Resolution of the rays that are tested, pixels.
 const SIZE: [f64; 2] = [8.0, 6.0];
 
-/// Every ray starts somewhere and goes along a unit vector.
+/// Every ray has a finite origin and a unit direction.
 pub fn check_camera(camera: &Camera) {
     assert!(camera.position.is_finite());
     let (Projection::Perspective { tangent: extent } | Projection::Orthographic { half_height: extent }) =

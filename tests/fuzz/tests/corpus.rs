@@ -1,17 +1,17 @@
-//! Every file of `fuzz/corpus`, and damage to it, through its target, in a process whose memory and time are bounded.
+//! Every file of `fuzz/corpus`, and mutations of it, through its target, in a process with bounded memory and time.
 //!
-//! Planted errors that these tests caught: the section table of a cloud not held against the file's length (a panic),
-//! the pixels of a Radiance picture not held against it (48 GiB asked for), a node of a scene reached twice (an endless
-//! walk that takes all memory), a field of view, a coefficient and a limit without their range.
+//! Planted errors that these tests caught: the section table of a cloud not checked against the length of the file (a
+//! panic), the pixels of a Radiance file not checked against it (48 GiB requested), a node of a scene reached twice
+//! (endless recursion that takes all memory), a field of view, a coefficient and a limit without a range.
 
 use fuzz_targets::TARGETS;
 use std::path::{Path, PathBuf};
 use test_support::{Bench, Limits, Run};
 
-/// Of each file.
+/// Number of mutations of each file.
 const MUTATIONS: u64 = 400;
 
-/// Of one target. Pictures of the most texels fit, what a damaged length asks for does not.
+/// Limits of one target: the largest valid images fit, the memory that a corrupted length requests does not.
 const LIMITS: Limits = Limits { kibibytes: 2 << 20, seconds: 60 };
 
 fn corpus(target: &str) -> Vec<PathBuf> {
@@ -35,7 +35,7 @@ fn run(target: &str) -> [u64; 2] {
     [counts.0, counts.1].map(|n| n.parse().unwrap())
 }
 
-/// Both outcomes must be there, or the files test little.
+/// Both outcomes must occur, or the files test little.
 #[track_caller]
 fn assert_kept(target: &str) {
     let [accepted, cases] = run(target);

@@ -17,7 +17,7 @@ pub struct Bench {
     folder: TempDir,
 }
 
-/// What a program left when it ended.
+/// Exit status and output of a program.
 #[derive(Debug)]
 pub struct Run {
     pub status: ExitStatus,
@@ -25,7 +25,7 @@ pub struct Run {
     pub stderr: String,
 }
 
-/// What a program may take.
+/// Limits on the resources of a program.
 #[derive(Clone, Copy)]
 pub struct Limits {
     /// Address space.
@@ -34,7 +34,7 @@ pub struct Limits {
     pub seconds: u64,
 }
 
-/// A program of the workspace. Cargo builds tests into `deps` of the folder where it puts programs.
+/// Path of a program of the workspace. Cargo builds tests into `deps` below the folder of the programs.
 pub fn program(name: &str) -> PathBuf {
     let test = env::current_exe().expect("the test has a path");
     let path = test.parent().and_then(Path::parent).expect("the test lies in `deps`").join(name);
@@ -42,7 +42,7 @@ pub fn program(name: &str) -> PathBuf {
     path
 }
 
-/// A file of `data/`.
+/// Path of a file of `data/`.
 pub fn data(name: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data").join(name).to_string_lossy().into_owned()
 }
@@ -124,7 +124,7 @@ impl Bench {
         serde_json::from_slice(&self.read(name)).expect("JSON")
     }
 
-    /// All that lies in the folder, in order.
+    /// All entries of the folder, sorted.
     pub fn files(&self) -> Vec<PathBuf> {
         let entries = fs::read_dir(self.folder()).expect("lists");
         let mut files: Vec<PathBuf> = entries.map(|e| e.expect("an entry").path()).collect();
@@ -132,7 +132,7 @@ impl Bench {
         files
     }
 
-    /// A program that is about to start in the folder.
+    /// The command that starts a program in the folder.
     pub fn command(&self, name: &str, arguments: &[impl AsRef<OsStr>]) -> Command {
         let mut command = Command::new(program(name));
         command.current_dir(self.folder()).args(arguments);
@@ -143,7 +143,7 @@ impl Bench {
         Run::of(&mut self.command(name, arguments))
     }
 
-    /// Starts a program whose output the test reads itself.
+    /// Starts a program with its output piped.
     pub fn start(&self, name: &str, arguments: &[&str]) -> Child {
         let mut command = self.command(name, arguments);
         command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts")

@@ -1,19 +1,21 @@
-//! Does a sampler follow its density? Pearson's chi-square test.
+//! Tests whether a sampler follows its density: Pearson's chi-square test.
 
 use crate::significance;
 use compare::distribution::ln_gamma;
 
-/// Cells that expect fewer are pooled: below it the statistic does not follow the chi-square distribution.
+/// Cells with a smaller expected count are pooled: below it the statistic does not follow the chi-square
+/// distribution.
 const MIN_EXPECTED: f64 = 8.0;
 
-/// Fails if the counts differ from what is expected by more than chance allows.
+/// Fails if the counts differ from the expected ones by more than the common significance level allows.
 pub fn assert_fits(what: &str, observed: &[u64], expected: &[f64]) {
     let p = p_value(observed, expected);
     println!("{what}: p = {p:.4}");
     assert!(p >= significance(), "{what}: the counts do not follow the density, p = {p:.2e}");
 }
 
-/// Chance of counts as far from the expected ones, or farther. Counts where nothing is expected have none.
+/// Probability of counts as far from the expected ones, or farther; zero if a count is positive where none is
+/// expected.
 pub fn p_value(observed: &[u64], expected: &[f64]) -> f64 {
     assert_eq!(observed.len(), expected.len());
     let total: u64 = observed.iter().sum();
@@ -28,7 +30,7 @@ pub fn p_value(observed: &[u64], expected: &[f64]) -> f64 {
     upper_gamma(0.5 * freedom, 0.5 * statistic)
 }
 
-/// Neighbouring cells joined until each expects enough.
+/// Joins neighbouring cells until each expects enough.
 fn pool(observed: &[u64], expected: &[f64]) -> Vec<(f64, f64)> {
     let mut cells: Vec<(f64, f64)> = Vec::new();
     let mut open = (0.0, 0.0);

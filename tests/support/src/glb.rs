@@ -1,4 +1,4 @@
-//! Tiny glTF files: written field by field, taken apart and imported.
+//! Small glTF files: written field by field, taken apart and imported.
 
 use scene::{ImportOptions, LightUnit, Scene};
 use serde_json::{Value, json};
@@ -145,7 +145,7 @@ pub fn container(chunks: &[(&[u8; 4], &[u8])]) -> Vec<u8> {
     [b"glTF".as_slice(), &2u32.to_le_bytes(), &length.to_le_bytes(), &body].concat()
 }
 
-/// The content of the chunks of a .glb that are there as its lengths say.
+/// The contents of the chunks of a .glb, up to the first one whose length does not fit.
 pub fn chunks(bytes: &[u8]) -> Vec<&[u8]> {
     let mut rest = bytes.get(12..).filter(|_| bytes.starts_with(b"glTF")).unwrap_or_default();
     let mut found = Vec::new();

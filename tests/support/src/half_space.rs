@@ -1,4 +1,4 @@
-//! What the models say of half-spaces and slabs: their plane integrals, in units of the reduced mean free path.
+//! Half-spaces and slabs by the models: plane integrals, in units of the reduced mean free path.
 
 use crate::quadrature::{Extent, integrate_graded, plane_integral};
 use bssrdf::{DVec3, Medium, Model, Separation, fresnel};
@@ -35,8 +35,8 @@ pub fn reflectance(model: Model, albedo: f64, eta: f64, cosine: f64) -> f64 {
     interface(eta, cosine) * plane_integral(&*model, 0, sine, extent)
 }
 
-/// Share of the light of normal incidence that leaves a slab of `thickness` reduced mean free paths at the back,
-/// scattered: the samples lie on the front, the exitant point on the back with the opposite normal.
+/// Share of the light of normal incidence that a slab of `thickness` reduced mean free paths scatters out of its
+/// back: the samples lie on the front, the exitant point on the back with the opposite normal.
 pub fn transmission(model: Model, albedo: f64, eta: f64, thickness: f64) -> f64 {
     let medium = medium(albedo, eta);
     let model = model.of(&medium);

@@ -26,14 +26,14 @@ pub mod z_test;
 pub use bench::{Bench, Limits, Run, data, program};
 pub use random::Random;
 
-/// How many times more samples and seeds the statistics use than in the fast run.
+/// Factor on the samples and seeds of the statistics: more of them with the feature `slow`.
 pub const EFFORT: u64 = if cfg!(feature = "slow") { 16 } else { 1 };
 
-/// Chance that a correct program fails any of the statistical decisions, were its seeds drawn anew; they are fixed, so
-/// that a test that passed once passes always.
+/// Chance that a correct program fails any of the statistical decisions, were its seeds drawn anew. They are fixed,
+/// so that a test that passed once passes always.
 pub const FALSE_ALARM_RATE: f64 = 1e-3;
 
-/// Statistical decisions in all tests together, at most.
+/// Upper bound of the number of statistical decisions in all tests together.
 pub const DECISIONS: f64 = 400.0;
 
 /// The p-value below which one decision fails (Šidák's correction of [`FALSE_ALARM_RATE`] for [`DECISIONS`]).

@@ -131,8 +131,8 @@ fn light_node(light: &Light) -> Value {
     }
 }
 
-/// A square in the plane of height `z`, facing +Z, with `cells` × `cells` × 2 triangles; `x` tells where it begins and
-/// ends along X, its half width is taken along Y.
+/// A rectangle in the plane of height `z`, facing +Z, with `cells` × `cells` × 2 triangles: from `x[0]` to `x[1]`
+/// along X, and `half_width` to either side along Y.
 pub fn rectangle(x: [f64; 2], half_width: f64, z: f64, cells: u32) -> Mesh {
     let mut mesh = Mesh::default();
     let share = |k: u32| f64::from(k) / f64::from(cells);
@@ -157,8 +157,8 @@ pub fn quad(half_width: f64, z: f64, cells: u32) -> Mesh {
     rectangle([-half_width, half_width], half_width, z, cells)
 }
 
-/// A disc about the origin facing +Z whose triangles shrink towards the centre: uniform choice among them puts the same
-/// number of samples into every octave of the distance.
+/// A disc about the origin facing +Z, whose triangles shrink towards the centre: the uniform choice among them puts
+/// the same number of samples into every octave of the distance.
 pub fn graded_disc(inner: f64, outer: f64, rings: u32) -> Mesh {
     const SECTORS: u32 = 24;
     let mut mesh = Mesh { positions: vec![Vec3::ZERO], triangles: Vec::new() };
@@ -181,8 +181,8 @@ pub fn graded_disc(inner: f64, outer: f64, rings: u32) -> Mesh {
     mesh
 }
 
-/// A closed box about the origin; each side has `cells` × `cells` × 2 triangles, the cells narrowing towards one edge
-/// so that areas are uneven.
+/// A closed box about the origin; each side has `cells` × `cells` × 2 triangles, which narrow towards one edge so
+/// that areas are uneven.
 pub fn slab(half_size: DVec3, cells: u32) -> Mesh {
     let square = quad(1.0, 1.0, cells);
     let mut mesh = Mesh::default();

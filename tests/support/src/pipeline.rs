@@ -1,4 +1,4 @@
-//! Both phases as functions: a scene to a cloud, a cloud to radiance at a point.
+//! Sampling and gathering as functions: a scene to a cloud, a cloud to radiance at a point.
 
 use crate::meshes::World;
 use bssrdf::{Medium, Model};
@@ -11,19 +11,19 @@ use gather::{
     estimator::{Estimator, Rule},
 };
 use glam::DVec3;
-use sample_surface::{Choice, Pattern, Plan, Sampled, Settings};
+use sample_surface::{Choice, Pattern, Plan, Sampled, Settings, Surfaces};
 use scene::{Camera, NormalKind, Projection};
 use std::path::Path;
 
 pub use crate::lit::{Lit, Point};
 
-/// How phase one samples in a test.
+/// Settings of sampling in a test.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampling {
     pub samples: u64,
     pub choice: Choice,
     pub pattern: Pattern,
-    /// Of the samples, on the first material.
+    /// Share of the samples on the first material.
     pub share: Option<f64>,
     pub seed: u64,
     pub shard: Shard,
@@ -34,62 +34,56 @@ pub fn by_area(samples: u64, seed: u64) -> Sampling {
     Sampling { samples, choice: Choice::Area, pattern: Pattern::Independent, share: None, seed, shard: Shard::ALONE }
 }
 
-/// Well-spread samples by area: what the programs draw by default.
+/// Stratified samples by area, which the programs draw by default.
 pub fn stratified(samples: u64, seed: u64) -> Sampling {
     Sampling { pattern: Pattern::Stratified, ..by_area(samples, seed) }
 }
 
-/// Phase one in memory.
+/// Samples in memory.
 pub fn sampled(world: &World, sampling: &Sampling) -> Sampled {
     sampled_with(world, sampling, NormalKind::Geometric)
 }
 
-/// Phase one in memory, with these normals.
+/// Samples in memory, with these normals.
 pub fn sampled_with(world: &World, sampling: &Sampling, normals: NormalKind) -> Sampled {
     let first = world.scene.materials[0].name.clone();
     let settings = sample_settings(sampling, normals, &first);
-    let plan = Plan::new(&world.scene, &settings).expect("the scene has light and a surface");
+    let (translucent, _) = Surfaces::translucent(&world.scene).expect("the scene has a surface");
+    let surfaces = Surfaces { shares: sampling.share.map(|share| (0, share)).into_iter().collect(), ..translucent };
+    let plan = Plan::new(&world.scene, &settings, surfaces).expect("the scene has light");
     sample_surface::sample(&world.scene, &world.rays, &settings, &plan, |_| ()).expect("every flux is finite")
 }
 
-/// Settings of phase one for a scene whose first material has this name.
+/// Settings of `sample-surface` for a scene whose first material has this name.
 pub fn sample_settings(sampling: &Sampling, normals: NormalKind, first: &str) -> Settings {
-    let shares: Vec<(String, f64)> = sampling.share.map(|share| (first.into(), share)).into_iter().collect();
-    Settings {
-        samples: sampling.samples,
+    let options = Options {
+        seed: sampling.seed,
+        shard: sampling.shard,
         choice: sampling.choice,
         pattern: sampling.pattern,
-        normals,
-        translucent: Vec::new(),
-        shares: shares.clone(),
-        options: Options {
-            seed: sampling.seed,
-            shard: sampling.shard,
-            choice: sampling.choice,
-            pattern: sampling.pattern,
-            shares,
-            normals: if normals == NormalKind::Geometric { Normals::Geometric } else { Normals::Shading },
-            metres_per_unit: 1.0,
-            light_unit: LightUnit::Radiometric,
-            emission_unit: LightUnit::Radiometric,
-            environment: "0,0,0".into(),
-        },
-    }
+        shares: sampling.share.map(|share| (first.into(), share)).into_iter().collect(),
+        normals: if normals == NormalKind::Geometric { Normals::Geometric } else { Normals::Shading },
+        metres_per_unit: 1.0,
+        light_unit: LightUnit::Radiometric,
+        emission_unit: LightUnit::Radiometric,
+        environment: "0,0,0".into(),
+    };
+    Settings { samples: sampling.samples, options }
 }
 
-/// Writes what phase one made.
+/// Writes a cloud.
 pub fn write(sampled: &Sampled, path: &Path) {
     let mut output = Output::create(path).expect("the temporary folder is writable");
     cloud::write(&mut output, path, &sampled.content, &sampled.meta).expect("the temporary folder is writable");
     output.commit().expect("the temporary folder is writable");
 }
 
-/// Phase one to a file and back.
+/// Samples a scene into a file and opens it.
 pub fn cloud(world: &World, sampling: &Sampling) -> Cloud {
     filed(&sampled(world, sampling))
 }
 
-/// What phase one made, to a file and back.
+/// Writes a cloud to a file and opens it.
 pub fn filed(sampled: &Sampled) -> Cloud {
     let folder = tempfile::tempdir().expect("the temporary folder is writable");
     let path = folder.path().join("test.cloud");
@@ -113,7 +107,7 @@ pub fn orthographic(towards: DVec3, half_height: f64) -> Camera {
     }
 }
 
-/// One path through the centre of each pixel, the whole sum, and nothing but the cloud's light.
+/// One path through the centre of each pixel, the exhaustive sum, and no light but that of the cloud.
 pub fn settings(model: Model, width: usize, height: usize) -> gather::Settings {
     gather::Settings {
         width,
@@ -135,7 +129,7 @@ pub const MODELS: [Model; 3] = [Model::DirectionalDipole, Model::BetterDipole, M
 /// All rules of the roulette.
 pub const RULES: [Rule; 3] = [Rule::Mixture, Rule::Mean, Rule::Min];
 
-/// Every estimator: the roulette by each rule, the cut at the accuracy that is its default and at a loose one.
+/// Every estimator: the roulette with each rule, the cut with its default accuracy and with a loose one.
 pub const ESTIMATORS: [Estimator; 6] = [
     Estimator::Exhaustive,
     Estimator::Roulette(Rule::Mixture),
@@ -145,12 +139,12 @@ pub const ESTIMATORS: [Estimator; 6] = [
     Estimator::Cut { accuracy: 0.5 },
 ];
 
-/// Coefficients of one grey channel in 1/m, the same in all three.
+/// A medium with these coefficients in all three channels, 1/m.
 pub fn grey(sigma_a: f64, sigma_s: f64, asymmetry: f64, eta: f64) -> Medium {
     medium([bssrdf::Coefficients { sigma_a, sigma_s, asymmetry }; 3], eta)
 }
 
-/// A medium that was never a file: coefficients in 1/m.
+/// A medium from coefficients, 1/m.
 pub fn medium(channels: [bssrdf::Coefficients; 3], eta: f64) -> Medium {
     let interface = bssrdf::Interface::new(eta);
     Medium { name: "test".into(), source: String::new(), channels, eta, interface }

@@ -1,4 +1,4 @@
-//! Clouds of samples that a test chooses, ordered and filed as phase one does with its own.
+//! Clouds of samples that a test chooses, ordered as `sample-surface` orders its own.
 
 use crate::pipeline::filed;
 use formats::cloud::{
@@ -7,10 +7,10 @@ use formats::cloud::{
 use sample_surface::{Sampled, hierarchy};
 use std::collections::BTreeMap;
 
-/// Samples of one material in its two halves.
+/// The samples of one material in two halves.
 pub type Halves = [Vec<Sample>; 2];
 
-/// Even samples in the first half, odd ones in the second.
+/// Puts even samples into the first half, odd ones into the second.
 pub fn alternating(samples: impl IntoIterator<Item = Sample>) -> Halves {
     let mut halves = Halves::default();
     samples.into_iter().enumerate().for_each(|(k, sample)| halves[k % 2].push(sample));
@@ -27,7 +27,7 @@ pub fn stored(cloud: &Cloud) -> Vec<Halves> {
     cloud.meta().materials.iter().map(list).collect()
 }
 
-/// What phase one would have made of these samples, one entry for each material, beside other facts.
+/// A cloud of these samples, one entry for each material, with the other metadata of `facts`.
 pub fn planted(facts: &Meta, materials: &[Halves]) -> Sampled {
     assert_eq!(facts.materials.len(), materials.len());
     let mut content = Content::default();
@@ -49,12 +49,12 @@ fn add(content: &mut Content, samples: &[Sample]) -> Group {
     Group { samples: samples.len() as u64, first_tile, first_node }
 }
 
-/// A cloud of one material that holds nothing but these samples, about the origin of the world.
+/// A cloud of one material that holds exactly these samples, about the origin of the world.
 pub fn cloud_of(halves: &Halves) -> Cloud {
     filed(&planted(&facts(), std::slice::from_ref(halves)))
 }
 
-/// Facts of a cloud of no scene.
+/// Metadata of a cloud that belongs to no scene.
 fn facts() -> Meta {
     let options = Options {
         seed: 0,

@@ -1,10 +1,10 @@
-//! Integrals with known accuracy: composite Gauss-Legendre, graded where functions are.
+//! Integrals of known accuracy: composite Gauss-Legendre, with graded panels where functions span many scales.
 
 use bssrdf::{Bssrdf, Separation};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Points of a panel.
+/// Number of points in a panel.
 const ORDER: usize = 12;
 
 /// Nodes and weights on [−1, 1]: Newton's method on the Legendre polynomial.
@@ -37,22 +37,22 @@ pub fn integrate(low: f64, high: f64, panels: usize, f: impl Fn(f64) -> f64) -> 
     (0..panels).map(panel).sum()
 }
 
-/// `∫ f` over [low, high] in the logarithm of its variable: for functions that live on many scales.
+/// `∫ f` over [low, high] in the logarithm of the variable, for functions that span many scales.
 pub fn integrate_graded(low: f64, high: f64, panels: usize, f: impl Fn(f64) -> f64) -> f64 {
     integrate(low.ln(), high.ln(), panels, |u| u.exp() * f(u.exp()))
 }
 
-/// How far from the origin a plane integral goes.
+/// Radii between which a plane integral is evaluated.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
-    /// Within this the integrand is taken as constant, m.
+    /// The integrand is taken as constant within this radius, m.
     pub inner: f64,
-    /// Beyond this it is taken as zero, m.
+    /// The integrand is taken as zero beyond this radius, m.
     pub outer: f64,
 }
 
-/// `∫ S_bare dA` of one channel over a plane, for light that was refracted to the polar angle of `sine` inside; polar
-/// coordinates about the exitant point, graded in the radius, evenly spaced in the (periodic) angle.
+/// `∫ S_bare dA` of one channel over a plane, for light refracted to the polar angle of `sine`; in polar coordinates
+/// about the exitant point, graded in the radius, evenly spaced in the (periodic) angle.
 pub fn plane_integral(model: &dyn Bssrdf, channel: usize, sine: f64, extent: Extent) -> f64 {
     const ANGLES: usize = 128;
     let refracted = DVec3::new(sine, 0.0, -(1.0 - sine * sine).sqrt());

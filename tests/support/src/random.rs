@@ -1,9 +1,9 @@
-//! Random test data.
+//! Random numbers for test data.
 
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// SplitMix64 (Steele, Lea and Flood 2014): test data only, unrelated to the streams that are under test.
+/// SplitMix64 (Steele, Lea and Flood 2014), for test data: unrelated to the random streams under test.
 pub struct Random(pub u64);
 
 impl Random {

@@ -1,6 +1,6 @@
-//! Random walks in a scattering medium behind a smooth boundary: exact, whatever the models approximate.
+//! Random walks in a scattering medium behind a smooth boundary, the exact solution that the models approximate.
 //!
-//! Lengths are mean free paths. Weights are 1 throughout: absorption ends a walk, so that every walk ends.
+//! Lengths are mean free paths. All weights are 1: absorption ends a walk, so that every walk ends.
 
 use crate::random::Random;
 use bssrdf::fresnel;
@@ -14,7 +14,7 @@ pub struct Matter {
     pub albedo: f64,
     /// Mean cosine of the Henyey-Greenstein phase function.
     pub asymmetry: f64,
-    /// Inside over outside.
+    /// Index inside over index outside.
     pub eta: f64,
 }
 
@@ -32,18 +32,18 @@ impl Estimate {
     }
 }
 
-/// What a slab does with the light that falls on it, reflection at the first boundary not counted.
+/// Shares of the incident light that a slab reflects and transmits; reflection at the first boundary is not counted.
 #[derive(Clone, Copy, Debug)]
 pub struct Balance {
     pub reflected: Estimate,
     pub transmitted: Estimate,
 }
 
-/// Walks that one task takes.
+/// Number of walks in one task.
 const PORTION: u64 = 10_000;
 
-/// Light of incidence cosine `cosine` on a slab of `thickness` mean free paths; infinite for a half-space. Only light
-/// that was scattered counts.
+/// Light of incidence cosine `cosine` on a slab of `thickness` mean free paths, infinite for a half-space. Only
+/// scattered light counts.
 pub fn slab(matter: &Matter, thickness: f64, cosine: f64, walks: u64, seed: u64) -> Balance {
     let portion = |index: u64| {
         let mut random = Random(seed.wrapping_mul(0x9E37_79B9).wrapping_add(index << 40));
@@ -69,7 +69,7 @@ enum End {
     Lost,
 }
 
-/// One walk; depth grows downwards, the direction's z with it.
+/// One walk; depth and the z of the direction grow downwards.
 fn walk(matter: &Matter, thickness: f64, cosine: f64, random: &mut Random) -> End {
     let light = DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
     let Some(entry) = fresnel::enter(DVec3::Z, light, matter.eta) else {
@@ -84,7 +84,7 @@ fn walk(matter: &Matter, thickness: f64, cosine: f64, random: &mut Random) -> En
         let step = free_path(random);
         let next = depth + step * direction.z;
         if next < 0.0 || next > thickness {
-            // To the boundary, whose far side is a new start: free paths have no memory.
+            // The walk continues at the boundary: free paths have no memory.
             depth = if next < 0.0 { 0.0 } else { thickness };
             if random.uniform() < fresnel::transmittance(direction.z.abs(), 1.0 / matter.eta) {
                 return match (scattered, next < 0.0) {
@@ -125,8 +125,8 @@ pub fn scatter(direction: DVec3, g: f64, random: &mut Random) -> DVec3 {
     (x * (sine * a) + y * (sine * b) + direction * cosine).normalize()
 }
 
-/// Reflectance of a half-space of isotropic scatterers without a boundary: `1 − H(μ)√(1−ϖ)` (Chandrasekhar 1950), with
-/// `H` from its integral equation by iteration. What the walk is checked against.
+/// Reflectance of a half-space of isotropic scatterers without a boundary, `1 − H(μ)√(1−ϖ)` (Chandrasekhar 1950),
+/// with `H` from its integral equation by iteration. The walk is checked against it.
 pub fn chandrasekhar(albedo: f64, cosine: f64) -> f64 {
     const NODES: usize = 400;
     let root = (1.0 - albedo).sqrt();

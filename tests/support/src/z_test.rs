@@ -1,16 +1,16 @@
-//! Is a mean right? Tests of means whose error is known only from the scatter of independent runs: the mean is that
-//! many standard errors off, and the chance of it is Student's, not Gauss's, because the error is estimated too.
+//! Tests of means whose error is estimated from the scatter of independent runs: the deviation in standard errors
+//! follows the distribution of Student, since the error is estimated too.
 
 use crate::significance;
 use compare::distribution::student_two_sided;
 
-/// Mean of independent runs and what is known of its error.
+/// Mean of independent runs, and its error.
 #[derive(Clone, Copy, Debug)]
 pub struct Estimate {
     pub mean: f64,
     /// Standard error of the mean.
     pub error: f64,
-    /// Degrees of freedom that the error was estimated with.
+    /// Degrees of freedom of the estimated error.
     pub freedom: f64,
 }
 
@@ -36,12 +36,12 @@ impl Estimate {
         self.minus(other.scaled(-1.0))
     }
 
-    /// The estimate of a multiple.
+    /// The estimate times a constant.
     pub fn scaled(self, factor: f64) -> Estimate {
         Estimate { mean: self.mean * factor, error: self.error * factor.abs(), ..self }
     }
 
-    /// How many standard errors the mean is above `expected`.
+    /// Number of standard errors by which the mean exceeds `expected`.
     pub fn deviation(self, expected: f64) -> f64 {
         (self.mean - expected) / self.error
     }
@@ -51,20 +51,20 @@ impl Estimate {
         (self.error / self.mean).abs()
     }
 
-    /// Chance of a mean as far from `expected`, or farther.
+    /// Probability of a mean as far from `expected`, or farther.
     pub fn p_value(self, expected: f64) -> f64 {
         student_two_sided(self.deviation(expected), self.freedom)
     }
 }
 
-/// Fails if the mean is farther from `expected` than chance allows.
+/// Fails if the mean is farther from `expected` than the common significance level allows.
 pub fn assert_mean(what: &str, estimate: Estimate, expected: f64) {
     let (z, p) = (estimate.deviation(expected), estimate.p_value(expected));
     println!("{what}: {:.5e} ± {:.1e} for {expected:.5e}, z = {z:.2}", estimate.mean, estimate.error);
     assert!(p >= significance(), "{what}: {estimate:?} is not {expected}: z = {z:.2}, p = {p:.2e}");
 }
 
-/// Fails if two independent means differ by more than chance allows; reported as their ratio.
+/// Fails if two independent means differ by more than that level allows; reports their ratio.
 pub fn assert_equal(what: &str, a: Estimate, b: Estimate) {
     let difference = a.minus(b).scaled(1.0 / b.mean);
     assert_mean(what, Estimate { mean: 1.0 + difference.mean, ..difference }, 1.0);

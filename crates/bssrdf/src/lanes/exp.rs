@@ -1,12 +1,12 @@
-//! The exponential in float32: no library call, so that it vectorises and is the same everywhere.
+//! The exponential in float32, without a library call, so that it vectorizes and has the same bits everywhere.
 
 use std::f32::consts::LOG2_E;
 
-/// Adding this rounds a float32 below 2²² to an integer, whose bits are then the low ones of the sum: with the exponent's
-/// bias of 127 already in them, for a shift to the left makes a power of two.
+/// Adding this rounds a float32 below 2²² to an integer, whose bits are the low ones of the sum. They include the bias of
+/// the exponent, 127, so that a shift to the left makes a power of two.
 const ROUND: f32 = 12_582_912.0 + 127.0;
 
-/// At this exponent the power of two is 0, and so is the result: it would be subnormal.
+/// At this exponent the power of two, and with it the result, becomes 0 instead of subnormal.
 const UNDERFLOW: f32 = -127.0;
 
 /// `eˣ` for `x ≤ 1`, within 2 units in the last place; 0 below −87.7, subnormal in the last third before.
@@ -21,22 +21,22 @@ pub fn exp_negative(x: f32) -> f32 {
     power + power * power_less_one(f * LOG2_E)
 }
 
-/// `2ˣ` for `x ≤ 1`; 0 below −126.5. Where `x` itself is rounded, this is no less exact than `eˣ`, and cheaper.
+/// `2ˣ` for `x ≤ 1`; 0 below −126.5. It is cheaper than `eˣ`, and as exact where `x` itself is rounded.
 #[inline(always)]
-pub(super) fn exp2_negative(x: f32) -> f32 {
+pub(crate) fn exp2_negative(x: f32) -> f32 {
     let (power, less_one) = split(x);
     power + power * less_one
 }
 
 /// `2ˣ` and `1 − 2ˣ` for `x ≤ 2`, each without cancellation.
 #[inline(always)]
-pub(super) fn decay2(x: f32) -> (f32, f32) {
+pub(crate) fn decay2(x: f32) -> (f32, f32) {
     let (power, less_one) = split(x);
     let rest = power * less_one;
     (power + rest, (1.0 - power) - rest)
 }
 
-/// A power of two, and `2ᶠ − 1` for what is left of `x`.
+/// `2ⁿ` and `2ᶠ − 1` with `x = n + f`.
 #[inline(always)]
 fn split(x: f32) -> (f32, f32) {
     let clamped = if x > UNDERFLOW { x } else { UNDERFLOW };
@@ -53,7 +53,7 @@ fn power_of_two(shifted: f32) -> f32 {
 /// `2ᶠ − 1` for `|f| ≤ ½`: minimax of its relative error, 1.2·10⁻⁸.
 #[inline(always)]
 fn power_less_one(f: f32) -> f32 {
-    // Pairs first, so that few results wait for one another.
+    // In pairs, so that few operations wait for one another.
     let squared = f * f;
     let low = 2.402_265e-1 * f + 6.931_472e-1;
     let middle = 9.618_238e-3 * f + 5.550_357_4e-2;
@@ -75,9 +75,9 @@ mod tests {
             let exact = f64::from(x).exp2();
             assert!((f64::from(exp2_negative(x)) / exact - 1.0).abs() < 2.5e-7, "{x}");
             let exact = -(f64::from(x) * std::f64::consts::LN_2).exp_m1();
-            let (stays, fades) = decay2(x);
-            assert_eq!(stays, exp2_negative(x));
-            let error = f64::from(fades) / exact - 1.0;
+            let (decay, one_minus_decay) = decay2(x);
+            assert_eq!(decay, exp2_negative(x));
+            let error = f64::from(one_minus_decay) / exact - 1.0;
             assert!(x == 0.0 || error.abs() < 3e-7, "{x} {error}");
         }
     }

@@ -5,41 +5,37 @@ use std::fmt;
 
 /// The rule by which triangles are chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Choice {
-    /// In proportion to area
+    /// In proportion to area.
     Area,
-    /// Every triangle with the same probability, as in the note
+    /// Every triangle with the same probability, as in the note.
     Uniform,
 }
 
 /// How samples are spread over the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Pattern {
-    /// Evenly: a lattice along ribbons of triangles, and a scrambled sequence for the light
+    /// Evenly: a lattice along ribbons of triangles, and a scrambled sequence for the light.
     Stratified,
-    /// Independently, as in the note
+    /// Independently, as in the note.
     Independent,
 }
 
 /// The normals with which cosines are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Normals {
-    /// Interpolated from the vertices
+    /// Interpolated from the vertices.
     Shading,
-    /// Those of the triangles, as in the note
+    /// Those of the triangles, as in the note.
     Geometric,
 }
 
 /// The unit of a scene file's lights or emitting materials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum LightUnit {
-    /// Watts
+    /// Watts.
     Radiometric,
-    /// Lumens, divided by 683 lm/W
+    /// Lumens, divided by 683 lm/W.
     Photometric,
 }
 
@@ -47,6 +43,8 @@ pub enum LightUnit {
 macro_rules! names {
     ($type:ident: $($value:ident = $name:literal),+) => {
         impl $type {
+            pub const ALL: &'static [$type] = &[$($type::$value),+];
+
             pub fn name(self) -> &'static str {
                 match self {
                     $($type::$value => $name,)+

@@ -1,9 +1,8 @@
 //! The colors of errors: black, violet, red, orange, yellow.
 //!
-//! Equal steps of the error are equal steps of lightness in Oklab (Ottosson, "A perceptual color space for image processing",
-//! 2020), so that the picture can also be read in gray and by those who do not tell red from green.
+//! Equal steps of the error are equal steps of lightness in Oklab, so that the picture can also be read in gray and by those who do not tell red from green.
 
-use color::srgb;
+use color::{oklab, srgb};
 use std::f64::consts::FRAC_PI_2;
 
 /// The number of steps of the scale, which is more than eight bits of lightness can show.
@@ -53,28 +52,16 @@ pub(super) fn scale() -> [[u8; 3]; STEPS] {
 fn color(part: f64) -> [u8; 3] {
     let hue = (HUES[0] + (HUES[1] - HUES[0]) * part).to_radians();
     let lightness = LIGHTEST * part;
+    let light = |chroma: f64| oklab::to_linear([lightness, chroma * hue.cos(), chroma * hue.sin()]);
     let wanted = CHROMA * (FRAC_PI_2 * part).sin().sqrt();
     // sRGB has no vivid dark colors: bisection finds the largest chroma that it can show; that of black is zero.
     let (mut chroma, mut step) = (wanted, wanted / 2.0);
     for _ in 0..20 {
-        let shown = linear_srgb(lightness, chroma, hue).iter().all(|light| (0.0..=1.0).contains(light));
+        let shown = light(chroma).iter().all(|light| (0.0..=1.0).contains(light));
         chroma = (chroma + if shown { step } else { -step }).min(wanted);
         step /= 2.0;
     }
-    linear_srgb(lightness, chroma, hue).map(srgb::encode_byte)
-}
-
-/// Converts by Oklab's matrices, which are those of the paper's page.
-fn linear_srgb(lightness: f64, chroma: f64, hue: f64) -> [f64; 3] {
-    let (a, b) = (chroma * hue.cos(), chroma * hue.sin());
-    let l = (lightness + 0.396_337_777_4 * a + 0.215_803_757_3 * b).powi(3);
-    let m = (lightness - 0.105_561_345_8 * a - 0.063_854_172_8 * b).powi(3);
-    let s = (lightness - 0.089_484_177_5 * a - 1.291_485_548_0 * b).powi(3);
-    [
-        4.076_741_662_1 * l - 3.307_711_591_3 * m + 0.230_969_929_2 * s,
-        -1.268_438_004_6 * l + 2.609_757_401_1 * m - 0.341_319_396_5 * s,
-        -0.004_196_086_3 * l - 0.703_418_614_7 * m + 1.707_614_701_0 * s,
-    ]
+    light(chroma).map(srgb::encode_byte)
 }
 
 #[cfg(test)]

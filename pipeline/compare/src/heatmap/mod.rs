@@ -5,6 +5,7 @@ use picture::Picture;
 
 use crate::choice::Choice;
 use crate::layer::{Layer, layers};
+use crate::metric::Pair;
 use crate::structure::Mismatch;
 
 mod color;
@@ -54,7 +55,7 @@ pub fn heatmap(reference: &Image, test: &Image, choice: &Choice, max: f64) -> Re
         return Err(HeatmapError::TooLarge { width, height });
     }
     let mut picture = Picture::new(width, height, legend::PAPER);
-    let (scale, planes, mut counts) = (color::scale(), layer.samples().planes, Counts::default());
+    let (scale, planes, mut counts) = (color::scale(), layer.samples(), Counts::default());
     for pixel in 0..reference.width * reference.height {
         let (left, top) = (pixel % reference.width * zoom, pixel / reference.width * zoom);
         let color = counts.shade(&scale, error(&planes, pixel), max);
@@ -71,7 +72,7 @@ fn choose<'a, 'b>(layers: &'b [Layer<'a>], choice: &Choice) -> Result<&'b Layer<
 }
 
 /// The largest absolute error of a pixel among the channels, or `None` where an image is not finite.
-fn error(planes: &[(&[f32], &[f32])], pixel: usize) -> Option<f64> {
+fn error(planes: &[Pair<'_>], pixel: usize) -> Option<f64> {
     planes.iter().try_fold(0.0_f64, |worst, (reference, test)| {
         let error = (f64::from(test[pixel]) - f64::from(reference[pixel])).abs();
         error.is_finite().then_some(worst.max(error))
@@ -85,7 +86,7 @@ mod tests {
     /// Seen to catch: the sum of the channels, errors with their sign, NaN lost in `max`.
     #[test]
     fn the_largest_channel_counts_and_nan_is_none() {
-        let planes: [(&[f32], &[f32]); 2] = [
+        let planes: [Pair<'_>; 2] = [
             (&[0.0, 1.0, 0.0, f32::INFINITY], &[0.5, 1.0, f32::NAN, f32::INFINITY]),
             (&[2.0, 1.0, 0.0, 0.0], &[1.0, 1.0, 9.0, 0.0]),
         ];

@@ -130,8 +130,8 @@ fn surroundings(report: &LayerReport, image: &Image) -> Vec<Rectangle> {
 }
 
 fn grid(layer: &Layer<'_>, row: usize, area: Rectangle, block: usize) -> Grid {
-    let pairs: Vec<(&[f32], &[f32])> = layer.samples().planes;
-    let texts: Vec<(String, Option<String>)> = pairs
+    let texts: Vec<(String, Option<String>)> = layer
+        .samples()
         .par_iter()
         .map(|(reference, test)| {
             let [reference, test] = [reference, test].map(|samples| means(samples, row, area, block));

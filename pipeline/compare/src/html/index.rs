@@ -5,6 +5,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
 use super::embed;
 use super::thumbnail::{HEAT_RANGE, Thumbnails};
@@ -34,7 +35,7 @@ pub enum IndexError {
     Json(#[from] serde_json::Error),
 }
 
-/// The part of the JSON of a report that the index needs. `None` is a number that is not finite.
+/// The part of the JSON of a report that the index needs.
 #[derive(Deserialize)]
 struct Numbers {
     reference: String,
@@ -42,26 +43,8 @@ struct Numbers {
     verdict: String,
     pass: bool,
     judged: Vec<String>,
-    gates: Vec<GateNumbers>,
-    layers: Vec<LayerNumbers>,
-}
-
-#[derive(Deserialize)]
-struct GateNumbers {
-    value: Option<f64>,
-    limit: Option<f64>,
-    ok: bool,
-}
-
-#[derive(Deserialize)]
-struct LayerNumbers {
-    name: String,
-    channels: Vec<ChannelNumbers>,
-}
-
-#[derive(Deserialize)]
-struct ChannelNumbers {
-    relmse: Option<f64>,
+    gates: Vec<Value>,
+    layers: Vec<Value>,
 }
 
 /// A row of the index.
@@ -81,12 +64,6 @@ struct Row {
     thumbnails: Thumbnails,
 }
 
-#[derive(Serialize)]
-struct Rows {
-    rows: Vec<Row>,
-    heat_range: [f64; 2],
-}
-
 /// The page that lists reports of [`super::page`], to be written to the file `target`. Those that failed come first, by the ratio
 /// to their limit, then the others by relMSE.
 pub fn index(target: &Path, reports: &[PathBuf]) -> Result<Vec<u8>, IndexError> {
@@ -97,7 +74,7 @@ pub fn index(target: &Path, reports: &[PathBuf]) -> Result<Vec<u8>, IndexError> 
         let by_numbers = b.excess.total_cmp(&a.excess).then(b.relmse.total_cmp(&a.relmse));
         a.pass.cmp(&b.pass).then(by_numbers).then_with(|| a.link.cmp(&b.link))
     });
-    let data = embed::json("comparisons", &Rows { rows, heat_range: HEAT_RANGE })?;
+    let data = embed::json("comparisons", &json!({ "rows": rows, "heat_range": HEAT_RANGE }))?;
     Ok(embed::page(include_str!("page/index.html"), &script(), &data))
 }
 
@@ -112,12 +89,13 @@ fn row(folder: &Path, report: &Path) -> Result<Row, IndexError> {
     let not_a_report = || IndexError::NotAReport { path: report.to_owned() };
     let numbers: Numbers = serde_json::from_str(&numbers).map_err(|_| not_a_report())?;
     let thumbnails: Thumbnails = serde_json::from_str(&thumbnails).map_err(|_| not_a_report())?;
-    let judged = numbers.layers.iter().filter(|layer| numbers.judged.contains(&layer.name));
-    let relmse = judged.flat_map(|layer| &layer.channels).map(|c| c.relmse.unwrap_or(f64::INFINITY));
+    let is_judged = |layer: &&Value| numbers.judged.iter().any(|name| layer["name"] == name.as_str());
+    let channels = numbers.layers.iter().filter(is_judged).flat_map(|layer| layer["channels"].as_array()).flatten();
+    let relmse = channels.map(|channel| channel["relmse"].as_f64().unwrap_or(f64::INFINITY));
     Ok(Row {
         link: link(folder, report).map_err(fail)?,
         pass: numbers.pass,
-        excess: numbers.gates.iter().filter(|gate| !gate.ok).map(excess).fold(0.0, f64::max),
+        excess: numbers.gates.iter().filter(|gate| gate["ok"] != true).map(excess).fold(0.0, f64::max),
         relmse: relmse.fold(0.0, f64::max),
         thumbnails: if thumbnails.are_pictures() { thumbnails } else { Thumbnails::default() },
         reference: numbers.reference,
@@ -148,8 +126,8 @@ fn read(path: &Path) -> std::io::Result<(String, String)> {
 }
 
 /// The ratio of value and limit, which is infinite for a limit of zero.
-fn excess(gate: &GateNumbers) -> f64 {
-    match (gate.value, gate.limit) {
+fn excess(gate: &Value) -> f64 {
+    match (gate["value"].as_f64(), gate["limit"].as_f64()) {
         (Some(value), Some(limit)) if limit > 0.0 => value / limit,
         _ => f64::INFINITY,
     }

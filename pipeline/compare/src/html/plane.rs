@@ -6,15 +6,13 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
-use serde::Serialize;
 
 /// One channel of one image as text.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub(super) struct Plane {
     /// The number of its block in the page.
     pub id: usize,
     /// The deflated bytes in base64.
-    #[serde(skip)]
     pub text: String,
 }
 

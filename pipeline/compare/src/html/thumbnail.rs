@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::color;
 use super::reduce::{Rectangle, means};
 use crate::layer::Layer;
-use crate::metric::EPSILON;
+use crate::metric::{EPSILON, Pair};
 
 /// The largest side of a small picture in pixels.
 const MAX_SIDE: usize = 160;
@@ -45,12 +45,13 @@ pub(super) fn thumbnails(layers: &[Layer<'_>], width: usize, height: usize) -> T
     let size = [width.div_ceil(block), height.div_ceil(block)];
     let reduced = |samples: &[f32]| means(samples, width, Rectangle { x: 0, y: 0, width, height }, block);
     // The picture shows three channels as colors, or the first one as gray.
-    let planes = layer.samples().planes;
+    let planes = layer.samples();
     let is_luminance = layer.channels.first().is_some_and(|(name, _)| name == "Y");
     let shown = &planes[..if planes.len() < 3 || is_luminance { 1 } else { 3 }];
     let white = white(&shown.iter().flat_map(|(reference, _)| reduced(reference)).collect::<Vec<f32>>());
     let test: Vec<Vec<f32>> = shown.iter().map(|(_, test)| reduced(test)).collect();
-    let colors = (0..size[0] * size[1]).map(|i| [0, 1, 2].map(|c| shade(test[c.min(test.len() - 1)][i], white)));
+    let shade = |value: f32| ::color::srgb::encode_byte(f64::from(value) / white);
+    let colors = (0..size[0] * size[1]).map(|i| [0, 1, 2].map(|c| shade(test[c.min(test.len() - 1)][i])));
     let heat = heat(&planes, [width, height], block).into_iter().map(|error| color::absolute(part(error)));
     Thumbnails { test: address(size, colors.collect()), heat: address(size, heat.collect()) }
 }
@@ -63,13 +64,9 @@ fn white(values: &[f32]) -> f64 {
     value.map(f64::from).filter(|white| *white > 0.0).unwrap_or(1.0)
 }
 
-fn shade(value: f32, white: f64) -> u8 {
-    ::color::srgb::encode_byte(f64::from(value) / white)
-}
-
 /// The largest error of each block relative to the root of the squared reference plus [`EPSILON`], as in relMSE. It is NaN if any
 /// error of the block is.
-fn heat(planes: &[(&[f32], &[f32])], size: [usize; 2], block: usize) -> Vec<f64> {
+fn heat(planes: &[Pair<'_>], size: [usize; 2], block: usize) -> Vec<f64> {
     let row = size[0].div_ceil(block);
     let mut errors = vec![0.0_f64; row * size[1].div_ceil(block)];
     for (reference, test) in planes {

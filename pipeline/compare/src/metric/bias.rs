@@ -29,12 +29,11 @@ fn relative_difference(reference: f64, test: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metric::{Samples, measure};
+    use crate::metric::measure_each;
 
     #[test]
     fn known_means() {
-        let samples = Samples { planes: vec![(&[1.0, 2.0], &[2.0, 2.5]), (&[3.0, 6.0], &[3.0, 0.0])] };
-        let metrics = measure(&samples, 2, [0, 0]);
+        let metrics = measure_each(&[(&[1.0, 2.0], &[2.0, 2.5]), (&[3.0, 6.0], &[3.0, 0.0])], 2, [0, 0]).0;
         assert_eq!([metrics.mean_reference, metrics.mean_test], [3.0, 1.875]);
         assert_eq!(metrics.get("bias"), -0.375);
     }

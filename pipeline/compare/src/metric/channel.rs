@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
-use super::samples::Samples;
+use super::pair::Pair;
 use super::select;
 use super::totals::{Terms, Totals};
 use super::worst::{self, Found, Worst};
@@ -81,17 +81,17 @@ pub(super) fn as_map<V: Serialize, S: Serializer>(
 pub(super) fn measure_each<const N: usize>(
     metrics: &[ChannelMetric; N],
     terms: impl Terms<N>,
-    samples: &Samples<'_>,
+    samples: &[Pair<'_>],
     width: usize,
     window: [i32; 2],
 ) -> (Metrics, Vec<Metrics>) {
     let measured = |(reference, test)| (Totals::of(reference, test, terms), worst::histogram((reference, test)));
-    let planes: Vec<_> = samples.planes.par_iter().copied().map(measured).collect();
+    let planes: Vec<_> = samples.par_iter().copied().map(measured).collect();
     let finish = |totals: &Totals<N>, p99| finish(metrics, totals, p99, Found::in_window(totals.worst, width, window));
-    let each =
-        samples.planes.iter().zip(&planes).map(|(plane, (totals, upper))| {
-            finish(totals, worst::percentile_99(&Samples { planes: vec![*plane] }, upper))
-        });
+    let each = samples
+        .iter()
+        .zip(&planes)
+        .map(|(plane, (totals, upper))| finish(totals, worst::percentile_99(&[*plane], upper)));
     let each: Vec<Metrics> = each.collect();
     let totals = planes.iter().fold(Totals::default(), |sum, (totals, _)| sum.and(totals));
     let upper = planes.into_iter().map(|(_, upper)| upper).reduce(|sum, upper| select::and(sum, &upper));

@@ -38,8 +38,11 @@ impl Default for Scratch {
     }
 }
 
-/// The sum of each metric over the tiles and the three channels of a finite picture.
-pub(super) fn sums(metrics: &[DisplayedMetric], picture: &Picture<'_>) -> Vec<f64> {
+/// Measures each metric, or says why there is none. If the picture is not finite, all metrics are NaN.
+pub(super) fn measure(metrics: &[DisplayedMetric], picture: &Picture<'_>) -> Vec<Result<f64, String>> {
+    if !picture.all_finite() {
+        return vec![Ok(f64::NAN); metrics.len()];
+    }
     let band = |scratch: &mut Scratch, band| {
         let mut sums = vec![0.0; metrics.len()];
         for tile in Tile::of_band(picture.size, band) {
@@ -56,7 +59,8 @@ pub(super) fn sums(metrics: &[DisplayedMetric], picture: &Picture<'_>) -> Vec<f6
     };
     let bands: Vec<Vec<f64>> =
         (0..picture.size[1].div_ceil(SIDE)).into_par_iter().map_init(Scratch::default, band).collect();
-    (0..metrics.len()).map(|metric| bands.iter().map(|sums| sums[metric]).sum()).collect()
+    let sum = |index: usize| bands.iter().map(|sums| sums[index]).sum();
+    metrics.iter().enumerate().map(|(index, metric)| (metric.value)(sum(index), picture.size)).collect()
 }
 
 struct Display<'a> {

@@ -1,6 +1,6 @@
 //! What a gate limits, and how it is called on the command line and in limits files.
 
-use super::samples::Samples;
+use super::pair::Pair;
 
 /// A kind of gate: its row in [`super::GATES`] makes it an option of the program and an entry of limits files.
 #[derive(Debug)]
@@ -21,9 +21,9 @@ pub enum GateValue {
     /// The metric of the picture of this key, whatever layer is chosen.
     Picture(&'static str),
     /// The number of pixels of a layer that differ by more than a threshold.
-    Pixels(fn(&Samples<'_>, f64) -> u64),
+    Pixels(fn(&[Pair<'_>], f64) -> u64),
     /// A number of samples of a layer of which none may be there.
-    Samples(fn(&Samples<'_>) -> u64),
+    Samples(fn(&[Pair<'_>]) -> u64),
 }
 
 impl PartialEq for GateKind {

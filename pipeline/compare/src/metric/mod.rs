@@ -13,11 +13,11 @@ pub mod flip;
 mod gate_kind;
 mod mse;
 mod outliers;
+mod pair;
 mod picture;
 mod picture_metrics;
 mod psnr;
 mod rel_mse;
-mod samples;
 mod select;
 mod ssim;
 mod tile;
@@ -29,10 +29,10 @@ use displayed::DisplayedMetric;
 use formats::image::Image;
 pub use gate_kind::{GateKind, GateValue};
 pub(crate) use outliers::bitwise_differences;
+pub use pair::Pair;
 pub use picture::Picture;
 pub use picture_metrics::PictureMetrics;
 pub use rel_mse::EPSILON;
-pub use samples::Samples;
 pub use worst::Worst;
 
 /// Makes the table of metrics and the function that computes their terms in one pass from one list.
@@ -58,13 +58,9 @@ static DISPLAYED_METRICS: [DisplayedMetric; 2] = [psnr::METRIC, ssim::METRIC];
 pub static GATES: [GateKind; 7] =
     [bias::GATE, rel_mse::GATE, mse::GATE, outliers::ABS, outliers::OUTLIERS, flip::GATE, outliers::EXACT];
 
-/// Measures these samples; the image is `width` pixels wide, `window` is its top left pixel.
-pub fn measure(samples: &Samples<'_>, width: usize, window: [i32; 2]) -> Metrics {
-    measure_each(samples, width, window).0
-}
-
-/// Measures as [`measure`] does, and each plane by itself.
-pub fn measure_each(samples: &Samples<'_>, width: usize, window: [i32; 2]) -> (Metrics, Vec<Metrics>) {
+/// Measures all samples together, and each pair of planes by itself. The image is `width` pixels wide, `window` is its top left
+/// pixel.
+pub fn measure_each(samples: &[Pair<'_>], width: usize, window: [i32; 2]) -> (Metrics, Vec<Metrics>) {
     channel::measure_each(&CHANNEL_METRICS, terms, samples, width, window)
 }
 

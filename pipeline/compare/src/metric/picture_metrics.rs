@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::channel::as_map;
 use super::displayed::{self, DisplayedMetric};
-use super::flip::{self, Flip, HdrFlip};
+use super::flip::{self, Exposures, Flip, HdrFlip};
 use super::picture::Picture;
 
 /// What was measured of the picture. The names are the keys of the JSON report. Every value is NaN, `null` in JSON, if the
@@ -43,8 +43,10 @@ impl PictureMetrics {
         if !self.words.is_empty() {
             lines.push(format!("R, G, B as displayed (exposure 0, clamped to 0..1, sRGB): {}", self.words.join(", ")));
         }
-        lines.extend(self.flip_ldr.iter().map(|flip| format!("LDR-FLIP {flip}")));
-        lines.extend(self.flip_hdr.iter().map(|hdr| format!("HDR-FLIP {hdr}")));
+        lines.extend(self.flip_ldr.iter().map(|flip| format!("LDR-FLIP {}", flip.words())));
+        lines.extend(self.flip_hdr.iter().map(|HdrFlip { flip, exposures: Exposures { start, stop, count } }| {
+            format!("HDR-FLIP {} ({count} exposures from {start:+.2} to {stop:+.2} stops)", flip.words())
+        }));
         lines.extend(self.missing.iter().map(|reason| format!("not measured: {reason}")));
         lines.join("\n") + "\n"
     }
@@ -58,35 +60,32 @@ pub(super) fn measure(
     with_flip: bool,
 ) -> PictureMetrics {
     let picture = Picture::new(reference, test);
-    let mut missing = Vec::new();
-    let sums = match &picture {
-        None => {
-            let keys: String = metrics.iter().map(|metric| format!("{}, ", metric.key)).collect();
-            missing.push(format!("{keys}flip: there is no R, G and B"));
-            None
+    let values = match &picture {
+        Some(picture) => displayed::measure(metrics, picture),
+        None => metrics.iter().map(|_| Err(NO_COLORS.to_owned())).collect(),
+    };
+    let (mut missing, mut words) = (Vec::new(), Vec::new());
+    for (metric, value) in metrics.iter().zip(&values) {
+        match value {
+            Ok(value) => words.push((metric.words)(*value)),
+            Err(reason) => missing.push(format!("{}: {reason}", metric.key)),
         }
-        Some(picture) if picture.all_finite() => Some(displayed::sums(metrics, picture)),
-        Some(_) => Some(vec![f64::NAN; metrics.len()]),
-    };
-    let mut value = |index: usize| {
-        let (metric, sum) = (&metrics[index], sums.as_ref()?[index]);
-        let value = if sum.is_nan() { Ok(sum) } else { (metric.value)(sum, [reference.width, reference.height]) };
-        value.map_err(|reason| missing.push(format!("{}: {reason}", metric.key))).ok()
-    };
-    let values: Vec<_> = (0..metrics.len()).map(|index| (metrics[index].key, value(index))).collect();
-    if picture.is_some() && !with_flip {
-        missing.push("flip: not asked for".to_owned());
     }
-    let words = metrics.iter().zip(&values).filter_map(|(metric, (_, value))| Some((metric.words)((*value)?)));
+    if picture.is_none() || !with_flip {
+        missing.push(format!("flip: {}", if picture.is_none() { NO_COLORS } else { "not asked for" }));
+    }
     let seen = picture.filter(|_| with_flip);
     PictureMetrics {
-        words: words.collect(),
-        values,
+        values: metrics.iter().map(|metric| metric.key).zip(values.into_iter().map(Result::ok)).collect(),
         flip_ldr: seen.as_ref().map(flip::ldr),
         flip_hdr: seen.as_ref().map(flip::hdr),
         missing,
+        words,
     }
 }
+
+/// Why an image has no picture.
+const NO_COLORS: &str = "there is no R, G and B";
 
 #[cfg(test)]
 mod tests {
@@ -164,7 +163,7 @@ mod tests {
         assert!(
             metrics.get("psnr").is_none() && metrics.flip_ldr.is_none() && metrics.missing[0].contains("no R, G and B")
         );
-        assert!(metrics.lines().contains("not measured: psnr, ssim, flip"));
+        assert!(metrics.lines().contains("not measured: ssim: there is no R, G and B"));
     }
 
     #[test]

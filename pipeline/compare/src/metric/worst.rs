@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::samples::Samples;
+use super::pair::Pair;
 use super::select;
 
 /// The sample with the largest absolute error. Among equal errors it is the first; NaN counts as the largest.
@@ -58,16 +58,16 @@ fn error(reference: &[f32], test: &[f32], i: usize) -> f32 {
 }
 
 /// The errors of a channel, counted by the upper half of their bits.
-pub(super) fn histogram((reference, test): (&[f32], &[f32])) -> select::Histogram {
+pub(super) fn histogram((reference, test): Pair<'_>) -> select::Histogram {
     select::upper(reference.len(), |i| error(reference, test, i))
 }
 
 /// The 99th percentile by nearest rank: the smallest error that at least 99 % of the samples do not exceed. NaN counts as the
 /// largest.
-pub(super) fn percentile_99(samples: &Samples<'_>, upper: &select::Histogram) -> f64 {
+pub(super) fn percentile_99(samples: &[Pair<'_>], upper: &select::Histogram) -> f64 {
     let Some(rank) = (upper.iter().sum::<u64>() * 99).div_ceil(100).checked_sub(1) else { return 0.0 };
     let (bin, rank) = select::locate(upper, rank);
-    let planes = samples.planes.iter();
+    let planes = samples.iter();
     let lower = planes.map(|(reference, test)| select::lower(reference.len(), |i| error(reference, test, i), bin));
     let lower = lower.reduce(|counts, others| select::and(counts, &others)).unwrap_or_default();
     f64::from(select::value(bin, select::locate(&lower, rank).0))
@@ -76,30 +76,30 @@ pub(super) fn percentile_99(samples: &Samples<'_>, upper: &select::Histogram) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metric::measure;
+    use crate::metric::measure_each;
 
-    fn worst(samples: &Samples<'_>, width: usize, window: [i32; 2]) -> Worst {
-        measure(samples, width, window).max
+    fn worst(samples: &[Pair<'_>], width: usize, window: [i32; 2]) -> Worst {
+        measure_each(samples, width, window).0.max
     }
 
     fn p99(planes: Vec<(&[f32], &[f32])>) -> f64 {
-        measure(&Samples { planes }, 1, [0, 0]).p99
+        measure_each(&planes, 1, [0, 0]).0.p99
     }
 
     #[test]
     fn worst_pixel_is_found_in_its_row_and_channel() {
         let first = ([0.0; 6].as_slice(), [0.0, 1.0, 0.0, 0.0, 0.0, -2.0].as_slice());
         let second = ([5.0; 6].as_slice(), [5.0, 5.0, 5.0, 5.0, 2.5, 5.0].as_slice());
-        let found = worst(&Samples { planes: vec![first, second] }, 3, [10, -20]);
+        let found = worst(&[first, second], 3, [10, -20]);
         assert_eq!(found, Worst { error: 2.5, pixel: [11, -19], reference: 5.0, test: 2.5 });
-        let found = worst(&Samples { planes: vec![first] }, 3, [0, 0]);
+        let found = worst(&[first], 3, [0, 0]);
         assert_eq!(found, Worst { error: 2.0, pixel: [2, 1], reference: 0.0, test: -2.0 });
     }
 
     #[test]
     fn nan_is_worst() {
         let planes = vec![([0.0, 0.0, 0.0].as_slice(), [1.0, f32::NAN, f32::MAX].as_slice())];
-        let found = worst(&Samples { planes }, 3, [0, 0]);
+        let found = worst(&planes, 3, [0, 0]);
         assert!(found.error.is_nan());
         assert_eq!(found.pixel, [1, 0]);
     }

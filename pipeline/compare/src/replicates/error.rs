@@ -30,11 +30,8 @@ impl ReplicateError {
 
     /// Two images were made from one cloud; `other` is an image, or the reference that contains one.
     pub(super) fn same_cloud(path: &Path, other: &Path) -> ReplicateError {
-        let what = format!(
-            "it was made from the same cloud as {}, so that they are not independent; sample a cloud with another seed for \
-             each",
-            other.display()
-        );
+        let other = other.display();
+        let what = format!("it is from the same cloud as {other}, so not independent; use a cloud with another seed");
         ReplicateError::invalid(path, what)
     }
 }

@@ -45,13 +45,7 @@ impl Replicate {
     fn of(path: &Path, image: &Image) -> Result<Replicate, ReplicateError> {
         let text = |attribute: &'static str| match image.attributes.get(attribute) {
             Some(Attribute::Text(text)) if !text.is_empty() => Ok(text.clone()),
-            _ => Err(ReplicateError::invalid(
-                path,
-                format!(
-                    "the header has no {attribute}, so that it is unknown whether the replicates are independent; use images \
-                     of gather"
-                ),
-            )),
+            _ => Err(ReplicateError::invalid(path, format!("the header has no {attribute}; use images of gather"))),
         };
         Ok(Replicate {
             path: path.to_owned(),
@@ -123,10 +117,9 @@ impl Replicates {
             all.push(replicate);
         }
         if all.len() < MIN_REPLICATES {
+            let count = all.len();
             let what = format!(
-                "there are {} replicates (.exr), but at least {MIN_REPLICATES} are needed; render more, each from a cloud \
-                 with a seed of its own",
-                all.len()
+                "{count} replicates (.exr) are too few; render at least {MIN_REPLICATES}, each from its own cloud"
             );
             return Err(ReplicateError::invalid(folder, what));
         }

@@ -120,13 +120,10 @@ impl Summary {
     pub fn check_target(folder: &Path) -> Result<(), ReplicateError> {
         let images = if folder.is_dir() { Replicates::paths(folder)? } else { Vec::new() };
         match images.into_iter().find(|path| !path.ends_with(MEAN_IMAGE)) {
-            Some(image) => Err(ReplicateError::invalid(
-                folder,
-                format!(
-                    "a summary beside images such as {} would be read instead of them; write it into a folder without images",
-                    image.display()
-                ),
-            )),
+            Some(image) => {
+                let what = format!("it holds images such as {}; give a folder without images", image.display());
+                Err(ReplicateError::invalid(folder, what))
+            }
             None => Ok(()),
         }
     }

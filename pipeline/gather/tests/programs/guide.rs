@@ -1,7 +1,7 @@
 //! docs/guide.md explains every option of the programs once, and no option that there is not.
 
-use crate::support::program;
 use std::{collections::BTreeSet, process::Command};
+use test_support::program;
 
 const PAGE: &str = include_str!("../../../../docs/guide.md");
 

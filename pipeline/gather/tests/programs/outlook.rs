@@ -124,5 +124,5 @@ fn a_surface_without_light_wants_no_samples() {
     sample(&bench, &scene, "100");
     let said = gather(&bench, &scene, "8", &["--medium", "marble", "--spp", "1"]);
     assert!(said.contains("`Slab`: samples lie") && !said.contains("`Below`: samples lie"), "{said}");
-    assert!(said.contains("warning: `Below`: no sample of it carries light"), "{said}");
+    assert!(said.contains("warning: `Below`: none of its samples carries light"), "{said}");
 }

@@ -104,9 +104,9 @@ fn clouds_that_do_not_belong_together_are_refused() {
     };
     refused("a.cloud", &["shard 0/2 of seed 0", "leave one out"]);
     refused("same.cloud", &["shard 0/2 of seed 0"]);
-    refused("sky.cloud", &["--environment"]);
-    refused("flat.cloud", &["--normals"]);
-    refused("large.cloud", &["--metres-per-unit"]);
+    refused("sky.cloud", &["their environments differ"]);
+    refused("flat.cloud", &["their normals differ"]);
+    refused("large.cloud", &["their metres per unit differ"]);
     refused("slab.cloud", &["meshes"]);
     for (files, word) in [
         (&["a.cloud", "none.cloud", &sphere][..], "none.cloud"),

@@ -269,7 +269,7 @@ fn subsurface_parameters() {
     bench.refuses(
         "gather",
         &["user.cloud", &data("scenes/slab.glb"), "-o", "no.exr"],
-        &["--medium", "SCENE gives none"],
+        &["--medium", "SCENE gives no medium"],
     );
     let legacy = bench.slab("legacy.gltf", |root| {
         with_medium(root);

@@ -1,29 +1,17 @@
 //! HDR-FLIP: the exposures at which a viewer would look at the reference, and the tone curve that shows it on a screen.
 
+use color::tone::ACES;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::metric::picture::Picture;
 use crate::metric::select;
 
-/// The coefficients of [`color::tone::aces`], which shows 0.6 times the light.
-const ACES: [f32; 5] = single(color::tone::ACES);
+/// The factor on the light before [`color::tone::aces`].
 const ACES_SCALE: f64 = 0.6;
 
 /// The value that the curve gives the brightest pixel at the first exposure, and the median pixel at the last.
 const SHOWN: f64 = 0.85;
-
-const LUMINANCE: [f32; 3] = single(color::LUMINANCE);
-
-const fn single<const N: usize>(numbers: [f64; N]) -> [f32; N] {
-    let mut single = [0.0; N];
-    let mut i = 0;
-    while i < N {
-        single[i] = numbers[i] as f32;
-        i += 1;
-    }
-    single
-}
 
 /// How linear light is shown on a screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,7 +27,7 @@ impl Tone {
     #[inline(always)]
     pub fn show(self, light: f32) -> f32 {
         let Tone::Aces(scale) = self else { return light.min(1.0) };
-        let [a, b, c, d, e] = ACES;
+        let [a, b, c, d, e] = ACES.map(|coefficient| coefficient as f32);
         // The curve is above 1 from far below this value on; beyond it, squares would become infinite.
         let x = (light * scale).min(1e4);
         ((x * (a * x + b)) / (x * (c * x + d) + e)).min(1.0)
@@ -63,8 +51,8 @@ impl Exposures {
         let [r, g, b] = picture.reference;
         let luminance = |i: usize| {
             let light = |samples: &[f32]| if samples[i].is_finite() { samples[i].max(0.0) } else { 0.0 };
-            let sum = LUMINANCE[0] * light(r) + LUMINANCE[1] * light(g) + LUMINANCE[2] * light(b);
-            sum.min(f32::MAX)
+            let [red, green, blue] = color::LUMINANCE.map(|weight| weight as f32);
+            (red * light(r) + green * light(g) + blue * light(b)).min(f32::MAX)
         };
         let median = select::select(r.len(), r.len() / 2, luminance);
         let brightest = (0..r.len()).into_par_iter().map(luminance).reduce(|| 0.0, f32::max);
@@ -87,7 +75,7 @@ impl Exposures {
 
 /// The light that the curve maps to [`SHOWN`]: the positive root of the quadratic.
 fn light_shown() -> f64 {
-    let [a, b, c, d, e] = ACES.map(f64::from);
+    let [a, b, c, d, e] = ACES.map(|coefficient| f64::from(coefficient as f32));
     let (square, linear, constant) = (a - SHOWN * c, b - SHOWN * d, -SHOWN * e);
     let root = (linear * linear - 4.0 * square * constant).sqrt();
     (root - linear) / (2.0 * square) / ACES_SCALE

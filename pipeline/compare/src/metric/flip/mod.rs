@@ -6,8 +6,6 @@
 //! wide and has 3840 columns. Negative light counts as no light. A pixel that is not finite in one of the images is NaN in the
 //! map, and so is the mean; the filters of its neighbors take it as black.
 
-use std::fmt;
-
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -46,10 +44,11 @@ pub struct Flip {
     pub max: f64,
 }
 
-impl fmt::Display for Flip {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Flip {
+    /// The distribution in words.
+    pub(super) fn words(&self) -> String {
         let Flip { mean, median, p99, max } = self;
-        write!(f, "mean {mean:.5}, median {median:.5}, p99 {p99:.5}, max {max:.5}")
+        format!("mean {mean:.5}, median {median:.5}, p99 {p99:.5}, max {max:.5}")
     }
 }
 
@@ -61,13 +60,6 @@ pub struct HdrFlip {
     pub flip: Flip,
     /// The exposures that the pictures were shown at.
     pub exposures: Exposures,
-}
-
-impl fmt::Display for HdrFlip {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Exposures { start, stop, count } = self.exposures;
-        write!(f, "{} ({count} exposures from {start:+.2} to {stop:+.2} stops)", self.flip)
-    }
 }
 
 /// Measures LDR-FLIP.

@@ -1,15 +1,19 @@
-//! The directional dipole on blocks; see `directional_dipole.rs` for the model.
+//! The directional dipole on blocks; see [`DirectionalDipole`] for the model.
 //!
-//! The difference of the real and the virtual source is expanded in the difference of their distances (method.md 9.1 to
-//! 9.5): far away the two cancel like (h/r)², and float32 has no digits for that. Where `S` passes through zero the terms
-//! cancel in any form, and where `x` runs along `n_i` the mirror hangs on rounding; those few values are taken from the
-//! float64 model.
+//! The difference of the real and the virtual source is expanded in the difference of their distances (docs/method.md 9.1
+//! to 9.9): far away the two cancel like (h/r)², and float32 has no digits for that. Where `S` passes through zero the
+//! terms cancel in any form, and where `x` is parallel to `n_i` rounding decides the mirror normal. The float64 model
+//! evaluates those few values.
 
 mod channel;
 mod geometry;
 
-use super::{Block, LANES, Lane, LaneModel};
-use crate::{Bssrdf, DirectionalDipole, Medium, Separation};
+use super::directional_dipole::DirectionalDipole;
+use crate::{
+    evaluate::{Bssrdf, Separation},
+    lanes::block::{Block, LANES, Lane, LaneModel},
+    medium::Medium,
+};
 use channel::Channel;
 use geometry::{Projections, SourceGeometry};
 use glam::{DVec3, Vec3};
@@ -34,15 +38,15 @@ impl LaneModel for DirectionalLanes {
     #[inline(always)]
     fn bare(&self, block: &Block, normal_out: [f32; 3]) -> [Lane; 3] {
         let [red, green, blue] = &self.channels;
-        let light = SourceGeometry::new(block, normal_out);
-        let squares = [red.squares(&light), green.squares(&light), blue.squares(&light)];
-        let projections = Projections::new(block, normal_out, &light, self.k);
+        let source = SourceGeometry::new(block, normal_out);
+        let squares = [red.squares(&source), green.squares(&source), blue.squares(&source)];
+        let projections = Projections::new(block, normal_out, &source, self.k);
         let [r, g, b] = &squares;
-        let roots = [red.roots(&light, r), green.roots(&light, g), blue.roots(&light, b)];
-        let falls = [red.falls(&roots[0]), green.falls(&roots[1]), blue.falls(&roots[2])];
-        let (red, r) = red.values(&projections, r, &roots[0], &falls[0]);
-        let (green, g) = green.values(&projections, g, &roots[1], &falls[1]);
-        let (blue, b) = blue.values(&projections, b, &roots[2], &falls[2]);
+        let roots = [red.roots(&source, r), green.roots(&source, g), blue.roots(&source, b)];
+        let decays = [red.decay(&roots[0]), green.decay(&roots[1]), blue.decay(&roots[2])];
+        let (red, r) = red.values(&projections, r, &roots[0], &decays[0]);
+        let (green, g) = green.values(&projections, g, &roots[1], &decays[1]);
+        let (blue, b) = blue.values(&projections, b, &roots[2], &decays[2]);
         let mut values = [red, green, blue];
         let mut any = 0;
         for i in 0..LANES {
@@ -56,7 +60,7 @@ impl LaneModel for DirectionalLanes {
 }
 
 impl DirectionalLanes {
-    /// Values that lost too many digits, by the float64 model.
+    /// Replaces values that lost too many digits by those of the float64 model.
     #[cold]
     #[inline(never)]
     fn restore(&self, block: &Block, normal_out: [f32; 3], lost: &[[u32; LANES]; 3], values: &mut [Lane; 3]) {
@@ -67,7 +71,7 @@ impl DirectionalLanes {
         }
     }
 
-    /// One value by the float64 model; 0, as for `d_r = 0`, in the pole beside it that float32 cannot hold.
+    /// One value by the float64 model; 0, as for `d_r = 0`, where it is too near that pole for float32.
     fn exactly(&self, block: &Block, normal_out: [f32; 3], channel: usize, lane: usize) -> f32 {
         let vector = |v: &[Lane; 3]| DVec3::from_array([0, 1, 2].map(|c| f64::from(v[c][lane])));
         let separation = Separation {

@@ -1,20 +1,41 @@
 //! The better dipole: d'Eon 2012, with Grosjean's 1956 diffusion coefficient and the Fresnel moments of the boundary.
-//! Method.md section 4.
+//! The equations are those of docs/method.md section 4.
 
-use crate::{Bssrdf, Medium, Separation};
+use crate::{
+    accuracy::ReflectanceErrors,
+    evaluate::{Bssrdf, Separation},
+    medium::Medium,
+};
 use std::f64::consts::PI;
 
-/// One channel; lengths in m.
+/// Relative error of this model's reflectance, see [`ReflectanceErrors`].
+pub const REFLECTANCE_ERRORS: ReflectanceErrors = [
+    [-1.00, -1.00],
+    [-0.90, -0.89],
+    [-0.72, -0.70],
+    [-0.54, -0.53],
+    [-0.37, -0.37],
+    [-0.27, -0.29],
+    [-0.17, -0.18],
+    [-0.09, -0.12],
+    [-0.04, -0.06],
+    [-0.02, -0.03],
+    [-0.00, -0.00],
+];
+
+/// The constants of one channel (docs/method.md 4.1, 4.2).
 #[derive(Clone, Copy, Debug)]
 struct Channel {
+    /// `σ_tr`, 1/m.
     transport: f64,
+    /// `z_r` and `z_v`, m.
     real_depth: f64,
     virtual_depth: f64,
     /// `C_φ/D`, 1/m.
     fluence: f64,
     /// `C_E`.
     vector: f64,
-    /// α'²/(4π) over the exit normalisation `4π C_φ(1/η)`.
+    /// `α'²/(4π)` of (4.3) over `4π C_φ(1/η)` of (4.5).
     prefactor: f64,
 }
 
@@ -44,20 +65,21 @@ impl BetterDipole {
 }
 
 impl Bssrdf for BetterDipole {
-    /// `R_d(r)/(4π C_φ(1/η))` (method.md 4.3, 4.5).
+    /// `R_d(r)/(4π C_φ(1/η))` (docs/method.md 4.3, 4.5).
     fn bare(&self, channel: usize, separation: &Separation) -> f64 {
         let c = &self.channels[channel];
         if c.prefactor == 0.0 {
             return 0.0; // σ_s' = 0: nothing scatters, and a vacuum has no depth
         }
         let r2 = separation.offset.length_squared();
+        // One line of (4.3).
         let source = |depth: f64, sign: f64| {
             let d2 = r2 + depth * depth;
             let d = d2.sqrt();
             let q = c.transport * d;
             (c.vector * depth * (1.0 + q) / d2 + sign * c.fluence) * (-q).exp() / d
         };
-        // Rounding can leave a difference of equal terms below zero far away.
+        // Far away the terms cancel, and rounding can leave a value below zero.
         (c.prefactor * (source(c.real_depth, 1.0) + source(c.virtual_depth, -1.0))).max(0.0)
     }
 

@@ -1,18 +1,40 @@
 //! The standard dipole: Jensen, Marschner, Levoy and Hanrahan 2001, after Farrell, Patterson and Wilson 1992.
 //!
-//! Departures from the paper's print: the misplaced 1/σ_t' of its equation is left out (the form here integrates to
-//! the paper's total reflectance), and there is no exit normalisation, as published. Method.md section 3.
+//! The equations are those of docs/method.md section 3. Departure from the paper's print: the misplaced 1/σ_t' of its
+//! equation is left out; the form here integrates to the paper's total reflectance. As published, the model has no exit
+//! normalization.
 
-use crate::{Bssrdf, Medium, Separation};
+use crate::{
+    accuracy::ReflectanceErrors,
+    evaluate::{Bssrdf, Separation},
+    medium::Medium,
+};
 use std::f64::consts::PI;
 
-/// One channel; lengths in m.
+/// Relative error of this model's reflectance, see [`ReflectanceErrors`].
+pub const REFLECTANCE_ERRORS: ReflectanceErrors = [
+    [0.13, 0.60],
+    [0.11, 0.50],
+    [0.12, 0.50],
+    [0.10, 0.46],
+    [0.06, 0.34],
+    [0.02, 0.24],
+    [-0.04, 0.09],
+    [-0.06, -0.01],
+    [-0.08, -0.08],
+    [-0.08, -0.10],
+    [-0.07, -0.10],
+];
+
+/// The constants of one channel (docs/method.md 3.2).
 #[derive(Clone, Copy, Debug)]
 struct Channel {
+    /// `σ_tr`, 1/m.
     transport: f64,
+    /// `z_r` and `z_v`, m.
     real_depth: f64,
     virtual_depth: f64,
-    /// α'/(4π²): the albedo, the dipole's 1/(4π), and the 1/π of a Lambertian exit.
+    /// `α'/(4π²)`: that of (3.4), and the `1/π` of (3.6).
     prefactor: f64,
 }
 
@@ -38,7 +60,7 @@ impl StandardDipole {
     }
 }
 
-/// `z (1 + σ_tr d) e^{−σ_tr d}/d³` with `d = √(r² + z²)`: one source of (3.4), 1/m².
+/// One source: `z (1 + σ_tr d) e^{−σ_tr d}/d³` with `d = √(r² + z²)` (docs/method.md 3.3, 3.4), 1/m².
 fn source(distance_squared: f64, depth: f64, transport: f64) -> f64 {
     let d = (distance_squared + depth * depth).sqrt();
     let q = transport * d;
@@ -46,7 +68,7 @@ fn source(distance_squared: f64, depth: f64, transport: f64) -> f64 {
 }
 
 impl Bssrdf for StandardDipole {
-    /// `R_d(r)/π` (method.md 3.4, 3.6).
+    /// `R_d(r)/π` (docs/method.md 3.4, 3.6).
     fn bare(&self, channel: usize, separation: &Separation) -> f64 {
         let c = &self.channels[channel];
         if c.prefactor == 0.0 {

@@ -1,14 +1,14 @@
-//! The smooth dielectric interface: transmittance, refraction, and the moments of the diffuse reflectance.
+//! Fresnel's equations of a smooth dielectric interface, and the moments of its reflectance over the hemisphere.
 //!
-//! Departures from the usual printed forms are for stability and continuity only and stated where they occur.
+//! Where a form differs from the usual print, its comment says why.
 
 use glam::DVec3;
 
 /// Power transmittance `T(c, η_r)` of an interface for light whose cosine in the incident medium is `cosine`;
-/// `eta_ratio` is the index of the transmitting medium over that of the incident one (method.md 2.1).
+/// `eta_ratio` is the index of the transmitting medium over that of the incident one (docs/method.md 2.1).
 ///
-/// Zero for total reflection and for light from behind. Written as a transmittance, because one minus the mean of
-/// squared amplitude ratios cancels near grazing.
+/// It is 0 for total reflection and for light from behind. One minus the mean of squared amplitude ratios, the usual form,
+/// would cancel near grazing.
 pub fn transmittance(cosine: f64, eta_ratio: f64) -> f64 {
     if cosine <= 0.0 {
         return 0.0;
@@ -26,23 +26,23 @@ pub fn transmittance(cosine: f64, eta_ratio: f64) -> f64 {
     0.5 * (q / (perpendicular * perpendicular) + q / (parallel * parallel))
 }
 
-/// Cosine on the transmitted side, `t = √(1 − s²)`; none beyond the critical angle.
+/// Cosine `t = √(1 − s²)` on the transmitted side; none beyond the critical angle.
 fn refracted_cosine(cosine: f64, eta_ratio: f64) -> Option<f64> {
     let sine_squared = (1.0 - cosine) * (1.0 + cosine) / (eta_ratio * eta_ratio);
     (sine_squared < 1.0).then(|| (1.0 - sine_squared).sqrt())
 }
 
-/// Light that entered a medium.
+/// Light that crosses an interface.
 #[derive(Clone, Copy, Debug)]
 pub struct Refraction {
-    /// Unit direction of the refracted light, pointing into the medium.
+    /// Unit direction of the refracted light, pointing away from the surface.
     pub direction: DVec3,
-    /// Power transmittance of the crossing.
+    /// Power transmittance.
     pub transmittance: f64,
 }
 
 /// Refracts light that arrives from `direction` (unit, pointing away from the surface, back along the light) through
-/// a surface with unit `normal` on its side; `eta_ratio` is transmitted over incident index (method.md 2.2, 2.3).
+/// a surface with unit `normal` on its side; `eta_ratio` is transmitted over incident index (docs/method.md 2.2, 2.3).
 /// None if the light comes from behind or is totally reflected.
 pub fn enter(normal: DVec3, direction: DVec3, eta_ratio: f64) -> Option<Refraction> {
     let cosine = normal.dot(direction).min(1.0);
@@ -63,8 +63,8 @@ pub fn reflect(normal: DVec3, direction: DVec3) -> DVec3 {
     (2.0 * normal.dot(direction) * normal - direction).normalize()
 }
 
-/// `2C₁(n)`: twice the first moment of the reflectance met from inside a medium of relative index `n`
-/// (fit of d'Eon and Irving 2011; method.md 2.4). Valid for 0.4 ≤ n ≤ 2.5.
+/// `2C₁(n)`: twice the first moment of the reflectance from inside a medium of relative index `n`
+/// (fit of d'Eon and Irving 2011; docs/method.md 2.4). Valid for 0.4 ≤ n ≤ 2.5.
 pub fn twice_first_moment(n: f64) -> f64 {
     if n < 1.0 {
         polynomial(n, &[0.919317, -3.4793, 6.75335, -7.80989, 4.98554, -1.36881])
@@ -73,7 +73,8 @@ pub fn twice_first_moment(n: f64) -> f64 {
     }
 }
 
-/// `3C₂(n)`: three times the second moment, as above (method.md 2.5). Float64 only: its terms reach 1.6·10³.
+/// `3C₂(n)`: three times the second moment (docs/method.md 2.5). In float32 it would lose four digits: its terms reach
+/// 1.6·10³.
 pub fn thrice_second_moment(n: f64) -> f64 {
     if n < 1.0 {
         polynomial(n, &[0.828421, -2.62051, 3.36231, -1.95284, 0.236494, 0.145787])
@@ -83,14 +84,14 @@ pub fn thrice_second_moment(n: f64) -> f64 {
     }
 }
 
-/// Below 1 the moments lead over to what they are at 1 within this distance.
+/// Width of the interval below `n = 1` in which the moments are blended.
 const JOINT: f64 = 0.04;
 
-/// A fitted moment without the jump between its branches at `n = 1`. The branch above is off there by 0.0043 (2C₁) and
-/// −0.0068 (3C₂), the one below by a twentieth of that. As models hold `C_φ(η)` over `C_φ(1/η)`, either side of η = 1 takes
-/// one from each branch: the published jump is 0.41 % of the radiance on both sides of η = 1, and the error beside it as
-/// large. Led over in proportion, the branch below has the error of the other, and both cancel to 0.04 %. Nothing changes
-/// at η = 1 itself, nor outside 0.96 < η < 1.042.
+/// A fitted moment without the jump between its branches at `n = 1`, where the upper branch is off by 0.0043 (2C₁) and
+/// −0.0068 (3C₂), and the lower one by a twentieth of that. The models contain `C_φ(η)/C_φ(1/η)`, one of each branch, so the
+/// published radiance jumps by 0.41 % on both sides of `η = 1`. Here the lower branch leads linearly to the value of the
+/// upper one within 0.04; then the errors of both cancel to 0.04 %. Nothing changes at `η = 1` itself, nor outside
+/// 0.96 < η < 1.042.
 fn joined(moment: fn(f64) -> f64, n: f64) -> f64 {
     let along = (n - (1.0 - JOINT)) / JOINT;
     if n >= 1.0 || along <= 0.0 {
@@ -99,17 +100,17 @@ fn joined(moment: fn(f64) -> f64, n: f64) -> f64 {
     moment(n) + along * (moment(1.0) - moment(1.0f64.next_down()))
 }
 
-/// `C_φ(n) = ¼(1 − 2C₁(n))` (method.md 2.6), continuous at 1.
+/// `C_φ(n) = ¼(1 − 2C₁(n))` (docs/method.md 2.6), continuous at 1.
 pub fn c_phi(n: f64) -> f64 {
     0.25 * (1.0 - joined(twice_first_moment, n))
 }
 
-/// `C_E(n) = ½(1 − 3C₂(n))` (method.md 2.6), continuous at 1.
+/// `C_E(n) = ½(1 − 3C₂(n))` (docs/method.md 2.6), continuous at 1.
 pub fn c_e(n: f64) -> f64 {
     0.5 * (1.0 - joined(thrice_second_moment, n))
 }
 
-/// `F_dr(η)`: diffuse reflectance met from inside (fit of Egan and Hilgeman 1973; method.md 3.1).
+/// `F_dr(η)`: reflectance of diffuse light from inside (fit of Egan and Hilgeman 1973; docs/method.md 3.1).
 pub fn diffuse_reflectance(eta: f64) -> f64 {
     if eta < 1.0 {
         polynomial(1.0 / eta, &[-0.4399, 0.7099, -0.3319, 0.0636])
@@ -140,7 +141,7 @@ mod tests {
         for eta in [0.5, 0.7, 1.3, 2.5] {
             for k in 1..100 {
                 let c = f64::from(k) / 100.0;
-                // Close to the critical angle the way there and back loses half the digits of t.
+                // Close to the critical angle, crossing twice loses half the digits of t.
                 if let Some(t) = refracted_cosine(c, eta).filter(|t| *t > 0.05) {
                     assert!((transmittance(c, eta) - transmittance(t, 1.0 / eta)).abs() < 1e-12);
                 }
@@ -171,7 +172,7 @@ mod tests {
         assert!(tiny > 0.0 && tiny < 2e-6);
     }
 
-    /// Quadrature of the exact moments against the fits, with the errors method.md states for them.
+    /// The fits against a quadrature of the exact moments, with the errors that docs/method.md states.
     #[test]
     fn fits_of_the_moments_are_as_close_as_published() {
         let moment = |n: f64, power: i32| {

@@ -1,15 +1,30 @@
-//! What a search for enough samples says of its rounds.
+//! Draws as many samples as a medium needs, and says how the search for their number goes.
 
+use crate::{inputs::Inputs, settings::Request};
 use cli::count;
-use sample_surface::{Round, Sampled, TRIALS};
+use sample_surface::{Enough, Goal, Round, SampleError, Sampled, TRIALS, sample_enough};
+use scene::Rays;
 use sums::confidence::{Estimate, percent};
 
-/// A standard error, and the interval that it stands for.
+/// Draws clouds of more and more samples until one meets the goal.
+pub fn search(request: &Request, inputs: &Inputs, rays: &Rays, goal: &Goal) -> Result<Sampled, SampleError> {
+    let (common, medium) = (&request.common, &goal.medium.name);
+    let tell = |round: &Round| common.say(describe(round, medium));
+    let Enough { sampled, estimate } = sample_enough(&inputs.scene, rays, &inputs.settings, &inputs.plan, goal, tell)?;
+    match estimate {
+        Some(estimate) => common.say(met(&sampled, &estimate, medium)),
+        None => common.warn(dark(&sampled, medium)),
+    }
+    Ok(sampled)
+}
+
+/// A standard error and its upper confidence limit.
 fn error(estimate: &Estimate) -> String {
     format!("relative error {}, below {} with 95 % confidence", percent(estimate.error), percent(estimate.within()))
 }
 
-pub fn round(round: &Round, medium: &str) -> String {
+/// What a round of the search for enough samples has shown.
+fn describe(round: &Round, medium: &str) -> String {
     match round {
         Round::Trials(trials) => {
             let what = format!("{TRIALS} trial clouds of {} samples, {} lit", count(trials.samples), count(trials.lit));
@@ -22,19 +37,20 @@ pub fn round(round: &Round, medium: &str) -> String {
     }
 }
 
-pub fn enough(sampled: &Sampled, estimate: &Estimate, medium: &str) -> String {
+/// The number of samples that meets the target.
+fn met(sampled: &Sampled, estimate: &Estimate, medium: &str) -> String {
     format!("{} samples are enough: {} in {medium}", count(sampled.meta.samples_drawn), error(estimate))
 }
 
-/// Of a cloud that no light leaves: its error is unknown.
-pub fn dark(sampled: &Sampled, medium: &str) -> String {
+/// A cloud from which no light leaves, so that its error is unknown.
+fn dark(sampled: &Sampled, medium: &str) -> String {
     let drawn = count(sampled.meta.samples_drawn);
     if sampled.content.samples > 0 {
         return format!(
             "no light leaves the surface in {medium}, so that the relative error of {drawn} samples is unknown"
         );
     }
-    // The chance to find none of n samples is 5 % if a share of 3/n is lit.
+    // Where a share of 3/n of the surface is lit, none of n samples is lit with a probability of 5 %.
     let share = 300.0 / sampled.meta.samples_drawn as f64;
     format!(
         "none of {drawn} samples carries light, so that their relative error is unknown: with 95 % confidence less than \

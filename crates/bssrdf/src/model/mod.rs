@@ -1,0 +1,135 @@
+//! The models: their names, and everything that is chosen by one.
+
+mod better_dipole;
+mod better_lanes;
+mod directional_dipole;
+mod directional_lanes;
+mod standard_dipole;
+mod standard_lanes;
+
+pub use better_dipole::BetterDipole;
+pub use better_lanes::BetterLanes;
+pub use directional_dipole::DirectionalDipole;
+pub use directional_lanes::DirectionalLanes;
+pub use standard_dipole::StandardDipole;
+pub use standard_lanes::StandardLanes;
+
+use crate::{
+    accuracy::{GOOD, ReflectanceErrors, interpolated},
+    evaluate::Bssrdf,
+    lanes::block::LaneModel,
+    medium::{Coefficients, Medium},
+};
+
+/// A model of the BSSRDF.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Model {
+    /// Frisvad, Hachisuka, Kjeldsen 2014.
+    DirectionalDipole,
+    /// d'Eon 2012.
+    BetterDipole,
+    /// Jensen, Marschner, Levoy, Hanrahan 2001.
+    StandardDipole,
+}
+
+impl Model {
+    /// All models, the default first.
+    pub const ALL: [Model; 3] = [Model::DirectionalDipole, Model::BetterDipole, Model::StandardDipole];
+
+    /// The name that users type.
+    pub fn name(self) -> &'static str {
+        match self {
+            Model::DirectionalDipole => "directional-dipole",
+            Model::BetterDipole => "better-dipole",
+            Model::StandardDipole => "standard-dipole",
+        }
+    }
+
+    /// The model of one medium, as a float64 evaluator.
+    pub fn of(self, medium: &Medium) -> Box<dyn Bssrdf> {
+        match self {
+            Model::DirectionalDipole => Box::new(DirectionalDipole::new(medium)),
+            Model::BetterDipole => Box::new(BetterDipole::new(medium)),
+            Model::StandardDipole => Box::new(StandardDipole::new(medium)),
+        }
+    }
+
+    /// The model of one medium, as an evaluator of sixteen samples at a time in float32.
+    pub fn lanes(self, medium: &Medium) -> AnyLanes {
+        match self {
+            Model::DirectionalDipole => AnyLanes::Directional(DirectionalLanes::new(medium)),
+            Model::BetterDipole => AnyLanes::Better(BetterLanes::new(medium)),
+            Model::StandardDipole => AnyLanes::Standard(StandardLanes::new(medium)),
+        }
+    }
+
+    /// Extinction `σ̃_t` of the unscattered light `L_t`, 1/m (docs/method.md 5.11): the delta-Eddington extinction goes with the
+    /// directional dipole, which counts light that is scattered forward as unscattered.
+    pub fn unscattered_extinction(self, medium: &Medium) -> [f64; 3] {
+        medium.channels.map(|c| match self {
+            Model::DirectionalDipole => c.sigma_a + (1.0 - c.asymmetry * c.asymmetry) * c.sigma_s,
+            Model::BetterDipole | Model::StandardDipole => c.extinction(),
+        })
+    }
+
+    fn reflectance_errors(self) -> &'static ReflectanceErrors {
+        match self {
+            Model::DirectionalDipole => &directional_dipole::REFLECTANCE_ERRORS,
+            Model::BetterDipole => &better_dipole::REFLECTANCE_ERRORS,
+            Model::StandardDipole => &standard_dipole::REFLECTANCE_ERRORS,
+        }
+    }
+
+    /// Relative error of this model's reflectance for one channel, see [`ReflectanceErrors`].
+    pub fn reflectance_error(self, channel: &Coefficients, eta: f64) -> f64 {
+        interpolated(self.reflectance_errors(), channel.reduced_albedo(), eta)
+    }
+
+    /// The errors of the three channels if that of any channel which scatters exceeds [`GOOD`].
+    pub fn poor_reflectance(self, medium: &Medium) -> Option<[f64; 3]> {
+        let errors = medium.map(|c| self.reflectance_error(c, medium.eta));
+        let poor = |(c, e): (&Coefficients, &f64)| c.scatters() && e.abs() > GOOD;
+        medium.channels.iter().zip(&errors).any(poor).then_some(errors)
+    }
+}
+
+/// A model in float32 that is chosen when the program runs.
+#[derive(Clone, Debug)]
+pub enum AnyLanes {
+    Directional(DirectionalLanes),
+    Better(BetterLanes),
+    Standard(StandardLanes),
+}
+
+/// Work that is compiled once for each model, so that the model's evaluation is inlined into its loops.
+pub trait LaneWork {
+    type Output;
+
+    fn run<M: LaneModel>(self, model: &M) -> Self::Output;
+}
+
+impl AnyLanes {
+    /// Does the work with this model.
+    pub fn run<W: LaneWork>(&self, work: W) -> W::Output {
+        match self {
+            AnyLanes::Directional(model) => work.run(model),
+            AnyLanes::Better(model) => work.run(model),
+            AnyLanes::Standard(model) => work.run(model),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::built_in;
+
+    #[test]
+    fn known_strengths_and_weaknesses() {
+        let spectralon = built_in("spectralon").expect("a medium");
+        assert!(Model::BetterDipole.poor_reflectance(&spectralon).is_none());
+        assert!(Model::DirectionalDipole.poor_reflectance(&spectralon).is_some_and(|e| e[0] > 0.2));
+        let ketchup = built_in("ketchup").expect("a medium");
+        assert!(Model::BetterDipole.poor_reflectance(&ketchup).is_some_and(|e| e[1] < -0.5));
+    }
+}

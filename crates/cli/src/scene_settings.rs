@@ -1,0 +1,112 @@
+//! How a scene is read. Sampling and gathering must agree on it.
+
+use crate::{Common, Failure, Files, SceneArgs, environment::EnvironmentSource};
+use formats::cloud::{LightUnit, Normals};
+use scene::{DVec3, ImportOptions, MeshDefects, NormalKind, Scene, SceneError};
+use std::path::PathBuf;
+
+/// The file of a scene, and how to read it: the arguments, with the defaults of those that were left out.
+#[derive(Clone, Debug)]
+pub struct SceneSettings {
+    pub path: PathBuf,
+    environment: EnvironmentSource,
+    environment_scale: f64,
+    environment_rotation: f64,
+    pub normals: Normals,
+    pub metres_per_unit: f64,
+    pub light_unit: LightUnit,
+    pub emission_unit: LightUnit,
+    strict: bool,
+}
+
+impl SceneArgs {
+    /// The settings of the scene in this file.
+    pub fn settings(&self, path: PathBuf) -> SceneSettings {
+        SceneSettings {
+            path,
+            environment: self.environment.clone().unwrap_or(EnvironmentSource::Constant(DVec3::ZERO)),
+            environment_scale: self.environment_scale,
+            environment_rotation: self.environment_rotation,
+            normals: self.normals,
+            metres_per_unit: self.metres_per_unit,
+            light_unit: self.light_unit,
+            emission_unit: self.emission_unit.unwrap_or(self.light_unit),
+            strict: self.strict,
+        }
+    }
+}
+
+impl SceneSettings {
+    /// Declares the files that the arguments name. Those that the scene's file names are known once it is read.
+    pub fn declare(&self, files: &mut Files) -> Result<(), Failure> {
+        files.reads("SCENE", &self.path)?;
+        match &self.environment {
+            EnvironmentSource::File(path) => files.reads("--environment", path),
+            EnvironmentSource::Constant(_) => Ok(()),
+        }
+    }
+
+    /// Reads the scene and its environment, and prints the warnings of the import.
+    pub fn import(&self, common: &Common) -> Result<Scene, Failure> {
+        let options = ImportOptions {
+            metres_per_unit: self.metres_per_unit,
+            light_unit: of_scene(self.light_unit),
+            emission_unit: of_scene(self.emission_unit),
+        };
+        let mut scene = Scene::import(&self.path, &options).map_err(with_option)?;
+        self.warn(&scene.warnings, common);
+        scene.environment = self.environment.read(self.environment_scale, self.environment_rotation, common)?;
+        Ok(scene)
+    }
+
+    /// Warns of what the scene's file asks for and the programs do not honor, of colors that the surfaces of translucent
+    /// materials ignore, and of defects of those surfaces; with `--strict`, refuses the defects.
+    pub fn check_mesh(
+        &self,
+        scene: &mut Scene,
+        translucent: impl Fn(u16) -> bool,
+        defects: MeshDefects,
+        common: &Common,
+    ) -> Result<(), Failure> {
+        let known = scene.warnings.len();
+        scene.warn_of_unhonoured(&translucent);
+        scene.warn_of_colors(&translucent);
+        self.warn(&scene.warnings[known..], common);
+        if defects.is_good() {
+            return Ok(());
+        }
+        let line = format!("{}: the translucent surfaces have {defects}", self.path.display());
+        if self.strict {
+            return Err(Failure::usage(format!("{line}; repair the mesh, or leave out --strict")));
+        }
+        common.warn(format_args!("{line}; a medium needs a closed surface whose triangles are wound outwards"));
+        Ok(())
+    }
+
+    fn warn(&self, warnings: &[String], common: &Common) {
+        warnings.iter().for_each(|warning| common.warn(format_args!("{}: {warning}", self.path.display())));
+    }
+}
+
+/// The failure of an import, with the option that helps.
+fn with_option(error: SceneError) -> Failure {
+    let is_too_large = matches!(error, SceneError::TooLarge { .. });
+    let failure = Failure::from(error);
+    if is_too_large { Failure::usage(format!("{}; set --metres-per-unit", failure.message)) } else { failure }
+}
+
+/// The unit of the same name in the terms of the importer.
+fn of_scene(unit: LightUnit) -> scene::LightUnit {
+    match unit {
+        LightUnit::Radiometric => scene::LightUnit::Radiometric,
+        LightUnit::Photometric => scene::LightUnit::Photometric,
+    }
+}
+
+/// The normals of the same name in the terms of meshes.
+pub fn normal_kind(normals: Normals) -> NormalKind {
+    match normals {
+        Normals::Shading => NormalKind::Shading,
+        Normals::Geometric => NormalKind::Geometric,
+    }
+}

@@ -1,0 +1,74 @@
+//! What an image is rendered from, how, and what comes of it.
+
+use crate::{counts::Counts, crop::Crop, estimator::Estimator, film::Pixel};
+use bssrdf::{Medium, Model};
+use formats::cloud::Cloud;
+use scene::{Camera, NormalKind, Rays, Scene};
+
+/// How paths are spread over a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Filter {
+    /// Evenly over all of it.
+    Box,
+    /// All paths go through its centre.
+    Point,
+}
+
+impl Filter {
+    pub const ALL: [Filter; 2] = [Filter::Box, Filter::Point];
+
+    /// The name users type.
+    pub fn name(self) -> &'static str {
+        match self {
+            Filter::Box => "box",
+            Filter::Point => "point",
+        }
+    }
+}
+
+/// What to render.
+pub struct Input<'a> {
+    pub scene: &'a Scene,
+    pub rays: &'a Rays<'a>,
+    /// One cloud of this scene, or several that are gathered as one, see [`crate::shards::join`].
+    pub clouds: &'a [Cloud],
+    /// The medium of each material that the clouds sampled, in their order.
+    pub media: &'a [Medium],
+    pub camera: &'a Camera,
+}
+
+/// How to render.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Size of the whole image, pixels.
+    pub width: usize,
+    pub height: usize,
+    /// The part of the image that is rendered, if not all of it. Its pixels have the bits of those of the whole image.
+    pub crop: Option<Crop>,
+    pub paths_per_pixel: u32,
+    pub filter: Filter,
+    pub estimator: Estimator,
+    pub model: Model,
+    pub normals: NormalKind,
+    pub max_depth: u32,
+    pub seed: u64,
+}
+
+impl Settings {
+    /// The part of the image that is rendered.
+    pub fn part(&self) -> Crop {
+        self.crop.unwrap_or(Crop { x: 0, y: 0, width: self.width, height: self.height })
+    }
+}
+
+/// A rendered image.
+pub struct Rendered {
+    /// The pixels of [`Settings::part`], row by row from the top.
+    pub pixels: Vec<Pixel>,
+    pub paths_per_pixel: u32,
+    pub counts: Counts,
+    /// Indices of the first few pixels with a value that is not finite.
+    pub non_finite: Vec<usize>,
+    /// The number of all such pixels.
+    pub non_finite_count: u64,
+}

@@ -1,0 +1,128 @@
+//! Lengths of each medium beside those of its object, and warnings of those that do not go together.
+
+use crate::{inputs::Inputs, settings::Request};
+use bssrdf::Medium;
+use cli::count_up;
+use gather::shards;
+
+/// Samples that are farther apart than this many reduced mean free paths are seen as grain.
+const SPARSE: f64 = 3.0;
+
+/// Rounding of positions beyond this share of a reduced mean free path is seen.
+const ROUGH: f64 = 0.01;
+
+/// A reduced mean free path below this share of the object's size looks opaque.
+const OPAQUE: f64 = 1e-5;
+
+/// The surface of a material, m.
+struct Object<'a> {
+    material: &'a str,
+    /// Diagonal of the box around it.
+    diagonal: f64,
+    /// Mean distance of its samples that carry light; infinite if none does.
+    spacing: f64,
+    /// Samples drawn for the clouds, over all surfaces and with the unlit ones.
+    drawn: u64,
+    /// Largest rounding of its positions in float32.
+    rounding: f64,
+}
+
+/// Prints the lengths of each medium and its object, and warns of what is odd about them.
+pub fn show(request: &Request, inputs: &Inputs) {
+    let (common, clouds) = (&request.common, inputs.clouds());
+    for (slot, (material, medium)) in shards::materials(clouds).iter().zip(&inputs.media).enumerate() {
+        let (low, high) = inputs.bounds(|index| index == material.index);
+        let object = Object {
+            material: &material.name,
+            diagonal: (high - low).length(),
+            spacing: (material.area_m2 / shards::count(clouds, slot) as f64).sqrt(),
+            drawn: shards::drawn(clouds),
+            rounding: 0.5 * f64::from(f32::EPSILON) * low.abs().max(high.abs()).max_element(),
+        };
+        lines(&object, medium, request.model.of(medium).transport()).iter().for_each(|line| common.say(line));
+        warnings(&object, medium).iter().for_each(|warning| common.warn(warning));
+        if let Some(errors) = request.model.poor_reflectance(medium) {
+            let [r, g, b] = errors.map(|e| format!("{:+.0}", 100.0 * e));
+            common.say(format_args!(
+                "  {} reflects {r} {g} {b} % more than {} does (red, green, blue; docs/reports/accuracy.md)",
+                request.model.name(),
+                medium.name
+            ));
+        }
+    }
+}
+
+/// The medium and its lengths; `transport` is `σ_tr`, 1/m.
+fn lines(object: &Object, medium: &Medium, transport: [f64; 3]) -> [String; 6] {
+    let three = |v: [f64; 3]| v.map(length).join(" ");
+    [
+        format!("material `{}`: {} (eta {})", object.material, medium.name, medium.eta),
+        format!("  sigma_a, 1/m     {}", coefficients(medium.map(|c| c.sigma_a))),
+        format!("  sigma_s, 1/m     {}, g {}", coefficients(medium.map(|c| c.sigma_s)), mean_cosine(medium)),
+        format!("  mean free path   {}", three(medium.mean_free_path())),
+        format!("  1/sigma_tr       {}", three(transport.map(|s| 1.0 / s))),
+        format!("  object diagonal  {}   sample spacing {}", length(object.diagonal), length(object.spacing)),
+    ]
+}
+
+fn warnings(object: &Object, medium: &Medium) -> Vec<String> {
+    let Object { material, diagonal, spacing, drawn, rounding } = *object;
+    let shortest = |lengths: [f64; 3]| lengths.into_iter().fold(f64::INFINITY, f64::min);
+    let free_path = shortest(medium.mean_free_path());
+    let reduced = shortest(medium.map(|c| 1.0 / c.reduced_extinction()));
+    let mut warnings = Vec::new();
+    if free_path > diagonal {
+        warnings.push(format!(
+            "`{material}`: light crosses the object ({}) without scattering (mean free path {}); are the medium's unit \
+             and --metres-per-unit right?",
+            length(diagonal),
+            length(free_path)
+        ));
+    } else if reduced < OPAQUE * diagonal {
+        warnings.push(format!(
+            "`{material}`: light scatters within {} of an object of {}: it will look opaque; are the medium's unit and \
+             --metres-per-unit right?",
+            length(reduced),
+            length(diagonal)
+        ));
+    } else if spacing == f64::INFINITY {
+        warnings.push(format!("`{material}`: none of its samples carries light: it will show no scattered light"));
+    } else if spacing > SPARSE * reduced {
+        warnings.push(format!(
+            "`{material}`: samples lie {} apart, light scatters within {}: expect grain; a cloud of about {} samples would do",
+            length(spacing),
+            length(reduced),
+            count_up(drawn as f64 * (spacing / reduced).powi(2))
+        ));
+    }
+    if rounding > ROUGH * reduced {
+        warnings.push(format!(
+            "`{material}`: positions are rounded by up to {}, light scatters within {}: the scene is too wide for so \
+             dense a medium; leave out what is far away",
+            length(rounding),
+            length(reduced)
+        ));
+    }
+    warnings
+}
+
+fn coefficients(sigma: [f64; 3]) -> String {
+    sigma.map(|s| format!("{s:.4e}")).join(" ")
+}
+
+/// The asymmetry of the channels; one number if they agree.
+fn mean_cosine(medium: &Medium) -> String {
+    let [r, g, b] = medium.map(|c| c.asymmetry);
+    if r == g && g == b { r.to_string() } else { format!("{r} {g} {b}") }
+}
+
+/// A length with a unit that suits it.
+fn length(metres: f64) -> String {
+    match metres {
+        m if !m.is_finite() => "infinite".into(),
+        m if m >= 1.0 => format!("{m:.3} m"),
+        m if m >= 1e-3 => format!("{:.3} mm", m * 1e3),
+        m if m >= 1e-6 => format!("{:.3} um", m * 1e6),
+        m => format!("{m:.3e} m"),
+    }
+}

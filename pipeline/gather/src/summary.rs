@@ -1,0 +1,75 @@
+//! What the program says of an image that it rendered.
+
+use crate::report::Facts;
+use cli::{Failure, count};
+use gather::{Settings, counts::Counts, film};
+
+/// More than this share of the paths to translucent surfaces meets them from within only if the camera does; fewer are rays
+/// that slip between triangles.
+const STRAY: f64 = 0.01;
+
+/// Says how good the image is, and warns of what is odd about it; fails if a value in it is not finite.
+pub fn show(facts: &Facts) -> Result<(), Failure> {
+    check_finite(facts)?;
+    let (common, counts) = (&facts.request.common, &facts.rendered.counts);
+    // Where no two paths differ, nothing is known of light that none of them met.
+    let error = film::relative_error(&facts.rendered.pixels).filter(|error| *error > 0.0);
+    let error = error.map_or("unknown".into(), sums::confidence::percent);
+    common.say(format_args!(
+        "{} gathers, {} BSSRDF evaluations; relative error {error} ({})",
+        count(counts.gathers),
+        count(counts.evaluations),
+        facts.covers()
+    ));
+    let share = |n: u64| 100.0 * n as f64 / counts.paths as f64;
+    if counts.cut_by_depth > 0 {
+        common.say(format_args!(
+            "of 100 paths {:.3} branches were cut off at --max-depth {}",
+            share(counts.cut_by_depth),
+            facts.settings.max_depth
+        ));
+    }
+    if counts.escaped_inside > 0 {
+        let share = share(counts.escaped_inside);
+        common.warn(format_args!("{share:.3} % of the paths left a medium through a hole in its mesh"));
+    }
+    if let Some(warning) = odd_view(counts, &facts.settings) {
+        common.warn(facts.job.line(&warning));
+    }
+    Ok(())
+}
+
+/// Refuses an image with values that are not finite, and names some of their pixels.
+fn check_finite(facts: &Facts) -> Result<(), Failure> {
+    let rendered = facts.rendered;
+    if rendered.non_finite_count == 0 {
+        return Ok(());
+    }
+    let pixels: Vec<String> = rendered.non_finite.iter().map(|p| format!("{:?}", facts.pixel(*p))).collect();
+    let (count, pixels) = (count(rendered.non_finite_count), pixels.join(" "));
+    let message = format!("{count} pixels are not finite, no image was written; the first are {pixels}");
+    Err(facts.job.failure(Failure::numerical(message)))
+}
+
+/// The warning of an image that shows nothing translucent, or shows it from within.
+fn odd_view(counts: &Counts, settings: &Settings) -> Option<String> {
+    let what = settings.crop.map_or_else(
+        || "the camera".to_owned(),
+        |c| format!("--crop {},{},{},{} of the camera", c.x, c.y, c.width, c.height),
+    );
+    let met = counts.from_outside + counts.from_inside;
+    if met == 0 {
+        return Some(format!(
+            "{what} sees no translucent surface: does it look towards one, and is its position in the scene's units \
+             (--list-cameras, --metres-per-unit)?"
+        ));
+    }
+    let share = counts.from_inside as f64 / met as f64;
+    (share > STRAY).then(|| {
+        format!(
+            "{what} sees translucent surfaces from within ({:.0} % of its paths to them): it stands inside a medium, where \
+             no scattered light is seen, or looks into an open mesh; move it out",
+            100.0 * share
+        )
+    })
+}
