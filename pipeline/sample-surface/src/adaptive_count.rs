@@ -122,8 +122,8 @@ impl Search<'_> {
     /// The number of samples to try next, given that `samples` have this error.
     fn more(&self, samples: u64, error: f64, max_growth: f64) -> Result<u64, SampleError> {
         let growth = (error / self.goal.error).powf(POWER).clamp(1.5, max_growth);
-        let (next, room) = ((samples as f64 * growth).ceil() as u64, self.goal.max_samples);
-        if next > room { Err(SampleError::TooMany { samples, error, next, room }) } else { Ok(next) }
+        let (next, max_samples) = ((samples as f64 * growth).ceil() as u64, self.goal.max_samples);
+        if next > max_samples { Err(SampleError::TooMany { samples, error, next, max_samples }) } else { Ok(next) }
     }
 
     /// Trials of at least so many samples in all, of which enough are lit, or none if the scene is dark.
