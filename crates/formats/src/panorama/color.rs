@@ -97,7 +97,8 @@ mod tests {
     const ACESCG: [f64; 8] = [0.713, 0.293, 0.165, 0.830, 0.128, 0.044, 0.32168, 0.33767];
 
     /// The matrix that color managers publish for ACEScg to linear Rec. 709 (OpenColorIO's ACES configuration).
-    /// Planted: no adaptation of the white, the adaptation the wrong way round, rows taken for columns.
+    ///
+    /// Seen to catch: no adaptation of the white; the inverse adaptation; rows taken for columns.
     #[test]
     fn acescg_becomes_rec_709() {
         let matrix = to_rec_709(ACESCG).expect("a color space").expect("another");

@@ -26,9 +26,9 @@ fn the_same_picture_as_either_format_is_the_same() {
 }
 
 #[test]
-fn grey_is_a_color_and_other_layers_are_not() {
-    let grey = Panorama::decode(&exr(&["Y"])).expect("a picture");
-    assert_eq!(grey.pixels[5], [1e5; 3]);
+fn gray_is_a_color_and_other_layers_are_not() {
+    let gray = Panorama::decode(&exr(&["Y"])).expect("a picture");
+    assert_eq!(gray.pixels[5], [1e5; 3]);
     let message = Panorama::decode(&exr(&["sky.R", "sky.G"])).expect_err("no color");
     assert!(message.contains("sky.G") && message.contains("R, G and B"), "{message}");
     assert!(Panorama::decode(&exr(&["R", "Y"])).is_err() && Panorama::decode(&exr(&["Y", "RY", "BY"])).is_err());
@@ -122,13 +122,13 @@ fn other_primaries_become_rec_709() {
 }
 
 #[test]
-fn rec_709_and_grey_keep_their_bits_and_alpha_is_over_black() {
+fn rec_709_and_gray_keep_their_bits_and_alpha_is_over_black() {
     let own = [0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329];
     let planes = [("A", [0.25, 1.0]), ("R", [0.1, 0.2]), ("G", [0.3, 0.4]), ("B", [0.5, 0.6])];
     let picture = decoded(&with_chromaticities(own, &planes)).expect("a picture");
     assert_eq!((picture.pixels, picture.warnings), (vec![[0.1, 0.3, 0.5], [0.2, 0.4, 0.6]], vec![]));
-    let grey = decoded(&with_chromaticities(ACESCG, &[("Y", [0.1, 0.2]), ("Z", [7.0, 8.0])])).expect("a picture");
-    assert_eq!(grey.pixels, [[0.1; 3], [0.2; 3]]);
+    let gray = decoded(&with_chromaticities(ACESCG, &[("Y", [0.1, 0.2]), ("Z", [7.0, 8.0])])).expect("a picture");
+    assert_eq!(gray.pixels, [[0.1; 3], [0.2; 3]]);
 }
 
 /// Seen to catch: a cube taken for latitude and longitude; X, Y and Z taken for gray.
