@@ -8,8 +8,8 @@ use gather::{
 };
 use glam::DVec3;
 use scene::NormalKind;
-use std::fs;
 use test_support::{
+    Bench,
     meshes::{Light, Part, World, slab, sphere, world},
     pipeline::{Sampling, by_area, cloud, orthographic, sampled, settings, stratified, write},
     planted::stored,
@@ -35,12 +35,12 @@ fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
 /// Seen to catch: samples that depend on the thread that draws them.
 #[test]
 fn clouds_have_the_same_bytes_for_any_number_of_threads() {
-    let folder = tempfile::tempdir().expect("the temporary folder is writable");
+    let bench = Bench::new();
     for sampling in [stratified(100_000, 3), by_area(100_000, 3)] {
         let file = |threads: usize| {
-            let path = folder.path().join(format!("{threads}.cloud"));
-            with_threads(threads, || write(&sampled(&still_life(), &sampling), &path));
-            fs::read(path).expect("the cloud was written")
+            let name = format!("{threads}.cloud");
+            with_threads(threads, || write(&sampled(&still_life(), &sampling), &bench.path(&name)));
+            bench.read(&name)
         };
         let one = file(1);
         assert!(one.len() > 1_000_000);

@@ -1,4 +1,5 @@
-//! Equations are cited by the numbers of docs/method.md; docs/architecture.md says where those of the note are.
+//! Documents and scripts agree with the code: equations are cited by the numbers of docs/method.md, docs/architecture.md
+//! says where those of the note are, and planted errors are where tests/check/planted.sh says.
 
 use std::{
     fs,
@@ -79,4 +80,21 @@ fn the_architecture_and_the_code_agree() {
         }
     }
     assert_eq!(document.matches("| `[").count(), labels, "architecture.md has a row that no code bears out");
+}
+
+/// The code that tests/check/planted.sh changes is in the files that it names.
+///
+/// Seen to catch: an argument that was renamed, a file that was moved.
+#[test]
+fn every_planted_error_has_its_place() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let script = fs::read_to_string(root.join("tests/check/planted.sh")).expect("reads");
+    let rows = script.lines().filter(|line| line.starts_with("  '") && !line.starts_with("  'nothing"));
+    let rows: Vec<Vec<&str>> = rows.map(|line| line.split('|').collect()).collect();
+    assert!(rows.len() > 10, "{rows:?}");
+    for row in rows {
+        let [name, file, pattern, _] = row[..] else { panic!("{row:?}") };
+        let text = fs::read_to_string(root.join(file)).unwrap_or_else(|e| panic!("{name}: {file}: {e}"));
+        assert!(text.contains(&pattern.replace('\\', "")), "{name}: `{pattern}` is not in {file}");
+    }
 }

@@ -6,7 +6,7 @@
 
 use bssrdf::{
     Exitant, Incident, Medium, Model, Values, evaluate, fresnel,
-    lanes::{BetterLanes, Block, DirectionalLanes, LANES, LaneModel, StandardLanes},
+    lanes::{Block, LANES},
 };
 use glam::DVec3;
 use serde_json::Value;
@@ -112,14 +112,7 @@ fn bare_in_float32(model: Model, v: &Vector, refracted: DVec3) -> f64 {
     let offset = lanes(v.exitant.position - v.incident.position);
     let block = Block { offset, normal_in: lanes(v.incident.normal), refracted: lanes(refracted) };
     let normal_out = v.exitant.normal.as_vec3().to_array();
-    fn first<M: LaneModel>(medium: &Medium, block: &Block, normal_out: [f32; 3]) -> f64 {
-        f64::from(M::new(medium).bare(block, normal_out)[0][0])
-    }
-    match model {
-        Model::DirectionalDipole => first::<DirectionalLanes>(&v.medium, &block, normal_out),
-        Model::BetterDipole => first::<BetterLanes>(&v.medium, &block, normal_out),
-        Model::StandardDipole => first::<StandardLanes>(&v.medium, &block, normal_out),
-    }
+    f64::from(model.lanes(&v.medium).bare(&block, normal_out)[0][0])
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use bssrdf::{
     Exitant, Incident, Medium, Model, Separation, evaluate,
-    lanes::{BetterLanes, Block, DirectionalLanes, LANES, LaneModel, StandardLanes},
+    lanes::{Block, LANES},
 };
 use formats::cloud::{Cloud, Record, Sample};
 use gather::{
@@ -62,21 +62,17 @@ pub fn bare(medium: &Medium, separation: &Separation) -> [Value; 3] {
     MODELS.map(|model| {
         let of = model.of(medium);
         let exact = DVec3::from_array([0, 1, 2].map(|c| of.bare(c, separation)));
-        let fast = match model {
-            Model::DirectionalDipole => lanes::<DirectionalLanes>(medium, separation),
-            Model::BetterDipole => lanes::<BetterLanes>(medium, separation),
-            Model::StandardDipole => lanes::<StandardLanes>(medium, separation),
-        };
+        let fast = in_float32(model, medium, separation);
         assert_sane(exact, (model, medium, separation));
         assert_sane(fast, (model, medium, separation));
         Value { model, exact, fast }
     })
 }
 
-fn lanes<M: LaneModel>(medium: &Medium, s: &Separation) -> DVec3 {
+fn in_float32(model: Model, medium: &Medium, s: &Separation) -> DVec3 {
     let lanes = |v: DVec3| v.as_vec3().to_array().map(|x| [x; LANES]);
     let block = Block { offset: lanes(s.offset), normal_in: lanes(s.normal_in), refracted: lanes(s.refracted) };
-    let values = M::new(medium).bare(&block, s.normal_out.as_vec3().to_array());
+    let values = model.lanes(medium).bare(&block, s.normal_out.as_vec3().to_array());
     DVec3::from_array(values.map(|lane| f64::from(lane[0])))
 }
 

@@ -18,6 +18,7 @@ use std::{
     time::{Duration, Instant},
 };
 use test_support::{
+    Bench,
     lit::{scatterer, sum},
     meshes::{Light, Part, World, quad, world},
     pipeline::{ESTIMATORS, grey, sampled, settings, stratified, write},
@@ -30,7 +31,7 @@ const SAMPLES: u64 = 150;
 const FLOATS: [f32; 9] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN, 1e30, -1.0, 0.0, 1e-45];
 
 struct Lab {
-    folder: tempfile::TempDir,
+    bench: Bench,
     world: World,
     camera: Camera,
     scatterer: Scatterer,
@@ -45,24 +46,22 @@ impl Lab {
     fn of(samples: u64) -> Lab {
         let sun = Light::Directional { towards: DVec3::Z, irradiance: DVec3::ONE };
         let world = world(&[Part::translucent(quad(5e-3, 0.0, 1))], &[sun], DVec3::ZERO);
-        let folder = tempfile::tempdir().expect("the temporary folder is writable");
-        let path = folder.path().join("good.cloud");
-        let drawn = sampled(&world, &stratified(samples, 1));
-        write(&drawn, &path);
-        let good = Forged(fs::read(&path).expect("the cloud was written"));
+        let bench = Bench::new();
+        write(&sampled(&world, &stratified(samples, 1)), &bench.path("good.cloud"));
+        let good = Forged(bench.read("good.cloud"));
         let camera = aimed_at(DVec3::ZERO, DVec3::new(0.3, 0.2, 1.0), 2e-3);
         let scatterer = scatterer(Model::StandardDipole, &grey(100.0, 1000.0, 0.0, 1.3));
-        Lab { folder, world, camera, scatterer, good }
+        Lab { bench, world, camera, scatterer, good }
     }
 
     fn path(&self) -> PathBuf {
-        self.folder.path().join("bad.cloud")
+        self.bench.path("bad.cloud")
     }
 
     /// Does with a cloud what `gather` does, except for the comparison of its metadata with the scene; returns
     /// whether the cloud is accepted.
     fn takes(&self, forged: &Forged) -> bool {
-        fs::write(self.path(), &forged.0).expect("the temporary folder is writable");
+        self.bench.write("bad.cloud", &forged.0);
         let Ok(cloud) = Cloud::open(&self.path()) else {
             return false;
         };
@@ -198,7 +197,7 @@ fn groups() {
         let mut drawn = sampled(&lab.world, &stratified(SAMPLES, 1));
         change(&mut drawn.meta, n);
         write(&drawn, &lab.path());
-        let forged = Forged(fs::read(lab.path()).expect("the cloud was written"));
+        let forged = Forged(lab.bench.read("bad.cloud"));
         if lab.harmless(std::iter::once((format!("{what}: {n}"), forged.clone()))) > 0 {
             taken.push(*what);
         }
@@ -242,7 +241,7 @@ fn opening_reads_no_samples() {
     let second = &mut drawn.meta.materials[0].halves[1];
     (second.samples, second.first_tile, second.first_node) = (0, group.tiles(), group.nodes());
     write(&drawn, &lab.path());
-    let mut forged = Forged(fs::read(lab.path()).expect("the cloud was written"));
+    let mut forged = Forged(lab.bench.read("bad.cloud"));
     let tiles = forged.section("tile").start as u64;
     let nodes = tiles + group.tiles() * 512;
     let end = nodes + group.nodes() * 32;
@@ -258,7 +257,7 @@ fn opening_reads_no_samples() {
     forged.put(16, &end.to_le_bytes());
     forged.put(24, &samples.to_le_bytes());
     let forged = forged.sealed_head();
-    fs::write(lab.path(), &forged.0).expect("the temporary folder is writable");
+    lab.bench.write("bad.cloud", &forged.0);
     fs::OpenOptions::new().write(true).open(lab.path()).and_then(|f| f.set_len(end)).expect("files may have holes");
     let open = |_| {
         let start = Instant::now();

@@ -1,6 +1,6 @@
 //! Cameras: of the glTF file, or of a view file.
 
-use crate::{SceneError, import::files};
+use crate::{error::SceneError, import::files};
 use glam::{DMat4, DVec2, DVec3};
 use serde::Deserialize;
 use serde_json::Value;

@@ -5,6 +5,7 @@ use formats::cloud::{Cloud, Pattern};
 use gather::{Input, Passes, Rendered, Settings, estimator::Estimator, film::Errors, render, shards};
 use sums::confidence::Estimate;
 
+/// Renders `settings.paths_per_pixel` paths.
 pub fn render_all(input: &Input, settings: &Settings, common: &Common) -> Rendered {
     let progress = Progress::start(common, "gathering", settings.part().pixels() as u64, "pixels");
     let rendered = render(input, settings, |n| progress.add(n));
@@ -28,7 +29,7 @@ pub fn render_to(target: f64, input: &Input, settings: &Settings, common: &Commo
         let round = Round { target, input, paths, done, before };
         match round.judge(errors.as_ref(), settings) {
             Verdict::Met => break,
-            Verdict::Never(why) => {
+            Verdict::OutOfReach(why) => {
                 common.warn(why);
                 break;
             }
@@ -36,7 +37,7 @@ pub fn render_to(target: f64, input: &Input, settings: &Settings, common: &Commo
         }
         if paths >= max_paths {
             common.warn(format_args!(
-                "--target-error is not met with {} paths a pixel; --spp allows more",
+                "--target-error is not met with {} paths per pixel; a larger --spp allows more",
                 count(u64::from(max_paths))
             ));
             break;
@@ -71,7 +72,7 @@ enum Verdict {
     /// More paths are needed.
     More,
     /// More paths would not help, for this reason.
-    Never(String),
+    OutOfReach(String),
 }
 
 impl Round<'_> {
@@ -82,9 +83,9 @@ impl Round<'_> {
             return if paths < UNKNOWN_PATHS {
                 Verdict::More
             } else {
-                Verdict::Never(format!(
-                    "no two of {paths} paths a pixel differ, so that the error is unknown: there is none, or what they should \
-                     meet is too small; --spp without --target-error takes more"
+                Verdict::OutOfReach(format!(
+                    "no two of {paths} paths per pixel differ, so their error is unknown: either it is 0, or the objects are \
+                     too small for these paths to meet; --spp without --target-error renders more"
                 ))
             };
         };
@@ -95,8 +96,8 @@ impl Round<'_> {
         if few > CLOUD_LIMITS * self.target {
             let (lit, percent) = (self.lit(), 100.0 * few);
             let why =
-                format!("the cloud alone may have an error of {percent:.2} %, as {lit} of its samples carry light");
-            return Verdict::Never(format!("{why}: {}", self.way_out(few)));
+                format!("the cloud alone may have an error of {percent:.2} %, as only {lit} of its samples are lit");
+            return Verdict::OutOfReach(format!("{why}: {}", self.advice(few)));
         }
         self.judge_cloud(errors, &estimate, settings)
     }
@@ -115,16 +116,19 @@ impl Round<'_> {
         let error = if significant { errors.cloud.max(lasting) } else { lasting };
         if error > CLOUD_LIMITS * self.target {
             let percent = 100.0 * error;
-            return Verdict::Never(format!("the cloud alone has an error of {percent:.2} %: {}", self.way_out(error)));
+            return Verdict::OutOfReach(format!(
+                "the cloud alone has an error of {percent:.2} %: {}",
+                self.advice(error)
+            ));
         }
         // Where the error of the paths is small, the cloud's error is known from its two halves alone.
         let cloud = Estimate { error: errors.cloud, freedom: errors.cloud_freedom };
         if errors.paths < 0.5 * cloud.error && cloud.safe() > self.target {
             let (percent, within) = (100.0 * cloud.error, 100.0 * cloud.within());
-            return Verdict::Never(format!(
-                "the cloud alone has an error of about {percent:.2} %, but its halves differ by one value in so few pixels: it \
-                 is below {within:.2} % with 95 % confidence; {}",
-                self.way_out(cloud.safe())
+            return Verdict::OutOfReach(format!(
+                "the cloud alone has an error of about {percent:.2} %, but in so few pixels the difference of its halves is \
+                 hardly more than one value: the error is below {within:.2} % with 95 % confidence; {}",
+                self.advice(cloud.safe())
             ));
         }
         Verdict::More
@@ -149,14 +153,14 @@ impl Round<'_> {
     }
 
     /// Advice on a cloud of this error.
-    fn way_out(&self, error: f64) -> String {
+    fn advice(&self, error: f64) -> String {
         // The error of well-spread samples falls at least as fast as their number to the power −3/4.
         let drawn = shards::drawn(self.input.clouds) as f64;
         let needed = drawn * (error / (CLOUD_LIMITS * self.target)).powf(4.0 / 3.0);
         if self.input.clouds.len() == 1 {
             format!("sample it again with --samples {}", count_up(needed))
         } else {
-            format!("about {} samples in all would do; add shards", count_up(needed))
+            format!("add shards until there are about {} samples in all", count_up(needed))
         }
     }
 }

@@ -2,10 +2,8 @@
 //! image is rendered, so that it meets the target.
 
 use crate::{
-    estimator::{Calibration, Sum},
     path_state::ThreadContext,
     renderer::{Renderer, TranslucentObject},
-    samples::Exit,
 };
 use glam::DVec2;
 use rayon::prelude::*;
@@ -13,6 +11,10 @@ use scene::{
     DVec3,
     random::{Purpose, Stream},
     sequence::Sequence,
+};
+use sums::{
+    estimator::{Calibration, Sum},
+    samples::Exit,
 };
 
 /// Points for each material, and the camera rays that are traced to find them.

@@ -1,14 +1,15 @@
 //! Renders pixels in parallel, and adds paths to all of them in passes.
 
 use crate::{
-    Crop, Filter, Input, Rendered, Settings, calibration,
+    calibration,
     counts::Counts,
+    crop::Crop,
     edge::{self, Edge},
-    estimator::Scatterer,
     film::{Errors, Pixel, PixelSum},
+    image::{Filter, Input, Rendered, Settings},
     path_state::{PathIndex, ThreadContext},
     renderer::{Renderer, TranslucentObject},
-    shards::{self, DrawnCounts},
+    shards,
 };
 use glam::DVec2;
 use rayon::prelude::*;
@@ -19,7 +20,7 @@ use scene::{
     sequence::Sequence,
 };
 use std::{ops::Range, sync::Arc};
-use sums::Summation;
+use sums::{Summation, drawn::DrawnCounts, estimator::Scatterer};
 
 /// Each task renders a square tile of so many pixels on a side.
 const TILE: usize = 8;

@@ -1,13 +1,12 @@
 //! The light that leaves a translucent surface scattered: what a camera path gathers from the cloud.
 
 use crate::{
-    estimator::Estimator,
     path_light::{Layer, PathLight},
     path_state::{PathState, ThreadContext},
     renderer::{Renderer, TranslucentObject},
-    samples::Exit,
 };
 use scene::{DVec3, SurfacePoint};
+use sums::{estimator::Estimator, samples::Exit};
 
 /// The largest relative error that is asked of one sum. Above it, the cut does not predict its own error.
 const MAX_ERROR: f64 = 0.5;

@@ -8,9 +8,10 @@
 //! 16 independent halves estimate well, meets the target; one cloud of as many samples as all trials has no larger error.
 
 use crate::{
-    Plan, SampleError, Sampled, Settings,
+    error::SampleError,
+    plan::{Plan, Settings},
     points::{Goal, Points, relative_error},
-    sample,
+    portions::{Sampled, sample},
     trials::{TRIALS, Trials},
 };
 use scene::{Rays, Scene};
@@ -75,7 +76,7 @@ pub fn sample_enough(
     tell: impl Fn(&Round) + Sync,
 ) -> Result<Enough, SampleError> {
     let search = Search { scene, rays, settings, plan, goal, tell: &tell };
-    let mut trials = search.trials(FIRST.min(goal.most))?;
+    let mut trials = search.trials(FIRST.min(goal.max_samples))?;
     loop {
         let samples = trials.all();
         let error = match trials.mean {
@@ -121,8 +122,8 @@ impl Search<'_> {
     /// The number of samples to try next, given that `samples` have this error.
     fn more(&self, samples: u64, error: f64, max_growth: f64) -> Result<u64, SampleError> {
         let growth = (error / self.goal.error).powf(POWER).clamp(1.5, max_growth);
-        let (next, most) = ((samples as f64 * growth).ceil() as u64, self.goal.most);
-        if next > most { Err(SampleError::TooMany { samples, error, next, most }) } else { Ok(next) }
+        let (next, max_samples) = ((samples as f64 * growth).ceil() as u64, self.goal.max_samples);
+        if next > max_samples { Err(SampleError::TooMany { samples, error, next, max_samples }) } else { Ok(next) }
     }
 
     /// Trials of at least so many samples in all, of which enough are lit, or none if the scene is dark.
@@ -131,7 +132,7 @@ impl Search<'_> {
         loop {
             let trials = Trials::draw((scene, rays), settings, plan, goal, samples.div_ceil(TRIALS))?;
             (self.tell)(&Round::Trials(trials));
-            let max_samples = if trials.lit == 0 { SEARCH.min(goal.most) } else { goal.most };
+            let max_samples = if trials.lit == 0 { SEARCH.min(goal.max_samples) } else { goal.max_samples };
             if trials.lit >= MIN_LIT || samples >= max_samples {
                 return Ok(trials);
             }
@@ -157,7 +158,7 @@ impl Search<'_> {
             };
             if let Some(checked) = checked {
                 // The cloud stays in memory beside the new trials.
-                trials = self.trials(checked.min(self.goal.most - samples).max(TRIALS))?;
+                trials = self.trials(checked.min(self.goal.max_samples - samples).max(TRIALS))?;
                 if trials.freedom < MANY {
                     return Ok(Found::Few(trials));
                 }
@@ -176,7 +177,7 @@ impl Search<'_> {
         let all = trials.all();
         match GAIN * trials.error_bound(all) {
             error if error > self.goal.error => self.more(all, error, CLOUDS_GROW),
-            _ => Ok(FIRST.min(self.goal.most)),
+            _ => Ok(FIRST.min(self.goal.max_samples)),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Light that reaches a sample after one reflection by an opaque surface.
 
-use crate::surface::LitSurface;
+use crate::lit_surface::LitSurface;
 use scene::{DVec3, Scene, SurfacePoint, light::all_light_at, random::Item, warp};
 
 /// The share of samples that are lit this way where there are opaque surfaces. For a head on an evenly lit floor, which

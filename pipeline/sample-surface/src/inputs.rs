@@ -54,7 +54,7 @@ impl Inputs {
     pub fn goal(&self) -> Option<Goal<'_>> {
         let room = cli::available_memory_bytes().map_or(u64::MAX, |bytes| bytes / BYTES_PER_SAMPLE);
         let (medium, error) = self.target.as_ref()?;
-        Some(Goal { medium, error: *error, most: room.min(SAMPLES_LIMIT - 1) })
+        Some(Goal { medium, error: *error, max_samples: room.min(SAMPLES_LIMIT - 1) })
     }
 }
 

@@ -1,6 +1,10 @@
 //! The light of a cloud that leaves the surface at points all over it, by the directional dipole.
 
-use crate::{Numbers, Pattern, Plan, SamplePoint, Sampled, Settings};
+use crate::{
+    pattern::{Numbers, Pattern, SamplePoint},
+    plan::{Plan, Settings},
+    portions::Sampled,
+};
 use bssrdf::{Medium, Model};
 use formats::cloud::SampledMaterial;
 use glam::DVec3;
@@ -21,7 +25,7 @@ pub struct Goal<'a> {
     /// surface.
     pub error: f64,
     /// The largest number of samples that fits in memory.
-    pub most: u64,
+    pub max_samples: u64,
 }
 
 /// Points of the surface at which light is compared.

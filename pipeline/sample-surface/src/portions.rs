@@ -5,10 +5,10 @@ use crate::{
     choice::TriangleChoice,
     error::SampleError,
     hierarchy,
+    lit_surface::LitSurface,
     pattern::{Numbers, Pattern, SamplePoint},
     plan::{Plan, Settings},
     sample::{SampleOutcome, draw},
-    surface::LitSurface,
 };
 use formats::cloud::{Content, Group, Meta, Record, SampledMaterial};
 use rayon::prelude::*;

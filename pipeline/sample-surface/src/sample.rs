@@ -2,8 +2,8 @@
 
 use crate::{
     bounce::{Bounce, SHARE},
+    lit_surface::LitSurface,
     pattern::SamplePoint,
-    surface::LitSurface,
 };
 use formats::cloud::Sample;
 use scene::{

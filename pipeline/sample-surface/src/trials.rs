@@ -8,9 +8,10 @@
 //! and the smaller one counts.
 
 use crate::{
-    Plan, SampleError, Settings,
+    error::SampleError,
+    plan::{Plan, Settings},
     points::{Goal, Points},
-    sample,
+    portions::sample,
 };
 use rayon::prelude::*;
 use scene::{Rays, Scene, random};

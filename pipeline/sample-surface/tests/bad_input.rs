@@ -1,4 +1,5 @@
-//! Bad input of every kind: one message that names file, field and way out, exit 2, nothing written.
+//! Bad input of every kind is refused with exit code 2 and one message that names the file, the field and the way out;
+//! no file is written.
 
 use serde_json::{Value, json};
 use std::{fs, path::Path};
@@ -6,7 +7,7 @@ use test_support::{Bench, data, glb::Asset};
 
 const PROGRAM: &str = "sample-surface";
 
-/// A refusal of a scene in one line.
+/// The refusal of a scene, on one line.
 #[track_caller]
 fn refuses(bench: &Bench, scene: &str, words: &[&str]) {
     let message = bench.refuses(PROGRAM, &[scene, "-n", "1000", "-o", "out.cloud", "--quiet"], words);
@@ -206,7 +207,7 @@ fn the_cloud_is_the_same_for_any_number_of_threads_and_the_ply_holds_all_of_it()
     assert_eq!(ply.len() - end, count * 12 * 4);
 }
 
-/// Adds a plate of a material that is no volume, the slab's own mesh beside it.
+/// Adds a plate with a material that is no volume: the mesh of the slab, beside it.
 fn add_plate(root: &mut Value) {
     let mut mesh = root["meshes"][0].clone();
     mesh["primitives"][0]["material"] = json!(1);
@@ -218,8 +219,8 @@ fn add_plate(root: &mut Value) {
     root["scenes"][0]["nodes"].as_array_mut().expect("a list").push(json!(node));
 }
 
-/// The one surface that is marked as a volume is scaled to nothing: nothing else becomes translucent, unless it is named.
-/// The list of materials says the same. `import_volumes`.
+/// The only surface that is marked as a volume is scaled to nothing. No other surface becomes translucent instead
+/// unless it is named, and the list of materials agrees. Details: `import_volumes`.
 ///
 /// Seen to fail: a cloud of the plate.
 #[test]
@@ -236,7 +237,7 @@ fn marked_surfaces_that_are_lost_are_an_error() {
     bench.succeed(PROGRAM, &[&scene, "-n", "1000", "-o", "out.cloud", "--translucent", "Plate"]);
 }
 
-/// A mesh that is there twice is sampled once; `--strict` refuses it all the same. `copies`.
+/// A duplicated mesh is sampled once; `--strict` refuses it nevertheless. Details: `copies`.
 ///
 /// Seen to fail: a cloud of twice the area.
 #[test]
@@ -262,7 +263,7 @@ fn a_mesh_that_is_there_twice_takes_in_its_light_once() {
     );
 }
 
-/// What a file asks for and is not done is said by the program, in one line. `unhonoured`.
+/// The program names in one line what a file asks for and it does not do. Details: `unhonoured`.
 #[test]
 fn what_is_not_honoured_is_said_once() {
     let bench = Bench::new();

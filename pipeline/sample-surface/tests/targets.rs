@@ -1,6 +1,6 @@
-//! `--target-error`: the error asked for is a standard error that is met, not one that was met by luck once. All light comes
-//! through a small hole in a black plate, so that the flux that enters is known to the last digit, and so that the two
-//! halves of a cloud differ by one value all over the surface.
+//! `--target-error`: the standard error of the clouds meets the target, and not only by chance. All light comes through
+//! a small hole in a black plate, so that the flux that enters is known exactly and the two halves of a cloud differ by
+//! one value all over the surface.
 
 use glam::{DVec3, Vec3};
 use serde_json::Value;
@@ -9,7 +9,7 @@ use test_support::{
     meshes::{Light, Mesh, Part, asset, slab},
 };
 
-/// A plate with a square hole in the middle; both half sizes, m.
+/// A plate with a square hole in the middle, both given by half their sizes, m.
 fn plate(half: f64, hole: f64, height: f64) -> Mesh {
     let mut plate = Mesh::default();
     for [left, right, front, back] in
@@ -23,8 +23,8 @@ fn plate(half: f64, hole: f64, height: f64) -> Mesh {
     plate
 }
 
-/// A scene in a folder of its own: a cube of this half size, m, under a plate with a square hole of this size, m, and a
-/// light of 1 W/m² from above.
+/// A scene in a folder of its own: a cube of half the size `half`, m, under a plate with a square hole, and a light of
+/// 1 W/m² from above.
 fn under_a_hole(size: f64, half_cube: f64) -> Bench {
     let cube = Part::translucent(slab(DVec3::splat(half_cube), 1));
     let plate = plate(4.0 * half_cube, 0.5 * size, 1.2 * half_cube);
@@ -42,9 +42,9 @@ fn run(bench: &Bench, target: f64, seed: u64) -> (String, Value) {
     (bench.says("sample-surface", &[&files[..], &aim].concat()), bench.json("own.json"))
 }
 
-/// Runs of so many seeds. Twice a standard error is exceeded by 5 % of them at most. It is by fewer here, because one
-/// cloud has less error than the mean of the trials that it is judged by: of many seeds by none, the error being a
-/// quarter of the target, so that new seeds would fail less than once in a thousand times.
+/// Checks runs with several seeds: at most 5 % of them exceed twice the standard error. Fewer do here, because a cloud
+/// has a smaller error than the mean of the trials by which it is judged: the error is a quarter of the target, and
+/// none of many seeds exceeded it, so that new seeds would fail less than once in a thousand times.
 fn assert_met(size: f64, half_cube: f64, target: f64, own: std::ops::Range<u64>) {
     let seeds = own.end - own.start;
     let bench = under_a_hole(size, half_cube);
@@ -69,20 +69,21 @@ fn assert_met(size: f64, half_cube: f64, target: f64, own: std::ops::Range<u64>)
     assert!(rms <= target, "the error is {rms}, not {target}");
 }
 
-/// Seen to catch, with the first small difference of two halves believed: a third of the light missing at a target of 10 %.
+/// Seen to catch: the first small difference between the halves taken for the error, by which a third of the light was
+/// missing at a target of 10 %.
 #[test]
 fn a_small_hole_is_no_luck() {
     if cfg!(feature = "slow") {
         assert_met(2e-3, 50e-3, 0.05, 0..200);
     } else {
-        // A smaller cube, of which a larger share is lit.
+        // A larger share of the smaller cube is lit.
         assert_met(2e-3, 35e-3, 0.1, 0..5);
     }
 }
 
-/// Of the first samples few find the hole, or none.
+/// Few of the first samples find the hole, or none does.
 ///
-/// Seen to catch: no lit sample taken for an error of 0 %.
+/// Seen to catch: the error of a cloud without a lit sample taken for 0 %.
 #[test]
 fn a_hole_that_is_missed_is_not_without_error() {
     if cfg!(feature = "slow") {
@@ -92,9 +93,9 @@ fn a_hole_that_is_missed_is_not_without_error() {
     }
 }
 
-/// Of a scene that is dark nothing is known, and that is said.
+/// The error in a dark scene is unknown, and the program says so.
 ///
-/// Seen to catch: an error of 0 % of 65536 samples.
+/// Seen to catch: an error of 0 % claimed for 65536 samples.
 #[test]
 #[cfg(feature = "slow")]
 fn of_darkness_no_error_is_told() {

@@ -3,6 +3,10 @@
 //! Each target reads bytes with the function that the programs use, and checks the result. It returns whether the
 //! bytes were accepted; a panic, an abort, high memory or an endless run is a failure. The programs of the fuzzer in
 //! `fuzz/` and the ordinary test of this package call the same functions.
+//!
+//! ```
+//! assert!(!fuzz_targets::view(b"{}"));
+//! ```
 
 mod cloud;
 mod comparison;

@@ -1,6 +1,15 @@
 //! What the tests share: the programs in a temporary folder, glTF files and meshes, random numbers; with the feature
 //! `transport` also statistics with stated false-alarm rates, quadrature, and the two phases as functions from a scene to a
 //! number.
+//!
+//! ```
+//! use glam::DVec3;
+//! use test_support::meshes::{Light, Part, sphere, world};
+//!
+//! let sun = Light::Directional { towards: DVec3::Z, irradiance: DVec3::ONE };
+//! let world = world(&[Part::translucent(sphere(0.01, 2))], &[sun], DVec3::ZERO);
+//! assert_eq!(world.scene.mesh.triangles.len(), 8 * 4 * 4);
+//! ```
 
 pub mod bench;
 #[cfg(feature = "transport")]

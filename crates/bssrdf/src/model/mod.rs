@@ -17,7 +17,7 @@ pub use standard_lanes::StandardLanes;
 use crate::{
     accuracy::{GOOD, ReflectanceErrors, interpolated},
     evaluate::Bssrdf,
-    lanes::block::LaneModel,
+    lanes::block::{Block, Lane, LaneModel},
     medium::{Coefficients, Medium},
 };
 
@@ -95,6 +95,7 @@ impl Model {
 
 /// A model in float32 that is chosen when the program runs.
 #[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "an object has one, and a box would be another pointer in each sum")]
 pub enum AnyLanes {
     Directional(DirectionalLanes),
     Better(BetterLanes),
@@ -109,6 +110,15 @@ pub trait LaneWork {
 }
 
 impl AnyLanes {
+    /// `S_bare` as of [`LaneModel::bare`], for one block; [`AnyLanes::run`] is for many.
+    pub fn bare(&self, block: &Block, normal_out: [f32; 3]) -> [Lane; 3] {
+        match self {
+            AnyLanes::Directional(model) => model.bare(block, normal_out),
+            AnyLanes::Better(model) => model.bare(block, normal_out),
+            AnyLanes::Standard(model) => model.bare(block, normal_out),
+        }
+    }
+
     /// Does the work with this model.
     pub fn run<W: LaneWork>(&self, work: W) -> W::Output {
         match self {

@@ -1,9 +1,10 @@
-//! Bad input of every kind: one message that names file, field and way out, exit 2, nothing written.
+//! Bad input of every kind is refused with exit code 2 and one message that names the file, the field and the way out;
+//! no file is written.
 
 use std::path::Path;
 use test_support::{Bench, data};
 
-/// A folder with a small cloud of the slab in it.
+/// A folder that contains a small cloud of the slab.
 fn bench() -> (Bench, String) {
     let bench = Bench::new();
     let slab = data("scenes/slab.glb");

@@ -1,7 +1,8 @@
-//! `--crop`: a part of the whole image, to the last bit, and parts joined to the whole.
+//! `--crop`: a crop has the bits of the whole image, and crops can be joined to the whole.
 //!
-//! Planted errors seen: random numbers by the place in the crop; corners of edge pixels counted from the crop's own corner;
-//! points of calibration from a picture of the crop's size; display window that of the data; row and column exchanged.
+//! Seen to catch: random numbers by the position in the crop; corners of edge pixels counted from the corner of the
+//! crop; points of calibration from an image of the crop's size; the data window as the display window; row and column
+//! exchanged.
 
 use formats::{Image, Window};
 use std::process::Command;
@@ -9,7 +10,8 @@ use test_support::{Bench, Run, data};
 
 const SIZE: [usize; 2] = [40, 30];
 
-/// In the middle, one pixel, each corner, a row, a column, everything; offsets that are no multiples of a tile.
+/// Crops in the middle, of one pixel, at each corner, of a row, of a column, of everything; with offsets that are no
+/// multiples of a tile.
 const CROPS: [[usize; 4]; 9] = [
     [13, 7, 11, 9],
     [20, 14, 1, 1],
@@ -54,7 +56,7 @@ fn a_crop_is_that_part_of_the_whole_bit_for_bit() {
     for kind in kinds {
         gather(&bench, "whole.exr", &[kind, &["--stats", "whole.json"]].concat());
         let whole = bench.image("whole.exr");
-        // What is compared has edges and is not black.
+        // The image has edge pixels and is not black.
         assert!(bench.json("whole.json")["edge_pixels"].as_u64() > Some(20) || kind.contains(&"point"));
         for crop in CROPS {
             let [x, y, width, height] = crop;
@@ -86,7 +88,7 @@ fn a_crop_outside_the_image_is_refused() {
     bench.refuses("gather", &[&own[..], &["--crop", "0,0,1,1", "--target-error", "0.1"]].concat(), &["--target-error"]);
 }
 
-/// The command of docs/guide.md, on parts in any order.
+/// The command of docs/guide.md joins crops in any order.
 #[test]
 fn oiiotool_joins_crops_to_the_whole() {
     if Command::new("oiiotool").arg("--version").output().is_err() {
@@ -110,6 +112,6 @@ fn oiiotool_joins_crops_to_the_whole() {
     let all = [0, 0, SIZE[0], SIZE[1]];
     assert!(bits(&joined, all) == bits(&whole, all));
     assert_eq!(joined.attributes.get("pcsss/cloud"), whole.attributes.get("pcsss/cloud"));
-    // Some of what is joined is negative.
+    // Some of the joined values are negative.
     assert!(whole.channel("N.X").expect("a layer").iter().any(|x| *x < 0.0));
 }

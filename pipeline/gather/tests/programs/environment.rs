@@ -1,9 +1,9 @@
-//! Pictures as light from all around, through both programs.
+//! Panoramas as the environment of both programs.
 
 use formats::{Attribute, Channel, Image, Window};
 use test_support::{Bench, Limits, data};
 
-/// Twelve by six pixels that both formats hold exactly: a bright one on a sky over dark ground.
+/// A panorama of twelve by six pixels that both formats hold exactly: a bright pixel in a sky over dark ground.
 fn sky() -> Vec<[f32; 3]> {
     let pixel = |k: usize| match (k, k / 12) {
         (28, _) => [96.0, 64.0, 32.0],
@@ -22,7 +22,7 @@ fn exr(pixels: &[[f32; 3]]) -> Vec<u8> {
     image(pixels).encode().expect("encodes")
 }
 
-/// Pixel by pixel, without runs.
+/// Encodes the pixels one by one, without runs.
 fn hdr(pixels: &[[f32; 3]]) -> Vec<u8> {
     let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 6 +X 12\n".to_vec();
     for pixel in pixels {
@@ -40,8 +40,8 @@ fn sample(bench: &Bench, output: &str, environment: &[&str]) -> Vec<u8> {
     bench.read(output)
 }
 
-/// The same bytes for the same picture in either format, and for any number of threads; other bytes for another scale,
-/// rotation or picture.
+/// The cloud has the same bytes for the same panorama in either format and for any number of threads, and other bytes
+/// for another scale, rotation or panorama.
 #[test]
 fn a_cloud_depends_on_the_picture_and_not_on_its_format() {
     let bench = Bench::new();
@@ -63,7 +63,7 @@ fn a_cloud_depends_on_the_picture_and_not_on_its_format() {
     }
 }
 
-/// Seen to catch: an environment left out of what is compared; the rotation applied to light alone.
+/// Seen to catch: the environment not compared with that of the cloud; the rotation applied to light only.
 #[test]
 fn an_image_wants_the_environment_of_its_cloud() {
     let bench = Bench::new();
@@ -82,8 +82,8 @@ fn an_image_wants_the_environment_of_its_cloud() {
         );
     }
     bench.succeed("gather", &[&arguments, &small[..], &lit].concat());
-    // What escaping rays see: the bright pixel, an eighth of a turn left of the middle and 15 degrees up, turned by a
-    // quarter to between -X and -Z, twice as bright.
+    // Escaping rays see the bright pixel, which lies an eighth of a turn left of the middle and 15 degrees up, turned
+    // by a quarter to between -X and -Z, and twice as bright.
     bench.succeed("gather", &[&arguments, &["--view", "across.json"][..], &lit].concat());
     let seen = ["R", "G", "B"].map(|c| bench.image("out.exr").channel(&format!("emission.{c}")).expect("a layer")[0]);
     assert_eq!(seen, [192.0, 128.0, 64.0]);
@@ -116,8 +116,8 @@ fn bad_pictures_are_refused_by_name_and_pixel() {
     refuses("text.hdr", b"a letter".to_vec(), &["neither"]);
 }
 
-/// Seen to catch: the data window stretched over the sphere, and its border taken for sky; numbers of ACEScg taken for
-/// Rec. 709 without a word.
+/// Seen to catch: the data window stretched over the sphere, and its border taken for sky; values in ACEScg taken for
+/// Rec. 709 without a warning.
 #[test]
 fn a_picture_is_what_its_header_says() {
     let bench = Bench::new();
@@ -145,7 +145,7 @@ fn a_picture_is_what_its_header_says() {
     }
 }
 
-/// A picture of as many rows, whose blocks of 16 all are that of this one.
+/// A panorama of this many rows, all of whose blocks of 16 rows are that of the given one.
 fn tall(bytes: &[u8], rows: usize) -> Vec<u8> {
     let mut end = 8;
     while bytes[end] != 0 {
@@ -169,7 +169,8 @@ fn tall(bytes: &[u8], rows: usize) -> Vec<u8> {
     header
 }
 
-/// Half a megabyte of zeros is read only where there is room. The tree without this was aborted by signal 6 in both.
+/// Half a megabyte of compressed zeros is read only where the pixels fit into memory. Seen to fail without the check:
+/// both programs were aborted by signal 6.
 #[test]
 fn pictures_that_do_not_fit_are_refused_before_they_are_read() {
     let bench = Bench::new();

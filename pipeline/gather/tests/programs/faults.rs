@@ -1,8 +1,9 @@
-//! What goes wrong on a farm: processes killed, disks full, files exchanged, too little memory. Nothing is half-written,
-//! and what is run again is right.
+//! Faults of a farm: killed processes, full disks, exchanged files, too little memory. No file is half-written, and a
+//! second run succeeds.
 //!
-//! Planted errors that these tests caught: the target written in place; temporary files of a killed process left; the
-//! handlers of signals left out, one for an ignored signal; the need of memory taken a hundred times too small; a cloud that is written to not looked at.
+//! Seen to catch: the target written in place; temporary files of a killed process left behind; the handlers of signals
+//! left out; a handler for an ignored signal; the need for memory estimated a hundred times too small; a cloud that
+//! changes while it is read not noticed.
 
 use std::{
     collections::BTreeSet,
@@ -14,10 +15,10 @@ use std::{
 };
 use test_support::{Bench, Limits, Run, data, program};
 
-/// Kills of each program.
+/// How many times each program is killed.
 const KILLS: u32 = if cfg!(feature = "slow") { 100 } else { 6 };
 
-/// One program with its target there already, and the bytes it would write.
+/// A program whose target exists already, and the bytes that it would write.
 struct Victim<'a> {
     bench: &'a Bench,
     name: &'a str,
@@ -25,7 +26,7 @@ struct Victim<'a> {
     target: &'a str,
     old: Vec<u8>,
     new: Vec<u8>,
-    /// Of a whole run.
+    /// Duration of a whole run.
     duration: Duration,
 }
 
@@ -51,7 +52,7 @@ fn gathering(bench: &Bench) -> Victim<'_> {
 }
 
 impl<'a> Victim<'a> {
-    /// Runs both; the first run's file is the old one.
+    /// Runs both; the file of the first run is the old one.
     fn new(bench: &'a Bench, name: &'a str, target: &'a str, [old, new]: [Vec<String>; 2]) -> Victim<'a> {
         let content = |arguments: &[String]| {
             let start = Instant::now();
@@ -88,27 +89,27 @@ impl<'a> Victim<'a> {
         found == self.new
     }
 
-    /// A delay between nothing and a little more than a whole run, another for each `k` below `count`.
+    /// A delay between zero and a little more than a whole run, different for each `k` below `count`.
     fn delay(&self, k: u32, count: u32) -> Duration {
-        // The golden ratio's multiples: spread evenly, in no order.
+        // Multiples of the golden ratio are spread evenly and unordered.
         let share = (f64::from(k) * 0.618_033_988_75 + 0.5 / f64::from(count)).fract();
         self.duration.mul_f64(1.1 * share)
     }
 }
 
-/// Whether a process has its handlers of SIGINT and SIGTERM, or is no more.
+/// Whether a process has installed its handlers of SIGINT and SIGTERM, or has ended.
 fn catches_signals(child: &Child) -> bool {
     let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
     let over = status.contains("State:\tZ");
     over || signals(&status, "SigCgt:").is_none_or(|caught| caught >> (2 - 1) & caught >> (15 - 1) & 1 == 1)
 }
 
-/// A set of signals of a process's status.
+/// A set of signals in the status of a process.
 fn signals(status: &str, name: &str) -> Option<u64> {
     status.lines().find_map(|line| u64::from_str_radix(line.strip_prefix(name)?.trim(), 16).ok())
 }
 
-/// Whether this process, and so its children, ignore SIGHUP: under `nohup` they do.
+/// Whether this process and hence its children ignore SIGHUP, as under `nohup`.
 fn ignores_hangup() -> bool {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     signals(&status, "SigIgn:").is_some_and(|ignored| ignored & 1 == 1)
@@ -124,7 +125,8 @@ fn temporaries(bench: &Bench) -> BTreeSet<String> {
     names.filter(|name| name.ends_with(".tmp")).collect()
 }
 
-/// SIGKILL at moments all over a run: the old file or the new one whole, and what is left lying is cleared away.
+/// After SIGKILL at moments all over a run, the target is the old file or the new one, whole, and the next run removes
+/// the temporary file.
 fn survives_kills(victim: &Victim<'_>) {
     let (mut finished, mut left_something) = (0, 0);
     for k in 0..KILLS {
@@ -174,7 +176,7 @@ fn signals_to_end_leave_no_temporary_file() {
     }
 }
 
-/// What `nohup` starts works on when its terminal goes.
+/// A program started by `nohup` continues when its terminal closes.
 #[test]
 fn a_hangup_that_is_ignored_does_nothing() {
     let bench = Bench::new();
@@ -190,7 +192,7 @@ fn a_hangup_that_is_ignored_does_nothing() {
     assert!(victim.is_new());
 }
 
-/// Two at once on one target, many times: it is one of the two, whole, whoever is faster.
+/// Two processes that write the same target at once leave the file of one of them, whole.
 #[test]
 fn two_samplers_on_one_target_do_not_mix() {
     let bench = Bench::new();
@@ -224,7 +226,8 @@ fn a_target_that_may_not_be_written_stays() {
     }
 }
 
-/// A folder of another file system, and a link to a file there: the temporary file lies where the target does.
+/// The target may lie in a folder of another file system, or be a link to a file there: the temporary file lies in the
+/// folder of the target.
 #[test]
 fn a_target_on_another_file_system() {
     let Ok(elsewhere) = tempfile::tempdir_in("/dev/shm") else {
@@ -245,7 +248,7 @@ fn a_target_on_another_file_system() {
     assert_eq!(fs::read_dir(elsewhere.path()).expect("lists").count(), 1);
 }
 
-/// Runs `script` in a name space of its own, in which it may mount; none where the system does not allow that.
+/// Runs `script` in a namespace of its own, in which it may mount; none where the system does not allow that.
 fn in_own_mounts(bench: &Bench, script: &str) -> Option<Run> {
     let unshare = |flags: &[&str], script: &str| {
         let mut command = Command::new("unshare");
@@ -259,7 +262,7 @@ fn in_own_mounts(bench: &Bench, script: &str) -> Option<Run> {
     flags.iter().find(allowed).and_then(|flags| unshare(flags, script))
 }
 
-/// The disk is full while a cloud, and an image, is written: a message, the old file, and no other.
+/// Where the disk is full when a cloud or an image is written, there is a message and the old file, and no other file.
 #[test]
 fn a_full_disk_leaves_the_old_file() {
     let bench = Bench::new();
@@ -284,12 +287,12 @@ fn a_full_disk_leaves_the_old_file() {
     }
 }
 
-/// Whether a process has mapped a file, or is no more.
+/// Whether a process has mapped a file, or has ended.
 fn maps(child: &Child, file: &str) -> bool {
     fs::read_to_string(format!("/proc/{}/maps", child.id())).map_or(true, |maps| maps.is_empty() || maps.contains(file))
 }
 
-/// A gather that takes a while, with something done to its cloud in the middle of that.
+/// Runs a slow `gather` and changes its cloud in the middle of the run.
 fn gather_disturbed(bench: &Bench, disturb: impl FnOnce(&Path)) -> (Run, Vec<u8>) {
     let (scene, view) = (data("scenes/sphere.glb"), data("views/sphere/front.json"));
     bench.succeed("sample-surface", &["-n", "200k", "-o", "mine.cloud", &scene]);
@@ -301,7 +304,7 @@ fn gather_disturbed(bench: &Bench, disturb: impl FnOnce(&Path)) -> (Run, Vec<u8>
     while !maps(&child, "mine.cloud") {
         sleep(Duration::from_millis(1));
     }
-    // The cloud is checked in milliseconds; then the picture is made of it.
+    // The cloud is checked within milliseconds; rendering takes the rest of the run.
     sleep(whole.mul_f64(0.2));
     disturb(&bench.path("mine.cloud"));
     (child.wait_with_output().expect("ends").into(), bench.read("alone.exr"))
@@ -318,7 +321,7 @@ fn a_cloud_replaced_while_it_is_read_is_read_to_the_end() {
     assert!(bench.read("mine.exr") == alone, "not the image of the old cloud");
 }
 
-/// What these programs never do, `cp` does.
+/// `cp` overwrites a file in place, which these programs never do.
 #[test]
 fn a_cloud_written_to_while_it_is_read_is_no_image() {
     type Disturb = fn(&Path);
@@ -341,7 +344,7 @@ fn a_cloud_written_to_while_it_is_read_is_no_image() {
     }
 }
 
-/// Whatever the limit, it is held or the need is named first.
+/// Under any limit of memory, the program stays within it or names its need first.
 #[test]
 fn too_little_memory_is_said_before_the_work() {
     let bench = Bench::new();

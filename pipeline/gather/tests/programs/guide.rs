@@ -1,4 +1,4 @@
-//! docs/guide.md explains every option of the programs once, and no option that there is not.
+//! docs/guide.md explains every option of the programs once, and no other option.
 
 use std::{collections::BTreeSet, process::Command};
 use test_support::program;
@@ -37,8 +37,8 @@ fn offered() -> BTreeSet<(String, String)> {
     found
 }
 
-/// Seen to fail for an option that the page lacked, one that it had twice, one of another program, and one that no program
-/// has, in a table and in the text.
+/// Seen to fail for an option that the page lacked, one that it had twice, one of another program, and one that no
+/// program has, in a table and in the text.
 #[test]
 fn the_guide_explains_every_option_once() {
     let offered = offered();

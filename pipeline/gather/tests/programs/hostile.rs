@@ -1,4 +1,4 @@
-//! Forged clouds, checksums right: refused with one message, or rendered, in seconds and in little memory.
+//! Forged clouds with correct checksums are refused with one message, or rendered, in seconds and in little memory.
 
 use formats::{
     atomic::Output,
@@ -35,7 +35,7 @@ impl Parts {
 
 type Change = fn(&mut Parts);
 
-/// What a forger may write, and whether it must be refused.
+/// Forgeries, and whether each must be refused.
 const FORGERIES: [(&str, bool, Change); 21] = [
     ("as it is", false, |_| ()),
     ("more samples than there are", true, |p| p.meta.materials[0].halves[0].samples += 1 << 40),
@@ -62,7 +62,7 @@ const FORGERIES: [(&str, bool, Change); 21] = [
     }),
 ];
 
-/// A cloud with five tiles in each half: their trees have room for eight, and nodes that hold nothing.
+/// A cloud with five tiles in each half, whose trees have room for eight, so that some nodes are empty.
 fn with_room(bench: &Bench, scene: &str) -> Parts {
     let drawn = |samples: u64| {
         bench.succeed("sample-surface", &[scene, "-n", &samples.to_string(), "-o", "good.cloud", "--quiet"]);
@@ -72,7 +72,7 @@ fn with_room(bench: &Bench, scene: &str) -> Parts {
     (10..60).map(|k| drawn(10 * k)).find(fits).expect("one of so many numbers of samples")
 }
 
-/// Seen to catch: a pick from a node beyond the last sample, which ends the program by a panic.
+/// Seen to catch: a pick from a node beyond the last sample, which made the program panic.
 #[test]
 fn forged_clouds_do_no_harm() {
     let bench = Bench::new();
@@ -92,17 +92,17 @@ fn forged_clouds_do_no_harm() {
             assert_eq!(code, Some(2), "{what}: {message}");
             assert!(message.contains("bad.cloud") && message.contains("sample"), "{what}: {message}");
         } else {
-            // 3: numbers beyond float32.
+            // Exit code 3 is for numbers beyond float32.
             assert!([Some(0), Some(3)].contains(&code), "{what}: {code:?} {message}");
         }
         assert!(start.elapsed() < Duration::from_secs(20), "{what} takes {:?}", start.elapsed());
     }
 }
 
-/// Tiles of the first half of a large cloud: 64 MiB of them, and 8 MiB of nodes.
+/// The number of tiles in the first half of a large cloud: 64 MiB of tiles, and 8 MiB of nodes.
 const MANY_TILES: u64 = 1 << 17;
 
-/// A large cloud of the slab whose first half is the same tile over and over.
+/// A large cloud of the slab whose first half repeats one tile.
 fn large(bench: &Bench, scene: &str, name: &str) {
     let mut parts = with_room(bench, scene);
     let (tile, node) = (parts.content.tiles[0], parts.content.nodes[1]);
@@ -116,8 +116,9 @@ fn large(bench: &Bench, scene: &str, name: &str) {
     parts.write(bench, name);
 }
 
-/// The picture would take hours. Seen to catch: clouds of 64 MiB and more that are checked beside the work: the damaged
-/// tile is said when the picture is done, which these limits do not allow, and the negative flux ends it by a panic.
+/// A damaged cloud is refused before the image, which would take hours. Seen to catch: clouds of 64 MiB and more
+/// checked during the work, so that the damaged tile is reported after the image, which the limits do not allow, and
+/// the negative flux makes the program panic.
 #[test]
 fn damage_in_a_large_cloud_is_said_before_the_picture_is_made() {
     let bench = Bench::new();
@@ -144,8 +145,8 @@ fn damage_in_a_large_cloud_is_said_before_the_picture_is_made() {
     }
 }
 
-/// The same picture, however strong the sun is, as long as it is one of float32; and what is not known of it is the same
-/// share of it. Variances beyond float32 are its largest number.
+/// The image is proportional to the sun as long as its values are in the range of float32, and its relative error is
+/// the same. A variance beyond float32 is stored as the largest float32.
 ///
 /// Seen to catch: exit code 3 because of the variance, from 1e20 on.
 #[test]

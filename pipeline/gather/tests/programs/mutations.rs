@@ -1,6 +1,7 @@
-//! Damaged scenes through both programs: an image or one clear message, in ten seconds and a GiB, never a panic.
+//! Damaged scenes give an image or one clear message, within ten seconds and one GiB, and never a panic, in both
+//! programs.
 //!
-//! The same in every run; `make slow` goes through a thousand.
+//! The damage is the same in every run; `make slow` tries a thousand scenes.
 
 use crate::user_files::with_medium;
 use serde_json::{Value, json};
@@ -21,7 +22,7 @@ fn scene(name: &str) -> Asset {
     scene
 }
 
-/// The file with its buffers as the document says them, right or wrong.
+/// The file, with the lengths of its buffers as the document states them, right or wrong.
 fn glb(scene: &Asset) -> Vec<u8> {
     container(&[(b"JSON", scene.json.to_string().as_bytes()), (b"BIN\0", &scene.binary)])
 }
@@ -40,7 +41,7 @@ fn pointers(value: &Value, at: &str, found: &mut Vec<String>) {
     }
 }
 
-/// Another value of the same kind, rarely none.
+/// Another value of the same kind, or rarely null.
 fn bent(value: &Value, random: &mut Random) -> Value {
     let indices = [0, 1, 2, 3, 1000, 1 << 31, 1 << 32, 1 << 63, u64::MAX];
     let scales = [0.0, -1.0, 1e-9, 0.5, 2.0, 1e3, 1e9, 1e30, 1e300];
@@ -70,7 +71,7 @@ fn flip(bytes: &mut [u8], random: &mut Random) {
     }
 }
 
-/// Takes some bytes out, or puts some in.
+/// Removes some bytes, or inserts some.
 fn shift(bytes: &mut Vec<u8>, random: &mut Random) {
     let at = random.below(bytes.len());
     if random.below(2) == 0 {
@@ -83,7 +84,7 @@ fn shift(bytes: &mut Vec<u8>, random: &mut Random) {
 fn mutated(scene: &Asset, kind: u64, random: &mut Random) -> Vec<u8> {
     let mut copy = scene.clone();
     match kind {
-        // The container's own lengths and the JSON.
+        // The lengths in the container, and the JSON.
         0 => {
             let mut bytes = glb(&copy);
             let start = bytes.len() - copy.binary.len();
@@ -119,21 +120,21 @@ fn mutated(scene: &Asset, kind: u64, random: &mut Random) -> Vec<u8> {
     }
 }
 
-/// Runs a program that must end well or with one message; true if it ended well.
+/// Runs a program that must succeed or end with one message; true if it succeeded.
 fn behaves(bench: &Bench, what: &str, name: &str, arguments: &[&str]) -> bool {
     let output = bench.run_within(LIMITS, name, arguments);
     let message = output.stderr;
     let code = output.status.code();
     assert!([Some(0), Some(2), Some(3)].contains(&code), "{what}: {name}: {:?} {message}", output.status);
     assert!(!message.contains("panicked"), "{what}: {name}: {message}");
-    // 3: light beyond float32, which no file is to blame for alone.
+    // Exit code 3 is for light beyond float32, which may come of several files together.
     let named = code == Some(3) || message.contains("bad-");
     assert!(code == Some(0) || message.lines().count() == 1 && named, "{what}: {name}: {message}");
     code == Some(0)
 }
 
-/// Three million triangles in a hundred kilobytes: refused before they are unfolded. Seen to catch: an end by the
-/// allocator, in the tree of rays.
+/// Three million triangles in a hundred kilobytes are refused before they are unpacked. Seen to catch: the allocator
+/// ended the program while the ray tree was built.
 #[test]
 fn a_scene_larger_than_memory_is_refused() {
     let bench = Bench::new();
@@ -145,7 +146,7 @@ fn a_scene_larger_than_memory_is_refused() {
     assert!(!behaves(&bench, "large", "sample-surface", &arguments));
 }
 
-/// Seen to catch: vertex indices that are not checked.
+/// Seen to catch: vertex indices not checked.
 #[test]
 fn a_damaged_scene_gives_an_image_or_one_clear_message() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Words that may mean more than one camera or material of a scene: refused, with the indices to choose from.
+//! A word that may mean more than one camera or material of a scene is refused, with the indices to choose from.
 
 use formats::{Attribute, cloud::Cloud};
 use serde_json::{Value, json};
@@ -9,7 +9,7 @@ use test_support::{Bench, Run, program};
 fn under_cameras(bench: &Bench, cameras: &[[&str; 2]]) -> String {
     bench.slab("cameras.gltf", |root| {
         let (mut camera, node) = (root["cameras"][0].clone(), root["nodes"][2].clone());
-        // make asks for no size: 512 x 8 pixels.
+        // make gives no size, which makes 512 x 8 pixels.
         camera["perspective"]["aspectRatio"] = json!(64);
         root["cameras"] = json!([]);
         root["nodes"].as_array_mut().expect("a list").truncate(2);
@@ -35,7 +35,8 @@ fn sample(bench: &Bench, scene: &str) {
     bench.succeed("sample-surface", &[scene, "-n", "500", "-o", "slab.cloud", "--quiet"]);
 }
 
-/// How the header of an image of the camera that `more` chooses says it, and the camera with its height.
+/// The word for the camera that `more` chooses, as the header of the image has it, and the index of the camera at its
+/// height.
 fn seen(bench: &Bench, scene: &str, more: &[&str]) -> (String, Option<usize>) {
     let own = ["slab.cloud", scene, "--medium", "marble", "-o", "seen.exr", "--quiet", "--spp", "1"];
     bench.succeed("gather", &[&own[..], &["--width", "4", "--height", "4"], more].concat());
@@ -48,8 +49,8 @@ fn seen(bench: &Bench, scene: &str, more: &[&str]) -> (String, Option<usize>) {
     (camera, (0..9).find(|k| (depth - height(*k)).abs() < 1e-3))
 }
 
-/// Seen to fail where names came before indices and the first of a name was taken: 1 was the first camera, and so was
-/// `Both`.
+/// Seen to fail when names were looked up before indices and the first camera of a name was taken: both `1` and `Both`
+/// were the first camera.
 #[test]
 fn a_word_for_more_than_one_camera_is_refused() {
     let bench = Bench::new();
@@ -82,7 +83,7 @@ fn a_word_for_more_than_one_camera_is_refused() {
     assert!(table.lines().nth(2).is_some_and(|line| line.starts_with("1  ") && line.ends_with("  Both")), "{table}");
 }
 
-/// One camera on two nodes. Seen to fail where the first was taken.
+/// A camera on two nodes is two cameras. Seen to fail when the first was taken.
 #[test]
 fn a_camera_on_two_nodes_is_two_cameras() {
     let bench = Bench::new();
@@ -93,7 +94,7 @@ fn a_camera_on_two_nodes_is_two_cameras() {
     assert_eq!(seen(&bench, &scene, &["--camera", "Right"]), ("--camera index:1".into(), Some(1)));
 }
 
-/// Seen to fail while make gave the bare index: 1 and 2 were the names of others.
+/// Seen to fail when make gave the bare index: 1 and 2 were names of other cameras.
 #[test]
 fn make_renders_each_camera_by_its_index() {
     if Command::new("make").arg("--version").output().is_err() {
@@ -119,7 +120,7 @@ fn make_renders_each_camera_by_its_index() {
     }
 }
 
-/// The slab and another one below of twice its size, whose materials have one name.
+/// The slab, and another of twice its size below it, whose materials have the same name.
 fn two_of_one_name(root: &mut Value) {
     let material = root["materials"][0].clone();
     root["materials"].as_array_mut().expect("a list").push(material);
@@ -135,7 +136,7 @@ fn with<'a>(own: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
     [own, more].concat()
 }
 
-/// Seen to fail where `--translucent` took both, `--share` the first and `--medium` both.
+/// Seen to fail when `--translucent` and `--medium` took both and `--share` the first.
 #[test]
 fn a_word_for_more_than_one_material_is_refused() {
     let bench = Bench::new();
@@ -153,7 +154,7 @@ fn a_word_for_more_than_one_material_is_refused() {
     };
     let only = sampled(&["--translucent", "index:1"]);
     assert!(only.len() == 1 && only[0].0 == 1, "{only:?}");
-    // As many of each that look at the sun; by area it would be one to four.
+    // As many samples of each slab face the sun; by area the ratio would be one to four.
     let even = sampled(&["--share", "index:1=0.5"]);
     let ratio = even[1].1 as f64 / even[0].1 as f64;
     assert!(even.len() == 2 && (0.8..1.25).contains(&ratio), "{even:?}");

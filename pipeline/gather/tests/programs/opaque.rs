@@ -4,10 +4,10 @@ use base64::{Engine, engine::general_purpose::STANDARD};
 use serde_json::{Value, json};
 use test_support::Bench;
 
-/// Two texels: light red with alpha 0, and the codes 188, 64, 0 with alpha 255.
+/// A picture of two texels: light red with alpha 0, and the codes 188, 64, 0 with alpha 255.
 const TEXELS: [[u8; 4]; 2] = [[255, 200, 200, 0], [188, 64, 0, 255]];
 
-/// Their second one in linear light (IEC 61966-2-1).
+/// The second texel in linear light (IEC 61966-2-1).
 const LINEAR: [f64; 3] = [0.502_886_458, 0.051_269_458, 0.0];
 
 fn picture() -> Vec<u8> {
@@ -47,7 +47,7 @@ fn with_card(root: &mut Value, alpha_mode: &str) {
     let base = json!({ "baseColorTexture": { "index": 0 }, "baseColorFactor": [0.5, 1, 1, 1] });
     let material = json!({ "name": "Card", "alphaMode": alpha_mode, "pbrMetallicRoughness": base });
     let material = push("materials", material);
-    // A fan winds it upwards.
+    // As a fan, the card faces upwards.
     let primitive = json!({ "attributes": attributes, "mode": 6, "material": material });
     let mesh = push("meshes", json!({ "primitives": [primitive] }));
     let node = push("nodes", json!({ "mesh": mesh }));
@@ -60,7 +60,7 @@ fn sample(bench: &Bench, scene: &str) -> f64 {
     bench.json("stats.json")["mean_flux_w"][1].as_f64().expect("a number")
 }
 
-/// What half of the card hides is dark and hidden; through its other half the slab is lit and seen.
+/// Below the opaque half of the card the slab is dark and hidden; through the other half it is lit and seen.
 #[test]
 fn a_hole_shows_what_is_behind_and_lets_light_through() {
     let bench = Bench::new();
@@ -107,7 +107,7 @@ fn a_picture_that_cannot_be_read() {
     bench.refuses("sample-surface", &arguments, &["card.gltf", "`Card`", "images[0] `card.png`", "again"]);
 }
 
-/// The card as a translucent surface: said, once.
+/// A color and holes of a translucent card are ignored, and the program says so once.
 #[test]
 fn colors_of_a_translucent_surface_are_not_used() {
     let bench = Bench::new();

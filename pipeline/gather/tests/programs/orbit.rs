@@ -1,11 +1,11 @@
-//! `--orbit`: a turntable as files.
+//! `--orbit`: the images of a turntable.
 
 use test_support::{Bench, data};
 
 const SIZE: [&str; 6] = ["--width", "24", "--height", "24", "--spp", "2"];
 
-/// Step 0 is the plain image, byte for byte; each other one shows what a view file at its place does. Seen to catch: a
-/// turn the other way, and a turn by a step too much.
+/// Step 0 has the bytes of the image without `--orbit`, and every other step shows the image of a view file with the
+/// same camera. Seen to catch: a turn the other way, and a turn by one step too many.
 #[test]
 fn each_step_is_the_image_of_a_camera_that_stands_there() {
     let bench = Bench::new();
@@ -26,7 +26,7 @@ fn each_step_is_the_image_of_a_camera_that_stands_there() {
     assert_eq!(bytes("turn.0000.exr"), bytes("front.exr"));
     assert_eq!(bytes("turn.0000.png"), bytes("front.png"));
     assert_eq!(bytes("turn.0000.json"), bytes("front-stats.json"));
-    // The turned camera and the one of the view differ by rounding, which may send a path elsewhere.
+    // The turned camera differs from that of the view by rounding, which may change a path.
     let planes =
         ["turn.0001.exr", "right.exr"].map(|name| bench.image(name).channel("subsurface.G").map(<[f32]>::to_vec));
     let [turned, there] = planes.map(|plane| plane.expect("a layer"));
@@ -39,13 +39,13 @@ fn each_step_is_the_image_of_a_camera_that_stands_there() {
     assert!(!bench.path("turn.exr").exists() && !bench.path("turn.0004.exr").exists());
 }
 
-/// A camera of the file turns about the middle of what is translucent, which so stays in the middle of the image. Seen to
-/// catch: a turn about the world's origin.
+/// A camera of the scene turns about the middle of the translucent surfaces, which stays in the middle of the image.
+/// Seen to catch: a turn about the world's origin.
 #[test]
 fn a_camera_of_the_scene_turns_about_what_is_translucent() {
     let bench = Bench::new();
     let slab = bench.slab("far.gltf", |root| {
-        // Away from the world's origin, with the camera half a metre before its middle.
+        // The slab is away from the world's origin, and the camera half a metre in front of its middle.
         root["nodes"][0]["translation"] = serde_json::json!([0.0, 0.0, -3.0]);
         let camera = root["nodes"].as_array().expect("nodes").iter().position(|n| !n["camera"].is_null()).expect("one");
         root["nodes"][camera]["translation"] = serde_json::json!([0.0, -0.025, -2.5]);
@@ -54,7 +54,7 @@ fn a_camera_of_the_scene_turns_about_what_is_translucent() {
     bench.succeed("sample-surface", &[&slab, "-n", "5k", "-o", "slab.cloud", "--quiet"]);
     let arguments = ["slab.cloud", &slab, "--medium", "marble", "-o", "turn.exr", "--orbit", "2", "--quiet"];
     bench.succeed("gather", &[&arguments[..], &SIZE].concat());
-    // From the other side the slab lies as far away.
+    // From the other side the slab is at the same distance.
     let nearest = ["turn.0000.exr", "turn.0001.exr"].map(|name| {
         let image = bench.image(name);
         let depths = image.channel("Z").expect("a layer");

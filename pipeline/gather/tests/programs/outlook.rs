@@ -1,4 +1,5 @@
-//! Cameras that see nothing translucent, or stand in it; pixels below zero; numbers of samples that are recommended.
+//! Warnings of cameras that see nothing translucent or are inside a medium; counts of negative pixels; recommended
+//! numbers of samples.
 
 use cli::parse_count;
 use serde_json::json;
@@ -11,13 +12,13 @@ fn sample(bench: &Bench, scene: &str, samples: &str) {
     bench.succeed("sample-surface", &[scene, "-n", samples, "-o", "a.cloud", "--quiet"]);
 }
 
-/// What is said of an image of so many pixels a side, and its statistics as `stats.json`.
+/// The messages of an image with so many pixels on a side, whose statistics are `stats.json`.
 fn gather(bench: &Bench, scene: &str, side: &str, more: &[&str]) -> String {
     let own = ["a.cloud", scene, "-o", "a.exr", "--stats", "stats.json", "--width", side, "--height", side];
     bench.says("gather", &[&own[..], more].concat())
 }
 
-/// Seen to fail where nothing was said of an image that is black, or of one from within, which shows no scattered light.
+/// Seen to fail without a warning of a black image, or of one from within a medium, which shows no scattered light.
 #[test]
 fn a_camera_that_shows_nothing_translucent_or_stands_in_it_is_said() {
     let bench = Bench::new();
@@ -42,7 +43,7 @@ fn a_camera_that_shows_nothing_translucent_or_stands_in_it_is_said() {
     assert_eq!((counted("away"), counted("in")), ([512, 0, 0], [512, 0, 512]));
     let [paths, outside, inside] = counted("front");
     assert!((paths / 4..paths).contains(&outside) && inside == 0, "{outside} of {paths}, {inside}");
-    // A crop of the background, and one that is not.
+    // One crop shows only the background, the other does not.
     bench.write("front.json", front);
     let crop =
         |crop: &str| gather(&bench, &sphere, "16", &[&own[..], &["--view", "front.json", "--crop", crop]].concat());
@@ -51,7 +52,7 @@ fn a_camera_that_shows_nothing_translucent_or_stands_in_it_is_said() {
     assert!(!said.contains(NOTHING) && !said.contains(WITHIN), "{said}");
 }
 
-/// Seen to fail where nothing was counted, and with those counted that the file has at or above zero.
+/// Seen to fail when no pixel was counted, and when pixels were counted that are not negative in the file.
 #[test]
 fn pixels_below_zero_are_counted() {
     let bench = Bench::new();
@@ -65,8 +66,8 @@ fn pixels_below_zero_are_counted() {
     assert_eq!(bench.json("stats.json")["negative_pixels"].as_u64(), Some(below as u64));
 }
 
-/// A cloud of as many samples as are recommended has enough of them. Seen to fail with the factor by which there are too
-/// few, `1.2e1` where 12 times the cloud is meant, and with the number of those alone that carry light.
+/// A cloud of the recommended number of samples has enough samples. Seen to fail when the factor was recommended
+/// instead of the number, `1.2e1` for 12 times the cloud, and when only samples that carry light were counted.
 #[test]
 fn a_recommended_number_of_samples_is_enough() {
     let bench = Bench::new();
@@ -81,13 +82,13 @@ fn a_recommended_number_of_samples_is_enough() {
     let (before, _) = first.split_once(" samples would do").expect("too few samples");
     let word = before.rsplit(' ').next().expect("a word");
     let number = parse_count(word).expect("a count") as f64;
-    // One on each square of 5 mm; a third of the surface, the slab's upper side, is lit.
+    // There is one sample on each square of 5 mm; a third of the surface, the upper side of the slab, is lit.
     let least = 0.12 / 0.005f64.powi(2) * 3.0;
     assert!((0.8 * least..1.3 * least).contains(&number), "{word}: {first}");
     assert!(word.ends_with('k') && !said(word).contains("expect grain"), "{word}");
 }
 
-/// Every count that is printed can be read again. Seen to fail with `1.807e4 BSSRDF evaluations` and `1000000 samples`.
+/// Every printed count can be parsed again. Seen to fail with `1.807e4 BSSRDF evaluations` and `1000000 samples`.
 #[test]
 fn counts_are_printed_as_they_are_written() {
     let bench = Bench::new();
@@ -106,7 +107,7 @@ fn counts_are_printed_as_they_are_written() {
     }
 }
 
-/// Seen to fail where a surface in the dark was said to want more samples.
+/// Seen to fail when more samples were recommended for a surface that no light reaches.
 #[test]
 fn a_surface_without_light_wants_no_samples() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! What a run writes never replaces what it reads, and is refused before the work if it cannot be written.
+//! Outputs never replace inputs, and outputs that cannot be written are refused before the work.
 
 use std::{
     fs,
@@ -29,7 +29,7 @@ const SAMPLE: &str = "scene.gltf --environment sky.hdr --for-medium medium.json 
 const GATHER: &str =
     "slab.cloud scene.gltf --environment sky.hdr --medium Slab=medium.json --view view.json --spp 2 --quiet";
 
-/// Planted errors that this caught: each of the inputs left undeclared; hard links told apart; outputs declared after the
+/// Seen to catch: each of the inputs not declared; hard links taken for different files; outputs declared after the
 /// work.
 #[test]
 fn no_output_replaces_an_input() {
@@ -59,7 +59,7 @@ fn no_output_replaces_an_input() {
     }
 }
 
-/// Seen to catch: `--ply` refused after a million samples were drawn.
+/// Seen to catch: `--ply` refused only after a million samples were drawn.
 #[test]
 fn outputs_that_cannot_be_written_are_refused_before_the_work() {
     let bench = bench();
@@ -96,7 +96,7 @@ fn ends(bench: &Bench, name: &str, arguments: &[&str]) -> Run {
     child.wait_with_output().expect("has ended").into()
 }
 
-/// Planted errors that this caught: the look at the kind of file left out of each of the declarations.
+/// Seen to catch: the kind of the file not checked in each of the declarations.
 #[test]
 fn a_pipe_in_place_of_a_file_is_refused_at_once() {
     let bench = bench();
@@ -122,7 +122,7 @@ fn a_pipe_in_place_of_a_file_is_refused_at_once() {
     }
 }
 
-/// Under `ulimit -f` the system ended the program in the middle of its file.
+/// Seen to fail: under `ulimit -f` the system ended the program in the middle of its file.
 #[test]
 fn a_file_that_may_not_grow_leaves_no_half_behind() {
     let bench = bench();
@@ -137,11 +137,12 @@ fn a_file_that_may_not_grow_leaves_no_half_behind() {
     assert_eq!(bench.files(), before);
 }
 
-/// Runs a program as a user who may have `processes` processes, which threads count as. Root is bound by no such limit,
-/// so it becomes another user first.
+/// Runs a program as a user who may have `processes` processes, each thread counting as one. Root has no such limit, so
+/// the process becomes another user first.
 fn with_few_threads(bench: &Bench, processes: u32, name: &str, arguments: &[&str]) -> Run {
-    // The other user must be able to read the program. This process must not have it open for writing, even for a moment:
-    // what another test starts just then would have it too, and it could not be run.
+    // The other user must be able to read the program. This process must not have it open for writing, even for a
+    // moment: a process that another test starts meanwhile would inherit the open file, and the program could not be
+    // run.
     let copy = bench.path(name);
     assert!(Command::new("cp").arg(program(name)).arg(&copy).status().expect("starts").success());
     [(bench.folder(), 0o777), (&copy, 0o755)]
@@ -154,9 +155,9 @@ fn with_few_threads(bench: &Bench, processes: u32, name: &str, arguments: &[&str
     Run::of(command.current_dir(bench.folder()).args(arguments))
 }
 
-/// Both panicked or took the machine: no thread to be had, and an environment variable that asks for very many.
+/// Programs run where no thread can be started, and ignore an environment variable that asks for very many.
 ///
-/// Planted errors that this caught: the pool of the calling thread left out; the number of threads left to rayon.
+/// Seen to catch: the pool of the calling thread alone left out; the number of threads left to rayon.
 #[test]
 fn few_threads_or_none_give_the_same_bytes() {
     let bench = bench();
@@ -184,7 +185,7 @@ fn few_threads_or_none_give_the_same_bytes() {
     assert_eq!(bench.read("many.cloud"), expected);
 }
 
-/// A name may hold what a terminal obeys. Planted error that this caught: messages written as they are.
+/// Names may contain characters that control a terminal. Seen to catch: messages printed without escapes.
 #[test]
 fn names_from_files_cannot_command_a_terminal() {
     let bench = Bench::new();

@@ -14,7 +14,7 @@ fn reflectance(sigma_a: f64, sigma_s: f64, eta: f64) -> f64 {
     albedo / 2.0 * (1.0 + (-4.0 / 3.0 * a * root).exp()) * (-root).exp()
 }
 
-/// A lit plane seen from straight above shows `T12 T21 E R_d/π` under the standard dipole. The mean over independent
+/// A lit plane seen from directly above shows `T12 T21 E R_d/π` under the standard dipole. The mean over independent
 /// clouds must lie within four standard errors (for 15 degrees of freedom one such test in a thousand fails by chance;
 /// the seeds are fixed, so it cannot once it passed), and the error must be below 1 %. Seen to fail with 1/K taken over
 /// the stored samples (three times too bright) and without T12 (5 %, seven standard errors).
@@ -72,7 +72,7 @@ fn the_image_is_the_same_for_any_number_of_threads_and_for_two_runs() {
     assert_eq!(&bench.read("picture.png")[1..4], b"PNG");
 }
 
-/// The layers of the contract, their sum, the attributes, and the keys of the statistics.
+/// The image has its layers, which add up to the beauty, its attributes, and the keys of its statistics.
 #[test]
 fn an_image_holds_what_the_contract_says() {
     let bench = Bench::new();
@@ -110,7 +110,7 @@ fn an_image_holds_what_the_contract_says() {
     assert_eq!(stats["samples_stored"].as_u64().map(|n| n + dropped), stats["samples_drawn"].as_u64());
 }
 
-/// One cloud serves another camera and another medium; a cloud of another seed is another image.
+/// One cloud serves several cameras and media; a cloud of another seed gives another image.
 #[test]
 fn one_cloud_serves_every_camera_and_medium() {
     let bench = Bench::new();

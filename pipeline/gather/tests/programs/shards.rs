@@ -1,5 +1,5 @@
-//! Clouds of several files. Planted errors seen: clouds in the order of the command line; a shard that does not change the
-//! random numbers; no check of seed and shard; turns without weights.
+//! Clouds in several files. Seen to catch: clouds in the order of the command line; a shard that does not change the
+//! random numbers; seed and shard not checked; picks of shards without weights.
 
 use formats::Attribute;
 use test_support::{Bench, data};
@@ -10,7 +10,8 @@ fn sample(bench: &Bench, scene: &str, output: &str, more: &[&str]) {
     bench.succeed("sample-surface", &[&[scene, "-o", output, "--quiet"], more].concat());
 }
 
-/// The same bytes for any order of the files; one hash for all of them, and not that of a part.
+/// The image has the same bytes for any order of the files; its hash of the clouds is that of all of them, and not that
+/// of one.
 #[test]
 fn the_order_of_files_does_not_matter() {
     let bench = Bench::new();
@@ -42,7 +43,7 @@ fn the_order_of_files_does_not_matter() {
     }
 }
 
-/// Clouds of one sample each have no second half to tell their error by, however many they are.
+/// Clouds of one sample each have no second half from which to estimate their error, however many clouds there are.
 ///
 /// Seen to fail: the samples of all clouds counted instead of those of their second halves.
 #[test]
@@ -61,8 +62,8 @@ fn one_sample_each_is_no_measure_of_the_clouds() {
     assert_eq!(covered("2"), "cloud, gather and camera paths");
 }
 
-/// Once every cloud has its turn, a pixel's paths weigh them by their samples: where all paths are one, the cut's image is
-/// the whole sum's, but for the accuracy of 0.1 % asked of it. Turns that are only counted err by 9 %.
+/// Once each cloud was picked, the paths of a pixel weight the clouds by their samples: where all paths are alike, the
+/// image of the cut is that of the whole sum, within the accuracy of 0.1 %. Picks without weights are off by 9 %.
 #[test]
 fn turns_make_the_whole_sum() {
     let bench = Bench::new();
@@ -122,7 +123,7 @@ fn clouds_that_do_not_belong_together_are_refused() {
     }
 }
 
-/// What is there is kept if it is that shard, and no other.
+/// An existing cloud is kept if it is the shard that is asked for, and only then.
 #[test]
 fn a_shard_is_kept_and_another_is_not() {
     let bench = Bench::new();
@@ -140,7 +141,8 @@ fn a_shard_is_kept_and_another_is_not() {
     assert!(first.1 != second.1 && first.1 != alone.1 && kept(&["--shard", "0/3"]).1 != first.1);
 }
 
-/// What clouds differ by before each had its turn is not taken for their error. Seen to fail so: 23 and 28 %.
+/// The difference between clouds is not taken for their error before each was picked. Seen to fail: errors of 23 and 28
+/// %.
 #[test]
 fn a_target_waits_for_all_clouds_to_have_a_turn() {
     let bench = Bench::new();
@@ -161,9 +163,10 @@ fn a_target_waits_for_all_clouds_to_have_a_turn() {
     }
 }
 
-/// Four shards of 250k and a cloud of 1M show one scene, within what they say of their errors: the squares of the
-/// differences have the sum of the variances as their mean. The variances are estimates of one degree of freedom each over
-/// thousands of pixels that share clouds; a factor of 1.5 either way is beyond their scatter, and what is wrong by 3 % shows.
+/// Four shards of 250k samples and a cloud of 1M give the same image within their estimated errors: the mean of the
+/// squared differences is the sum of the variances. Each variance is an estimate with one degree of freedom over
+/// thousands of pixels that share clouds; a factor of 1.5 either way is beyond their scatter, and an error of 3 % is
+/// seen.
 #[test]
 fn four_shards_agree_with_one_cloud_within_their_error() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! `--target-error` of both programs: what is asked for is met, or it is said why not.
+//! `--target-error` of both programs: the target is met, or the program says why it is not.
 
 use test_support::{Bench, data};
 
@@ -45,7 +45,7 @@ fn targets_are_met_or_the_cloud_is_named() {
     assert!(!met.contains("warning: the cloud"), "{drawn} samples: {met}");
     assert!(stated <= 0.04 && actual <= 0.05, "{drawn} samples: {stated} stated, {actual} found");
 
-    // With paths enough, what remains is the cloud's.
+    // With enough paths, the remaining error is that of the cloud.
     gather(&bench, "chosen.cloud", "deep.exr", &["--spp", "128", "--accuracy", "0.002"]);
     let remains = relative_error(&bench, "fine.exr", "deep.exr");
     assert!(remains <= 0.008, "{drawn} samples: {remains}");
@@ -54,18 +54,18 @@ fn targets_are_met_or_the_cloud_is_named() {
     assert!(limited.contains("warning: the cloud alone"), "{limited}");
     assert!(relative_error(&bench, "fine.exr", "coarse.exr") > 0.01);
 
-    // What is there is kept, though its number of samples was not asked for.
+    // The existing cloud is kept, though its number of samples was not given.
     bench.succeed("sample-surface", &[&[sphere.as_str()], &chosen[..]].concat());
     assert_eq!(bench.json("samples.json")["kept"], true);
 }
 
-/// The halves of sixteen pixels agree by luck now and then, and differ by luck as often. Images of many seeds, of clouds
-/// whose own error is a thirtieth of the target: 5 % of them are beyond twice the target at most, none claims to have no
-/// error, and none blames the cloud. Of 200 seeds none was beyond twice the target, so that new ones would fail less than
-/// once in a hundred times.
+/// The halves of sixteen pixels sometimes agree by chance, and differ by chance as often. The images have many seeds,
+/// and clouds whose own error is a thirtieth of the target: at most 5 % of the images exceed twice the target, none
+/// claims to have no error, and none blames the cloud. None of 200 seeds exceeded twice the target, so that new seeds
+/// would fail less than once in a hundred times.
 ///
-/// Seen to catch, with the first small difference of halves believed: images of more than twice the target, and clouds that
-/// were said to have an error of 3 to 20 %.
+/// Seen to catch: the first small difference between halves taken for the error, which gave images with more than twice
+/// the target, and clouds with a claimed error of 3 to 20 %.
 #[test]
 fn sixteen_pixels_do_not_meet_a_target_by_luck() {
     const TARGET: f64 = 0.05;
@@ -77,7 +77,7 @@ fn sixteen_pixels_do_not_meet_a_target_by_luck() {
     gather(&bench, "fine.cloud", "fine.exr", &[&size[..], &["--spp", "2048", "--accuracy", "0.005"]].concat());
     let (mut beyond, mut blamed, mut squares, mut paths) = (0, 0, 0.0, 0.0);
     for seed in 0..seeds {
-        // In the short run, some seeds share a cloud.
+        // Without the feature `slow`, some seeds share a cloud.
         let (cloud, seed) = (if seeds < 200 { seed / 4 } else { seed }.to_string(), seed.to_string());
         bench.succeed("sample-surface", &[&sphere, "-n", "200k", "--seed", &cloud, "-o", "own.cloud"]);
         let own = ["--target-error", "0.05", "--seed", &seed];

@@ -1,16 +1,16 @@
-//! What users bring, a test for each kind of input. Where the library's own tests go through the details, the comment
-//! names them: they are `crates/scene/tests/scene/*` and the others of this folder.
+//! Files of users, with a test for each kind of input. Where other tests cover the details, the comment names them:
+//! they are in `crates/scene/tests/scene` and in this folder.
 
 use formats::Attribute;
 use serde_json::{Value, json};
 use test_support::{Bench, data};
 
-/// A small cloud of `scene` as `user.cloud`; returns what was said.
+/// Makes a small cloud of `scene` as `user.cloud`; returns the messages.
 fn sample(bench: &Bench, scene: &str, more: &[&str]) -> String {
     bench.says("sample-surface", &[&[scene, "-n", "500", "-o", "user.cloud", "--progress", "none"], more].concat())
 }
 
-/// A small image of it as `user.exr`; returns what was said.
+/// Makes a small image of that cloud as `user.exr`; returns the messages.
 fn gather(bench: &Bench, scene: &str, more: &[&str]) -> String {
     let size = ["--width", "8", "--height", "8", "--spp", "1", "--progress", "none", "-o", "user.exr"];
     bench.says("gather", &[&["user.cloud", scene], &size[..], more].concat())
@@ -24,7 +24,8 @@ fn text_attribute(bench: &Bench, name: &str) -> String {
     }
 }
 
-/// Numbers as they are, or lumens; the choice is stored, and both programs must agree. `import_lights`.
+/// Light numbers are taken as they are or as lumens; the cloud records which, and both programs must agree. Details:
+/// `import_lights`.
 #[test]
 fn light_units() {
     let bench = Bench::new();
@@ -41,7 +42,7 @@ fn light_units() {
     bench.refuses("gather", &wrong, &["--light-unit is radiometric"]);
 }
 
-/// Emission has a unit of its own, by default that of the lights; clouds of other units are refused.
+/// Emission has its own unit, by default that of the lights; clouds with other units are refused.
 #[test]
 fn emission_units() {
     let bench = Bench::new();
@@ -59,15 +60,15 @@ fn emission_units() {
     let near = |found: f32, expected: f32| assert!((found / expected - 1.0).abs() < 1e-5, "{found} {expected}");
     let lumens = most(&["--light-unit", "photometric"]);
     assert_eq!(text_attribute(&bench, "pcsss/emissionUnit"), "photometric");
-    // Some of it stays below the interface.
+    // Some of the light stays below the interface.
     near(most(&["--light-unit", "photometric", "--emission-unit", "radiometric"]), 683.0 * lumens);
     assert_eq!(text_attribute(&bench, "pcsss/emissionUnit"), "radiometric");
     let wrong = ["user.cloud", &slab, "--medium", "marble", "--light-unit", "photometric", "-o", "wrong.exr"];
     bench.refuses("gather", &wrong, &["--emission-unit is photometric, the cloud's radiometric"]);
 }
 
-/// Positions in float32 have 3 values where an object of 0.2 m is 1000 km away, and so many as there are elsewhere if
-/// they are relative to what the header says. Where the object is at home, they are positions in the world.
+/// In float32, positions on an object of 0.2 m at 1000 km from the origin have only 3 different values; relative to the
+/// origin that the header states, they have as many as elsewhere. Near the origin they are positions in the world.
 #[test]
 fn positions_far_from_the_origin() {
     const FAR: f64 = 1e6;
@@ -113,7 +114,7 @@ fn positions_far_from_the_origin() {
     }
 }
 
-/// Red, green and blue lights are white together, on nested and scaled nodes. `import_lights` has cones and ranges.
+/// Red, green and blue lights on nested and scaled nodes are white together. Cones and ranges: `import_lights`.
 #[test]
 fn light_color_and_cone() {
     let bench = Bench::new();
@@ -136,12 +137,12 @@ fn light_color_and_cone() {
     let white = flux(&[json!([1, 1, 1])]);
     for c in 0..3 {
         let [sum, white] = [&primaries, &white].map(|f| f[c].as_f64().expect("a number"));
-        // One of the three is picked for each sample: a share with five standard errors.
+        // One of the three is picked for each sample; the share may differ by five standard errors.
         assert!((sum / white - 1.0).abs() < 5.0 * (2.0f64 / 500.0).sqrt(), "{sum} for {white}");
     }
 }
 
-/// Emitting triangles light the scene; a scene that nothing lights is refused. `lights`, `import_lights`.
+/// Emitting triangles light the scene; a scene without light is refused. Details: `lights`, `import_lights`.
 #[test]
 fn area_lights_and_scenes_without_light() {
     let bench = Bench::new();
@@ -162,7 +163,8 @@ fn area_lights_and_scenes_without_light() {
     assert!(sample(&bench, &scene, &[]).contains("carry light"));
 }
 
-/// Both kinds by name and index, a scaled parent, an aspect that is not the image's. `import_lights`.
+/// Both kinds of cameras are chosen by name and index, under a scaled parent and with another aspect than the image.
+/// Details: `import_lights`.
 #[test]
 fn cameras() {
     let bench = Bench::new();
@@ -185,14 +187,14 @@ fn cameras() {
     for camera in ["1", "Flat \u{e9}"] {
         let said = gather(&bench, &scene, &["--medium", "marble", "--camera", camera]);
         assert!(said.contains("aspect is 2.000, the image's 1.000"), "{said}");
-        // It looks straight down from half a metre; scaled or not, all of the picture shows the slab.
+        // The camera looks straight down from half a metre; scaled or not, all of the image shows the slab.
         let image = bench.image("user.exr");
         let depth = image.channel("Z").expect("depths");
         assert!(depth.iter().all(|z| (z - 0.5).abs() < 1e-6), "{depth:?}");
     }
 }
 
-/// A mirrored slab is wound outwards still. `import`, and `tests/invariance/mirror.rs` for the picture.
+/// A mirrored slab is still wound outwards. Details: `import`; the image: `tests/invariance/mirror.rs`.
 #[test]
 fn negative_scale() {
     let bench = Bench::new();
@@ -202,7 +204,8 @@ fn negative_scale() {
     assert_eq!(bench.json("stats.json")["mesh"]["inward_parts"], 0);
 }
 
-/// The slab has none: its triangles' are taken. `import::lists_strips_and_fans_without_indices`.
+/// Without normals in the file, those of the triangles are used. Details:
+/// `import::lists_strips_and_fans_without_indices`.
 #[test]
 fn no_normals() {
     let bench = Bench::new();
@@ -214,7 +217,7 @@ fn no_normals() {
     assert!((0..x.len()).all(|p| (x[p], y[p], z[p]) == (0.0, 1.0, 0.0)));
 }
 
-/// Points are left out and said. Strips, fans, missing indices, interleaved and sparse accessors: `import`.
+/// Points are left out with a warning. Strips, fans, missing indices, interleaved and sparse accessors: `import`.
 #[test]
 fn strips_points_and_many_primitives() {
     let bench = Bench::new();

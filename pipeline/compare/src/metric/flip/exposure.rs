@@ -1,13 +1,16 @@
 //! HDR-FLIP: the exposures at which a viewer would look at the reference, and the tone curve that shows it on a screen.
 
-use color::tone::ACES;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::metric::picture::Picture;
 use crate::metric::select;
 
-/// The factor on the light before [`color::tone::aces`].
+/// The coefficients of [`color::tone::aces`] in float32, and the factor on the light before it.
+const ACES: [f32; 5] = {
+    let [a, b, c, d, e] = color::tone::ACES;
+    [a as f32, b as f32, c as f32, d as f32, e as f32]
+};
 const ACES_SCALE: f64 = 0.6;
 
 /// The value that the curve gives the brightest pixel at the first exposure, and the median pixel at the last.
@@ -27,7 +30,7 @@ impl Tone {
     #[inline(always)]
     pub fn show(self, light: f32) -> f32 {
         let Tone::Aces(scale) = self else { return light.min(1.0) };
-        let [a, b, c, d, e] = ACES.map(|coefficient| coefficient as f32);
+        let [a, b, c, d, e] = ACES;
         // The curve is above 1 from far below this value on; beyond it, squares would become infinite.
         let x = (light * scale).min(1e4);
         ((x * (a * x + b)) / (x * (c * x + d) + e)).min(1.0)
@@ -75,7 +78,7 @@ impl Exposures {
 
 /// The light that the curve maps to [`SHOWN`]: the positive root of the quadratic.
 fn light_shown() -> f64 {
-    let [a, b, c, d, e] = ACES.map(|coefficient| f64::from(coefficient as f32));
+    let [a, b, c, d, e] = ACES.map(f64::from);
     let (square, linear, constant) = (a - SHOWN * c, b - SHOWN * d, -SHOWN * e);
     let root = (linear * linear - 4.0 * square * constant).sqrt();
     (root - linear) / (2.0 * square) / ACES_SCALE

@@ -26,6 +26,12 @@ impl Eye {
 /// then the strength of edges and of points.
 pub(super) type Look = [Box<Plane>; 5];
 
+/// [`LANES`] pixels of the planes of a look.
+#[inline(always)]
+fn look_lanes([l, a, b, edge, point]: &Look, at: usize) -> [&[f32; LANES]; 5] {
+    [lanes(l, at), lanes(a, at), lanes(b, at), lanes(edge, at), lanes(point, at)]
+}
+
 /// Intermediate results between light and look: the three opponent channels, and two filtered planes.
 pub(super) type Work = [Box<Plane>; 5];
 
@@ -137,7 +143,7 @@ impl Kernel for Compare<'_> {
     fn run(self) {
         let [reference, test] = self.looks;
         for at in (0..GROUPS).map(group) {
-            let [a, b] = [reference, test].map(|look| look.each_ref().map(|plane| lanes(plane, at)));
+            let (a, b) = (look_lanes(reference, at), look_lanes(test, at));
             let mut largest = *lanes(self.largest, at);
             for i in 0..LANES {
                 let color = color::difference([a[0][i], a[1][i], a[2][i]], [b[0][i], b[1][i], b[2][i]], self.limit);
@@ -186,7 +192,7 @@ mod tests {
     fn a_uniform_plane_has_neither() {
         let uniform = look(Level::Plain, |_, _| 0.3);
         for group in (0..GROUPS).map(group) {
-            let [l, _, _, edge, point] = uniform.each_ref().map(|plane| lanes(plane, group));
+            let [l, _, _, edge, point] = look_lanes(&uniform, group);
             // L* of 0.3 is 61.654.
             assert!(l.iter().all(|l| (l - 61.654).abs() < 1e-3), "{l:?}");
             assert_eq!([edge, point], [&[0.0; LANES]; 2]);

@@ -78,7 +78,7 @@ fn what_was_removed_is_made_again() {
     tree.write("list.json", json!([near, far]).to_string());
     let arguments = ["SCENE=thing.gltf", "VIEWS=s.json list.json"];
     tree.make(&arguments);
-    assert_eq!(tree.bytes(&format!("{IMAGES}/list.views")), b"list.far.exr\nlist.near.exr\n");
+    assert_eq!(tree.bytes(&format!("{IMAGES}/list.views")), b"list.near.exr\nlist.far.exr\n");
     for lost in ["s.png", "list.near.exr", "list.far.png", "list.views"] {
         fs::remove_file(tree.path(IMAGES).join(lost)).expect("removes");
         assert_eq!(tree.make(&arguments).made(), ["gather"], "{lost}");
