@@ -1,11 +1,11 @@
-//! Evaluations per second and core, of each model and of the entry; one evaluation is one pair of points in three channels.
-//! `cargo bench -p bssrdf`; what a processor lacks runs plain.
+//! Evaluations per second and core of each model, and of the entry of light; one evaluation is one pair of points in three
+//! channels. Run with `cargo bench -p bssrdf`; an instruction set that the processor lacks runs plain.
 //!
-//! Floating point operations of one evaluation (additions, multiplications, divisions, roots), counted in the AVX-512
-//! bodies: standard dipole 185, better 227, directional 468. Times evaluations per second, over what `peak` prints, that
-//! is the share of the core's peak: 0.6 of it on a Xeon of 2024 at 3.7 GHz, with 340, 245 and 135 million evaluations
-//! per second. Fused multiply-adds would double the peak; they are left out for the same bits everywhere, and would gain
-//! a tenth (directional) to a quarter (the others).
+//! One evaluation takes 185 (standard dipole), 227 (better) and 468 (directional) floating point operations (additions,
+//! multiplications, divisions, roots) in the AVX-512 bodies. That number times the evaluations per second, over the
+//! operations per second of `peak`, is the share of the core's peak: 0.6 on a Xeon of 2024 at 3.7 GHz, with 340, 245 and 135
+//! million evaluations per second. Fused multiply-adds would double the peak and gain a tenth (directional) to a quarter
+//! (the others); they are not used, so that all processors give the same bits.
 
 use bssrdf::{
     DVec3, Medium, built_in, fresnel,
@@ -45,7 +45,7 @@ impl<M: LaneModel> Kernel for Sum<'_, M> {
     }
 }
 
-/// Light that enters a sphere of 20 mm anywhere, seen from its pole.
+/// Light that enters a sphere of radius 20 mm at random points, with the exitant point at its pole.
 fn blocks(medium: &Medium) -> Vec<Block> {
     let mut random = Random(1);
     let radius = 0.02;
@@ -120,13 +120,13 @@ fn entry(bencher: Bencher, level: Level) {
     bencher.counter(ItemsCount::new(BLOCKS * LANES)).bench(|| simd::run_as(level, kernel()));
 }
 
-/// Multiplications and additions that wait for nothing: what the core could do if all else were free.
+/// Independent multiplications and additions: the peak of the core.
 struct Peak {
     factor: f32,
     summand: f32,
 }
 
-/// So many that each has long been stored when its turn comes again.
+/// Enough numbers that none is needed again before it is stored.
 const NUMBERS: usize = 512;
 const TURNS: usize = 200;
 

@@ -1,5 +1,5 @@
-//! The float32 evaluation against the float64 one, over random media and configurations that float32 holds exactly; and
-//! all vector widths against each other, bit for bit.
+//! The models in float32 against those in float64, for random media and configurations that float32 represents exactly;
+//! and all vector widths against each other, bit for bit.
 
 use bssrdf::{
     Bssrdf, Coefficients, DVec3, Interface, Medium, Model, Separation, fresnel,
@@ -17,10 +17,10 @@ const RANGES: [[f64; 2]; 4] = [[1e-3, 1.0], [1.0, 10.0], [10.0, 100.0], [100.0, 
 /// Blocks of sixteen for each range: enough that the 99.9th percentile is one of dozens of values.
 const BLOCKS: usize = 8000;
 
-/// What 999 of 1000 values keep to, relative: far below the grain of any image.
+/// Relative error that 999 of 1000 values keep: far below the noise of any image.
 const TOLERANCE: f64 = 1e-5;
 
-/// From clear to white, a tenth of the channels without absorption; 1/m.
+/// A random medium from clear to white; a tenth of the channels have no absorption.
 fn medium(random: &mut Random) -> Medium {
     let eta = random.between(1.0, 2.0);
     let channels = [0; 3].map(|_| Coefficients {
@@ -31,13 +31,13 @@ fn medium(random: &mut Random) -> Medium {
     Medium { name: "random".into(), source: String::new(), channels, eta, interface: Interface::new(eta) }
 }
 
-/// The nearest vector that float32 holds.
+/// The nearest vector of float32.
 fn rounded(v: DVec3) -> DVec3 {
     v.as_vec3().as_dvec3()
 }
 
-/// Light that enters about `normal` from above and leaves at `normal_out`, `distance` m away: in the plane of both, or
-/// anywhere.
+/// Light that enters at the first normal and leaves at the second, `distance` m away: in the plane of the first normal, or
+/// in any direction.
 fn separation(random: &mut Random, eta: f64, normals: [DVec3; 2], distance: f64, plane: bool) -> Separation {
     let [normal_in, normal_out] = normals;
     let light = random.direction();
@@ -90,8 +90,8 @@ impl<M: LaneModel> Kernel for Evaluate<'_, M> {
     }
 }
 
-/// The exact value, where it is one to compare with: not where the depth of the source, which jumps at μ0 = 0, hangs on
-/// the rounding of n_o and ω12; nor where S is below 10⁻¹² of its value at the sample itself, or underflows.
+/// The float64 value; none where rounding of `n_o` and `ω12` decides the depth of the source, which jumps at `μ₀ = 0`, and
+/// where `S` is below 10⁻¹² of its value at the sample itself, or underflows.
 fn reference(model: &dyn Bssrdf, separation: &Separation) -> Option<f64> {
     let value = model.bare(0, separation);
     let peak = model.bare(0, &Separation { offset: DVec3::ZERO, ..*separation });
@@ -132,16 +132,16 @@ fn assert_close<M: LaneModel>(model: Model) {
             let (errors, worst) = errors::<M>(model, range, plane);
             let at = |share: f64| errors[((errors.len() - 1) as f64 * share) as usize];
             let shape = if plane { "plane" } else { "general" };
-            let (name, most) = (model.name(), at(0.999));
+            let (name, error) = (model.name(), at(0.999));
             println!(
-                "{name} {shape} {range:?}: {} values, median {:.1e}, 99 % {:.1e}, 99.9 % {most:.1e}, worst {:.1e}\n  {worst}",
+                "{name} {shape} {range:?}: {} values, median {:.1e}, 99 % {:.1e}, 99.9 % {error:.1e}, worst {:.1e}\n  {worst}",
                 errors.len(),
                 at(0.5),
                 at(0.99),
                 at(1.0)
             );
             assert!(errors.len() > 10_000, "{name} {shape} {range:?}: only {} values", errors.len());
-            assert!(most < TOLERANCE, "{name} {shape} {range:?}: {most:.1e}");
+            assert!(error < TOLERANCE, "{name} {shape} {range:?}: {error:.1e}");
         }
     }
 }
@@ -165,7 +165,7 @@ fn bits(values: [Lane; 3]) -> [[u32; LANES]; 3] {
     values.map(|lane| lane.map(f32::to_bits))
 }
 
-/// Every body that this processor can run: on one with AVX-512 that is AVX2 as well.
+/// All instruction sets that this processor has; one with AVX-512 has AVX2 as well.
 fn bodies() -> impl Iterator<Item = Level> {
     Level::ALL.into_iter().filter(|level| level.is_available())
 }
@@ -235,8 +235,8 @@ fn all_vector_widths_let_the_same_light_enter() {
     }
 }
 
-/// Where float32 hands over to float64: along the normal, at the sample itself, and so close that squares leave the range
-/// of float32.
+/// Configurations that float32 leaves to float64: along the normal, at the sample itself, and so close that squares leave
+/// the range of float32.
 #[test]
 fn hard_places_have_the_float64_value() {
     let mut random = Random(9);
