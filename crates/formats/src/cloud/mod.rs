@@ -145,7 +145,7 @@ impl Cloud {
         if now.len() == self.bytes() && now.modified().ok() == self.modified {
             return Ok(());
         }
-        let written = |_| Error::invalid(path, "modified while it was read; rename a new cloud over it instead");
+        let written = |_| Error::invalid(path, "written to while it was read; rename a new cloud over it instead");
         if now.len() != self.bytes() {
             return Err(written(String::new()));
         }

@@ -110,7 +110,7 @@ fn other_primaries_become_rec_709() {
     let picture = decoded(&with_chromaticities(ACESCG, &green)).expect("a picture");
     let [r, g, b] = picture.pixels[0];
     assert!(r == 0.0 && (g - 1.1408).abs() < 1e-4 && b == 0.0, "{:?}", picture.pixels);
-    let said = "1 of 2 pixels have colors outside Rec. 709: channels below 0 are taken as 0, and the mean radiance of the \
+    let said = "1 of 2 pixels have colors outside Rec. 709: negative channels become 0, and the mean radiance of the \
                 picture is 2.5000e-1 8.2040e-1 2.5000e-1 instead of -6.0";
     assert!(picture.warnings.len() == 1 && picture.warnings[0].starts_with(said), "{:?}", picture.warnings);
     // Numbers that are no radiance are kept, for the environment map to refuse.
@@ -141,7 +141,7 @@ fn other_projections_and_color_models_are_refused() {
         let start = bytes.windows(14).position(|w| w == b"envmaQ\0string\0").expect("the attribute");
         bytes[start..start + 14].copy_from_slice(b"envmap\0envmap\0");
         let message = Panorama::decode(&bytes).err().unwrap_or_default();
-        assert_eq!(message.contains("envmap: it is a cube"), refused, "{message}");
+        assert_eq!(message.contains("envmap: the map is a cube"), refused, "{message}");
     }
     let message = Panorama::decode(&exr(&["X", "Y", "Z"])).expect_err("refused");
     assert!(message.contains("X, Y and Z"), "{message}");
