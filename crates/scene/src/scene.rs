@@ -2,7 +2,7 @@
 
 use crate::{
     error::LostVolumes,
-    light::{Environment, Light},
+    light::{contract::Light, environment::Environment},
     material::Material,
     mesh::Mesh,
     unhonoured::Unhonoured,

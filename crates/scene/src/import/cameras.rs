@@ -4,7 +4,7 @@ use super::{
     fault::{Fault, get},
     nodes::SceneNode,
 };
-use crate::{Camera, Projection};
+use crate::view::{Camera, Projection};
 use gltf::json::{self, camera::Type, validation::Checked};
 use std::f64::consts::PI;
 

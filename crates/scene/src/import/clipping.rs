@@ -1,6 +1,9 @@
 //! Whether the near and far planes of a camera, which are not honoured, would cut anything off.
 
-use crate::{Camera, Projection, mesh::Mesh};
+use crate::{
+    mesh::Mesh,
+    view::{Camera, Projection},
+};
 use glam::DVec3;
 
 /// Most triangles that are tested for all cameras together. Planes that are left after that count as cutting.

@@ -6,7 +6,7 @@ use super::{
     survey::Survey,
     transform::NodeTransform,
 };
-use crate::SceneError;
+use crate::error::SceneError;
 use gltf::json::{self, Index, buffer::View};
 use serde::Deserialize;
 use std::{cell::RefCell, collections::BTreeMap, ops::Range, path::Path, rc::Rc};

@@ -1,6 +1,6 @@
 //! Copies of triangles, each of which would transmit or emit light of its own.
 
-use crate::{Material, mesh::Mesh};
+use crate::{material::Material, mesh::Mesh};
 use std::collections::BTreeMap;
 
 /// Drops triangles with the three positions of an earlier one of the same material, in any winding. Returns their number by

@@ -6,8 +6,8 @@ use super::{
     options::ImportOptions,
 };
 use crate::{
-    Material,
     light::{AreaLight, DirectionalLight, Light, PointLight, Spot},
+    material::Material,
     mesh::Mesh,
 };
 use glam::DVec3;

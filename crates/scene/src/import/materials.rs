@@ -1,7 +1,7 @@
 //! Import of materials.
 
 use super::{container::Document, fault::Fault, options::ImportOptions, textures::Textures, volumes};
-use crate::Material;
+use crate::material::Material;
 use glam::{DVec3, DVec4};
 use gltf::json::{self, material::AlphaMode, validation::Checked};
 

@@ -28,9 +28,11 @@ mod unhonoured;
 mod volumes;
 
 use crate::{
-    Material, Scene, SceneError,
+    error::SceneError,
     light::Environment,
+    material::Material,
     mesh::Mesh,
+    scene::Scene,
     unhonoured::{quoted, rest},
 };
 use container::Document;

@@ -8,9 +8,9 @@ use super::{
     survey::{Finding, Survey},
 };
 use crate::{
-    Camera,
     mesh::Mesh,
     unhonoured::{Holder, Unhonoured},
+    view::Camera,
 };
 use glam::DVec3;
 use gltf::json::{self, Root};

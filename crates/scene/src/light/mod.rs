@@ -3,12 +3,12 @@
 mod area;
 mod bounds;
 mod choice;
-mod contract;
+pub(crate) mod contract;
 mod cosine_importance;
 mod direct;
 mod direction_cone;
 mod directional;
-mod environment;
+pub(crate) mod environment;
 mod environment_map;
 mod hierarchical_sampler;
 mod point;
