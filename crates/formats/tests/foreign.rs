@@ -70,7 +70,7 @@ fn what_cannot_be_read_exactly_is_refused_by_name() {
         ("deep", "deep data"),
         ("windows", "different data windows"),
         ("chroma", "subsampling"),
-        ("large-id", "`id` holds whole numbers that float32 does not hold"),
+        ("large-id", "`id` holds integers that float32 cannot represent"),
     ] {
         let message = Image::read(&path(name)).unwrap_err().to_string();
         assert!(message.contains(words) && message.contains("unsupported kind"), "{message}");
