@@ -105,13 +105,12 @@ impl Meaning {
 
     /// What else a reader should know: attributes that differ but are not judged, and those that one header alone has.
     pub(crate) fn notes(&self, reference: &Meaning) -> Vec<String> {
+        let only = |rule: &Rule, image| {
+            Some(format!("{} is in the {image} only, so that another value would not be noticed", rule.name))
+        };
         let note = |rule: &Rule| match [reference, self].map(|meaning| meaning.value(rule)) {
-            [Some(_), None] => {
-                Some(format!("{} is in the reference only, so that another value would not be noticed", rule.name))
-            }
-            [None, Some(_)] => {
-                Some(format!("{} is in the test image only, so that another value would not be noticed", rule.name))
-            }
+            [Some(_), None] => only(rule, "reference"),
+            [None, Some(_)] => only(rule, "test image"),
             [Some(reference), Some(test)] if !rule.agree(&reference, &test) => {
                 Some(format!("{} differs and is not judged: the cameras stand at different places", rule.name))
             }

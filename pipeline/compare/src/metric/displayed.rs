@@ -49,7 +49,7 @@ pub(super) fn measure(metrics: &[DisplayedMetric], picture: &Picture<'_>) -> Vec
             for (reference, test) in picture.reference.iter().zip(&picture.test) {
                 tile.load(reference, &mut scratch.reference);
                 tile.load(test, &mut scratch.test);
-                simd::dispatch(Display { planes: [&mut scratch.reference, &mut scratch.test] });
+                simd::dispatch(Display([&mut scratch.reference, &mut scratch.test]));
                 for (sum, metric) in sums.iter_mut().zip(metrics) {
                     *sum += (metric.sum)(tile, scratch);
                 }
@@ -63,16 +63,14 @@ pub(super) fn measure(metrics: &[DisplayedMetric], picture: &Picture<'_>) -> Vec
     metrics.iter().enumerate().map(|(index, metric)| (metric.value)(sum(index), picture.size)).collect()
 }
 
-struct Display<'a> {
-    planes: [&'a mut Plane; 2],
-}
+struct Display<'a>([&'a mut Plane; 2]);
 
 impl Kernel for Display<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
-        for plane in self.planes {
+        for plane in self.0 {
             for value in plane {
                 *value = display(*value);
             }

@@ -59,17 +59,12 @@ impl Replicate {
 
     /// Checks that it belongs to a reference of this structure and scene. Messages contain the name of the reference.
     pub(super) fn check(&self, structure: &Structure, scene: &str, name: &Path) -> Result<(), ReplicateError> {
-        let mismatch = match self.structure.check(structure) {
-            Err(mismatch) => Some(mismatch.to_string()),
-            Ok(()) if self.scene != scene => {
-                Some(format!("the scene is {}, but that of the reference is {scene}; render one scene", self.scene))
-            }
-            Ok(()) => None,
+        let what = match self.structure.check(structure) {
+            Err(mismatch) => mismatch.to_string(),
+            Ok(()) if self.scene == scene => return Ok(()),
+            Ok(()) => format!("the scene is {}, but that of the reference is {scene}; render one scene", self.scene),
         };
-        let name = name.display();
-        mismatch.map_or(Ok(()), |what| {
-            Err(ReplicateError::invalid(&self.path, format!("{what} (the reference is {name})")))
-        })
+        Err(ReplicateError::invalid(&self.path, format!("{what} (the reference is {})", name.display())))
     }
 }
 
