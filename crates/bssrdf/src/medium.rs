@@ -54,7 +54,7 @@ impl Coefficients {
         1.0 / (3.0 * self.reduced_extinction())
     }
 
-    /// note: [transport] `σ_tr = √(3 σ_a (σ_a + (1−g) σ_s))`, 1/m (docs/method.md 5.1).
+    /// `note: [transport]` `σ_tr = √(3 σ_a (σ_a + (1−g) σ_s))`, 1/m (docs/method.md 5.1).
     pub fn transport(&self) -> f64 {
         (3.0 * self.sigma_a * self.reduced_extinction()).sqrt()
     }

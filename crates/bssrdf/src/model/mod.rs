@@ -80,7 +80,7 @@ impl Model {
         }
     }
 
-    /// Relative error of this model's reflectance for one channel, see [`ReflectanceErrors`].
+    /// Relative error of this model's reflectance for one channel, see `ReflectanceErrors`.
     pub fn reflectance_error(self, channel: &Coefficients, eta: f64) -> f64 {
         interpolated(self.reflectance_errors(), channel.reduced_albedo(), eta)
     }
