@@ -1,4 +1,4 @@
-//! note: [estimator] The radiance that leaves a translucent surface scattered, docs/method.md (6.7):
+//! `note: [estimator]` The radiance that leaves a translucent surface scattered, docs/method.md (6.7):
 //! `L_r = (1/K) Σ_k S_gather(x_k, ω_k; x_o, ω_o) Φ_k`, where K counts all samples that were *drawn*, the unlit ones
 //! included.
 
