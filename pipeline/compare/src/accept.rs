@@ -6,8 +6,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use cli::{Failure, printable};
 use compare::{ChannelReport, Judgement, LayerReport, Report};
-use formats::Error;
-use formats::atomic::Output;
+use formats::{Error, atomic::Output};
 use serde::Serialize;
 
 use crate::arguments::Arguments;
@@ -50,10 +49,7 @@ struct Change<'a> {
 /// Refuses to replace a file by itself, before any file is read.
 pub(crate) fn check(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.accept && cli::is_same_file(&arguments.reference, &arguments.test) {
-        let path = arguments.test.display();
-        return Err(Failure::usage(format!(
-            "{path}: --accept would replace the file by itself; give another test image"
-        )));
+        return Err(refused(&arguments.test, "--accept would replace the file by itself; give another test image"));
     }
     Ok(())
 }
@@ -77,10 +73,8 @@ pub(crate) fn accept(
     let Arguments { reference, test, .. } = arguments;
     let found = report.nonfinite.test;
     if found > 0 && !report.nonfinite.allowed {
-        let test = test.display();
-        return Err(Failure::usage(format!(
-            "{test}: the image is not accepted, because {found} samples are not finite; repair it, or give --allow-nonfinite"
-        )));
+        let what = format!("the image is not accepted, because {found} samples are not finite");
+        return Err(refused(test, &format!("{what}; repair it, or give --allow-nonfinite")));
     }
     let shown = |path: &Path| printable(&path.display().to_string()).into_owned();
     if old.bytes == new.bytes {
@@ -93,13 +87,14 @@ pub(crate) fn accept(
         [prepare(&log, &[&before, end_of_line(&before), line.as_bytes(), b"\n"])?, prepare(reference, &[&new.bytes])?];
     // A program that does not know the lock may have replaced the reference meanwhile.
     if read_bytes(reference)? != old.bytes {
-        let reference = reference.display();
-        return Err(Failure::usage(format!(
-            "{reference}: the file changed while it was compared; nothing was accepted, run again"
-        )));
+        return Err(refused(reference, "the file changed while it was compared; nothing was accepted, run again"));
     }
     outputs.into_iter().try_for_each(Output::commit)?;
     Ok(format!("ACCEPTED {} as {}, logged in {}\n", shown(test), shown(reference), shown(&log)))
+}
+
+fn refused(path: &Path, why: &str) -> Failure {
+    Failure::usage(format!("{}: {why}", path.display()))
 }
 
 /// The line break that the last line of a text lacks, if it lacks one.

@@ -1,7 +1,6 @@
 //! The arguments of `compare`, and the settings that follow from them.
 
-use std::num::{NonZeroU16, NonZeroUsize};
-use std::path::PathBuf;
+use std::{num::NonZeroU16, path::PathBuf};
 
 use clap::{Args, Parser};
 use compare::heatmap::DEFAULT_MAX;
@@ -102,11 +101,6 @@ impl Arguments {
             flip: self.flip,
             ignore_meta: self.ignore_meta,
         })
-    }
-
-    /// The number of threads for the reading and writing of images.
-    pub(crate) fn threads(&self) -> NonZeroUsize {
-        self.common.thread_count()
     }
 
     /// The path of the log of `--accept`.

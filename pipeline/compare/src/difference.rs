@@ -38,14 +38,8 @@ pub fn difference(reference: &Image, test: &Image) -> Result<Image, TooFar> {
             }),
         }
     };
-    let mut attributes = meaning::kept(reference);
-    attributes.insert("comments".to_owned(), Attribute::Text("test - reference, signed".to_owned()));
-    Ok(Image {
-        width: reference.width,
-        height: reference.height,
-        channels: reference.channels.iter().map(subtract).collect::<Result<_, _>>()?,
-        attributes,
-        window: reference.window,
-        display: reference.display,
-    })
+    let channels = reference.channels.iter().map(subtract).collect::<Result<_, _>>()?;
+    let mut image = meaning::computed_from(reference, channels);
+    image.attributes.insert("comments".to_owned(), Attribute::Text("test - reference, signed".to_owned()));
+    Ok(image)
 }

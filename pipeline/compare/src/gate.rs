@@ -4,8 +4,7 @@
 
 use serde::Serialize;
 
-use crate::choice::Choice;
-use crate::layer::BEAUTY;
+use crate::layer::{BEAUTY, Choice};
 use crate::metric::{GATES, GateKind, GateValue};
 
 /// A limit. That of a metric holds for every channel of a layer.
@@ -54,18 +53,15 @@ impl Gate {
             return Err("it must be a finite number of at least 0".to_owned());
         }
         let kind = GATES.iter().find(|kind| kind.name == name).ok_or_else(|| format!("there is no gate `{name}`"))?;
-        match (kind.value, threshold) {
-            (GateValue::Pixels(_), None) => {
-                Err("`threshold` is missing: it is the error that makes an outlier".to_owned())
-            }
-            (GateValue::Pixels(_), Some(_)) if limit.fract() != 0.0 => {
-                Err("it must be a whole number of pixels".to_owned())
-            }
-            (GateValue::Pixels(_), Some(_)) => Ok(Gate { kind, limit, threshold }),
-            (_, Some(_)) => Err("`threshold` belongs to `max-outliers` only".to_owned()),
-            (GateValue::Samples(_), None) if limit != 0.0 => Err("the limit of this gate must be 0".to_owned()),
-            (_, None) => Ok(Gate { kind, limit, threshold }),
-        }
+        let fault = match (kind.value, threshold) {
+            (GateValue::Pixels(_), None) => "`threshold` is missing: it is the error that makes an outlier",
+            (GateValue::Pixels(_), Some(_)) if limit.fract() != 0.0 => "it must be a whole number of pixels",
+            (GateValue::Pixels(_), Some(_)) => return Ok(Gate { kind, limit, threshold }),
+            (_, Some(_)) => "`threshold` belongs to `max-outliers` only",
+            (GateValue::Samples(_), None) if limit != 0.0 => "the limit of this gate must be 0",
+            (_, None) => return Ok(Gate { kind, limit, threshold }),
+        };
+        Err(fault.to_owned())
     }
 
     /// The name of its option.

@@ -1,8 +1,6 @@
 //! Reads both images. Each file is read once, so that the bytes that are judged are those that `--accept` installs.
 
-use std::fs;
-use std::num::NonZeroUsize;
-use std::path::Path;
+use std::{fs, num::NonZeroUsize, path::Path};
 
 use cli::{Failure, Need};
 use formats::ImageError;
@@ -22,7 +20,7 @@ pub(crate) struct Source {
 /// is serial.
 pub(crate) fn read_both(arguments: &Arguments) -> Result<[Source; 2], Failure> {
     check_memory(arguments)?;
-    let threads = arguments.threads();
+    let threads = arguments.common.thread_count();
     let read = |path, threads| Source::read(path, threads, arguments.accept);
     let Some(half) = NonZeroUsize::new(threads.get() / 2) else {
         return Ok([read(&arguments.reference, threads)?, read(&arguments.test, threads)?]);
@@ -104,7 +102,7 @@ fn need(arguments: &Arguments, reference: Dimensions, test: Dimensions) -> u64 {
     let made = made.into_iter().filter(|(asked, _)| *asked).map(|(_, bytes)| bytes).max().unwrap_or(0);
     let work = if arguments.accept { reading.saturating_add(made) } else { reading.max(made) };
     // Threads that a small image does not keep busy need no memory.
-    let threads = product(&[THREAD_BYTES, arguments.threads().get() as u64]).min(images);
+    let threads = product(&[THREAD_BYTES, arguments.common.thread_count().get() as u64]).min(images);
     let histograms = product(&[CHANNEL_BYTES, test.channels as u64]);
     [images, work, threads, histograms].into_iter().fold(0, u64::saturating_add)
 }

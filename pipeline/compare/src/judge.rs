@@ -1,8 +1,7 @@
 //! Which gates judge which layers, and what they find.
 
-use crate::choice::Choice;
 use crate::gate::{Gate, Judgement};
-use crate::layer::{ALPHA, Layer};
+use crate::layer::{ALPHA, Choice, Layer};
 use crate::metric::{GateValue, bitwise_differences};
 use crate::report::Report;
 use crate::settings::Settings;

@@ -28,7 +28,6 @@
 use formats::image::Image;
 use meaning::Meaning;
 
-mod choice;
 mod difference;
 pub mod distribution;
 mod gate;
@@ -44,11 +43,11 @@ mod report;
 mod settings;
 mod structure;
 
-pub use choice::Choice;
 pub use difference::{TooFar, difference};
 pub use gate::{Gate, Judgement};
-pub use layer::Layer;
+pub use layer::{Choice, Layer};
 pub use limits::{Limit, LimitsError, read_limits};
+pub use meaning::Difference;
 pub use report::{ChannelReport, LayerReport, NonFinite, Report};
 pub use settings::Settings;
 pub use structure::{Input, Mismatch};

@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use crate::choice::Choice;
-use crate::gate::Gate;
+use crate::{gate::Gate, layer::Choice};
 
 /// The length of the longest file that is read, in bytes.
 const MAX_LENGTH: u64 = 1 << 20;

@@ -1,9 +1,9 @@
 //! The attributes of a header that give the numbers of the channels their meaning: equal numbers with other primaries, or of
 //! pixels of another shape, are another picture.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
-use formats::image::{Attribute, Image, Window};
+use formats::image::{Attribute, Channel, Image, Window};
 use serde::{Deserialize, Serialize};
 
 /// An attribute of the header, and the consequence if the images disagree about it.
@@ -13,17 +13,10 @@ struct Rule {
     absent: Option<&'static str>,
     /// The largest difference of two numbers that count as equal.
     tolerance: f64,
-    judgement: Judgement,
+    /// What can be done if the images cannot be compared. `None` is for the position of the camera, a change of which shows in the
+    /// pixels, so that it is only reported.
+    way_out: Option<&'static str>,
 }
-
-enum Judgement {
-    /// The images cannot be compared, but this can be done.
-    Refused(&'static str),
-    /// The attribute holds the position of the camera. A change of it shows in the pixels, so it is only reported.
-    Reported,
-}
-
-use Judgement::{Refused, Reported};
 
 /// The tolerance for primaries, which programs round to three or four digits.
 const ROUNDED: f64 = 5e-4;
@@ -40,20 +33,20 @@ const AS_DATA: &str = "the data window";
 /// compared in `structure.rs`.
 #[rustfmt::skip]
 const RULES: [Rule; 13] = [
-    Rule { name: "acesImageContainerFlag", absent: None, tolerance: EXACT, judgement: Refused("convert one of them") },
-    Rule { name: "adoptedNeutral", absent: None, tolerance: ROUNDED, judgement: Refused("convert one of them") },
+    Rule { name: "acesImageContainerFlag", absent: None, tolerance: EXACT, way_out: Some("convert one of them") },
+    Rule { name: "adoptedNeutral", absent: None, tolerance: ROUNDED, way_out: Some("convert one of them") },
     Rule { name: "chromaticities", absent: Some("0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329"), tolerance: ROUNDED,
-        judgement: Refused("convert one to the primaries of the other, or correct the header that is wrong") },
-    Rule { name: "colorInteropID", absent: None, tolerance: EXACT, judgement: Refused("convert one of them") },
-    Rule { name: DISPLAY, absent: Some(AS_DATA), tolerance: EXACT, judgement: Refused(RENDER) },
-    Rule { name: "envmap", absent: Some("no environment"), tolerance: EXACT, judgement: Refused("convert one of them") },
-    Rule { name: "multiView", absent: None, tolerance: EXACT, judgement: Refused(RENDER) },
-    Rule { name: "pixelAspectRatio", absent: Some("1"), tolerance: 1e-6, judgement: Refused(RENDER) },
-    Rule { name: "screenWindowCenter", absent: Some("0, 0"), tolerance: 1e-6, judgement: Refused(RENDER) },
-    Rule { name: "screenWindowWidth", absent: Some("1"), tolerance: 1e-6, judgement: Refused(RENDER) },
-    Rule { name: "view", absent: None, tolerance: EXACT, judgement: Refused("compare images of one view") },
-    Rule { name: "whiteLuminance", absent: None, tolerance: 1e-3, judgement: Refused("scale one of them") },
-    Rule { name: "worldToCamera", absent: None, tolerance: MATRIX, judgement: Reported },
+        way_out: Some("convert one to the primaries of the other, or correct the header that is wrong") },
+    Rule { name: "colorInteropID", absent: None, tolerance: EXACT, way_out: Some("convert one of them") },
+    Rule { name: DISPLAY, absent: Some(AS_DATA), tolerance: EXACT, way_out: Some(RENDER) },
+    Rule { name: "envmap", absent: Some("no environment"), tolerance: EXACT, way_out: Some("convert one of them") },
+    Rule { name: "multiView", absent: None, tolerance: EXACT, way_out: Some(RENDER) },
+    Rule { name: "pixelAspectRatio", absent: Some("1"), tolerance: 1e-6, way_out: Some(RENDER) },
+    Rule { name: "screenWindowCenter", absent: Some("0, 0"), tolerance: 1e-6, way_out: Some(RENDER) },
+    Rule { name: "screenWindowWidth", absent: Some("1"), tolerance: 1e-6, way_out: Some(RENDER) },
+    Rule { name: "view", absent: None, tolerance: EXACT, way_out: Some("compare images of one view") },
+    Rule { name: "whiteLuminance", absent: None, tolerance: 1e-3, way_out: Some("scale one of them") },
+    Rule { name: "worldToCamera", absent: None, tolerance: MATRIX, way_out: None },
 ];
 
 /// The attributes with their values, by name, except those whose value is the meaning of their absence.
@@ -62,9 +55,14 @@ const RULES: [Rule; 13] = [
 pub(crate) struct Meaning(BTreeMap<String, String>);
 
 /// An attribute about which two headers disagree.
-pub(crate) struct Difference {
+#[derive(Debug, PartialEq, thiserror::Error)]
+#[error("{name} is {test}, but {reference} in the reference, so that equal numbers do not mean the same; {way_out}")]
+pub struct Difference {
+    /// The name of the attribute.
     pub name: &'static str,
+    /// Its value, or the meaning of its absence.
     pub reference: String,
+    /// Its value, or the meaning of its absence.
     pub test: String,
     /// What can be done.
     pub way_out: &'static str,
@@ -85,7 +83,7 @@ impl Meaning {
 
     /// The attributes that decide whether images can be compared.
     pub(crate) fn judged(mut self) -> Meaning {
-        RULES.iter().filter(|rule| matches!(rule.judgement, Reported)).for_each(|rule| drop(self.0.remove(rule.name)));
+        RULES.iter().filter(|rule| rule.way_out.is_none()).for_each(|rule| drop(self.0.remove(rule.name)));
         self
     }
 
@@ -96,7 +94,7 @@ impl Meaning {
     /// The first attribute by which the two cannot be compared.
     pub(crate) fn difference(&self, reference: &Meaning) -> Option<Difference> {
         RULES.iter().find_map(|rule| {
-            let Refused(way_out) = rule.judgement else { return None };
+            let way_out = rule.way_out?;
             let [reference, test] = [reference, self].map(|meaning| meaning.value(rule));
             let (reference, test) = (reference?, test?);
             (!rule.agree(&reference, &test)).then_some(Difference { name: rule.name, reference, test, way_out })
@@ -140,11 +138,12 @@ impl Rule {
     }
 }
 
-/// The attributes that an image computed from this one keeps, because they give its numbers their meaning.
-pub(crate) fn kept(image: &Image) -> BTreeMap<String, Attribute> {
-    let names: BTreeSet<&str> = RULES.iter().map(|rule| rule.name).collect();
-    let kept = image.attributes.iter().filter(|(name, _)| names.contains(name.as_str()));
-    kept.map(|(name, value)| (name.clone(), value.clone())).collect()
+/// An image of these channels that were computed from another image. It keeps the attributes that give the numbers their meaning.
+pub(crate) fn computed_from(image: &Image, channels: Vec<Channel>) -> Image {
+    let kept = image.attributes.iter().filter(|(name, _)| RULES.iter().any(|rule| rule.name == **name));
+    let attributes = kept.map(|(name, value)| (name.clone(), value.clone())).collect();
+    let Image { width, height, window, display, .. } = *image;
+    Image { width, height, channels, attributes, window, display }
 }
 
 /// The value of an attribute, or the values of all parts if the parts of a file disagree.

@@ -1,10 +1,11 @@
 //! Writes the files that were asked for, each one whole and none over an input.
 
+use std::{fmt::Display, path::Path};
+
 use cli::{Failure, Files};
 use compare::heatmap::heatmap;
 use compare::{Report, Settings, difference, html};
-use formats::atomic::Group;
-use formats::image::Image;
+use formats::{atomic::Group, image::Image};
 use serde::Serialize;
 
 use crate::arguments::Arguments;
@@ -33,10 +34,7 @@ pub(crate) fn check(arguments: &Arguments) -> Result<(), Failure> {
         ("--html", arguments.html.as_ref()),
         ("the log of --accept", log.as_ref()),
     ];
-    outputs
-        .into_iter()
-        .filter_map(|(what, path)| Some((what, path?)))
-        .try_for_each(|(what, path)| files.writes(what, path))
+    outputs.into_iter().try_for_each(|(what, path)| path.map_or(Ok(()), |path| files.writes(what, path)))
 }
 
 /// Writes the outputs that were asked for, whatever the verdict.
@@ -52,6 +50,7 @@ pub(crate) fn write(
     let path = arguments.diff_exr.as_deref().unwrap_or(&arguments.test).display();
     let difference =
         difference.transpose().map_err(|error| Failure::numerical(format!("{path}: {error}; leave out --diff-exr")))?;
+    let at = |path: &Path, error: &dyn Display| Failure::usage(format!("{}: {error}", path.display()));
     let mut group = Group::default();
     let document = Document::new(arguments, report, verdict);
     if let Some(path) = &arguments.json {
@@ -62,14 +61,12 @@ pub(crate) fn write(
         group.write(path, &page)?;
     }
     if let (Some(path), Some(difference)) = (&arguments.diff_exr, difference) {
-        let fail = |error| Failure::usage(format!("{}: {error}", path.display()));
-        let bytes = difference.encode_with(arguments.threads()).map_err(fail)?;
-        group.write(path, &bytes)?;
+        let bytes = difference.encode_with(arguments.common.thread_count());
+        group.write(path, &bytes.map_err(|error| at(path, &error))?)?;
     }
     if let Some(path) = &arguments.heatmap {
-        let fail = |error| Failure::usage(format!("{}: {error}", path.display()));
-        let bytes = heatmap(reference, test, &settings.choice, arguments.heatmap_max).map_err(fail)?;
-        group.write(path, &bytes)?;
+        let png = heatmap(reference, test, &settings.choice, arguments.heatmap_max);
+        group.write(path, &png.map_err(|error| at(path, &error))?)?;
     }
     Ok(group.commit()?)
 }

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::gate::Judgement;
 use crate::layer::Layer;
-use crate::metric::{CHANNEL_METRICS, EPSILON, Metrics, PictureMetrics, measure_each};
+use crate::metric::{CHANNEL_METRICS, ChannelMetric, EPSILON, Metrics, PictureMetrics, measure_each};
 use crate::structure::Input;
 
 /// The version of the keys, which changes only when a key of the JSON report changes its meaning or is removed.
@@ -17,7 +17,7 @@ const SCHEMA: u32 = 1;
 const NAMED: usize = 12;
 
 /// Everything that was measured and judged. Numbers that are not finite are `null` in JSON.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
     /// The version of the keys.
     pub schema: u32,
@@ -48,7 +48,7 @@ pub struct Report {
 }
 
 /// Samples that are NaN or infinite.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct NonFinite {
     /// Whether they may pass.
     pub allowed: bool,
@@ -95,7 +95,6 @@ pub(crate) fn measure(image: &Image, layers: &[Layer<'_>], picture: PictureMetri
         width: image.width,
         height: image.height,
         relmse_epsilon: EPSILON,
-        inputs: Vec::new(),
         nonfinite: NonFinite {
             allowed: false,
             reference: count(|metrics| metrics.nonfinite_reference),
@@ -103,11 +102,7 @@ pub(crate) fn measure(image: &Image, layers: &[Layer<'_>], picture: PictureMetri
         },
         layers,
         picture,
-        gates: Vec::new(),
-        judged: Vec::new(),
-        unjudged: Vec::new(),
-        notes: Vec::new(),
-        pass: false,
+        ..Report::default()
     }
 }
 
@@ -165,13 +160,8 @@ impl Report {
             let values = judged().flat_map(|layer| &layer.channels).map(|channel| channel.metrics.get(key));
             values.max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
         };
-        format!(
-            "PASS {} relmse={:.3e} bias={:+.3e}{}\n",
-            printable(name),
-            worst("relmse"),
-            worst("bias"),
-            self.not_judged()
-        )
+        let (name, relmse, bias) = (printable(name), worst("relmse"), worst("bias"));
+        format!("PASS {name} relmse={relmse:.3e} bias={bias:+.3e}{}\n", self.not_judged())
     }
 
     /// The end of a verdict that names the layers that differ and that no gate judges.
@@ -187,13 +177,11 @@ impl Report {
 
 fn line(table: &mut String, name: &str, metrics: &Metrics) {
     let Metrics { mean_reference, mean_test, p99, max, .. } = metrics;
-    let values: String = CHANNEL_METRICS
-        .iter()
-        .map(|metric| match (metric.signed, metrics.get(metric.key)) {
-            (true, value) => format!("{value:>+11.2e}"),
-            (false, value) => format!("{value:>11.3e}"),
-        })
-        .collect();
+    let cell = |metric: &ChannelMetric| match (metric.signed, metrics.get(metric.key)) {
+        (true, value) => format!("{value:>+11.2e}"),
+        (false, value) => format!("{value:>11.3e}"),
+    };
+    let values: String = CHANNEL_METRICS.iter().map(cell).collect();
     let _ = writeln!(
         table,
         "{name:<14}{mean_reference:>11.3e}{mean_test:>11.3e}{values}{p99:>11.3e}{:>11.3e}  {},{} {} -> {}",

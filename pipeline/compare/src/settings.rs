@@ -1,8 +1,6 @@
 //! The settings of a comparison.
 
-use crate::choice::Choice;
-use crate::gate::Gate;
-use crate::limits::Limit;
+use crate::{gate::Gate, layer::Choice, limits::Limit};
 
 /// The settings of a comparison.
 #[derive(Clone, Debug, Default)]

@@ -24,16 +24,13 @@ impl Input {
     /// What a reader should know, unless both images have the same value or none.
     pub(crate) fn note(&self) -> Option<String> {
         let Input { name, reference, test } = self;
+        let only = |image| Some(format!("{name} is in the {image} only, so that other inputs would not be noticed"));
         match (reference, test) {
             (Some(reference), Some(test)) if reference != test => {
                 Some(format!("{name} differs and is ignored: {reference} in the reference, {test} in the test image"))
             }
-            (Some(_), None) => {
-                Some(format!("{name} is in the reference only, so that other inputs would not be noticed"))
-            }
-            (None, Some(_)) => {
-                Some(format!("{name} is in the test image only, so that other inputs would not be noticed"))
-            }
+            (Some(_), None) => only("reference"),
+            (None, Some(_)) => only("test image"),
             (Some(_), Some(_)) | (None, None) => None,
         }
     }
@@ -71,19 +68,8 @@ pub enum Mismatch {
         additional: String,
     },
     /// The same numbers mean different pictures.
-    #[error(
-        "{name} is {test}, but {reference} in the reference, so that equal numbers do not mean the same; {way_out}"
-    )]
-    Meaning {
-        /// The name of the attribute.
-        name: &'static str,
-        /// Its value, or the meaning of its absence.
-        reference: String,
-        /// Its value, or the meaning of its absence.
-        test: String,
-        /// What can be done.
-        way_out: &'static str,
-    },
+    #[error(transparent)]
+    Meaning(#[from] Difference),
     /// The images were made from different inputs.
     #[error("the image was made from other inputs ({name} is {test}, but {reference} in the reference)")]
     Inputs {
@@ -146,12 +132,7 @@ impl Structure {
             let missing = only(&reference.channels, &self.channels);
             return Err(Mismatch::Channels { missing, additional: only(&self.channels, &reference.channels) });
         }
-        match self.meaning.difference(&reference.meaning) {
-            Some(Difference { name, reference, test, way_out }) => {
-                Err(Mismatch::Meaning { name, reference, test, way_out })
-            }
-            None => Ok(()),
-        }
+        self.meaning.difference(&reference.meaning).map_or(Ok(()), |difference| Err(difference.into()))
     }
 }
 

@@ -3,8 +3,7 @@
 use formats::image::Image;
 use picture::Picture;
 
-use crate::choice::Choice;
-use crate::layer::{Layer, layers};
+use crate::layer::{Choice, Layer, layers};
 use crate::metric::Pair;
 use crate::structure::Mismatch;
 

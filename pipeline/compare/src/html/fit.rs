@@ -4,7 +4,7 @@ use formats::image::Image;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::plane::{self, Plane};
+use super::embed::{self, Plane};
 use super::reduce::{Rectangle, block_for, means};
 use crate::layer::Layer;
 use crate::report::{LayerReport, Report};
@@ -135,8 +135,8 @@ fn grid(layer: &Layer<'_>, row: usize, area: Rectangle, block: usize) -> Grid {
         .par_iter()
         .map(|(reference, test)| {
             let [reference, test] = [reference, test].map(|samples| means(samples, row, area, block));
-            let differs = !plane::same_bits(&reference, &test);
-            (plane::encode(&reference), differs.then(|| plane::encode(&test)))
+            let differs = !embed::same_bits(&reference, &test);
+            (embed::encode(&reference), differs.then(|| embed::encode(&test)))
         })
         .collect();
     let mut encoded = Vec::new();

@@ -7,7 +7,6 @@ mod color;
 mod embed;
 mod fit;
 mod index;
-mod plane;
 mod reduce;
 mod thumbnail;
 
@@ -92,14 +91,12 @@ pub fn page(
 
 /// The attributes of both headers, by name.
 fn attributes<'a>(reference: &'a Image, test: &'a Image) -> Vec<AttributePair<'a>> {
-    let mut names: Vec<&String> = reference.attributes.keys().chain(test.attributes.keys()).collect();
+    let mut names: Vec<&'a String> = reference.attributes.keys().chain(test.attributes.keys()).collect();
     names.sort_unstable();
     names.dedup();
     let text = |image: &Image, name: &String| image.attributes.get(name).map(meaning::words);
-    names
-        .into_iter()
-        .map(|name| AttributePair { name, reference: text(reference, name), test: text(test, name) })
-        .collect()
+    let pair = |name: &'a String| AttributePair { name, reference: text(reference, name), test: text(test, name) };
+    names.into_iter().map(pair).collect()
 }
 
 #[cfg(test)]

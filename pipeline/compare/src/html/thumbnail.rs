@@ -1,7 +1,6 @@
 //! The small pictures of a comparison in the index.
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
+use base64::{Engine, engine::general_purpose::STANDARD};
 use picture::Picture;
 use serde::{Deserialize, Serialize};
 
@@ -32,9 +31,8 @@ impl Thumbnails {
     /// Whether these could be made by [`thumbnails`]. Those of a file may be anything.
     pub fn are_pictures(&self) -> bool {
         let plain = |c: char| c.is_ascii_alphanumeric() || "+/=".contains(c);
-        [&self.test, &self.heat]
-            .iter()
-            .all(|text| text.is_empty() || text.strip_prefix(PNG).is_some_and(|rest| rest.chars().all(plain)))
+        let is_picture = |text: &str| text.strip_prefix(PNG).is_some_and(|rest| rest.chars().all(plain));
+        [&self.test, &self.heat].iter().all(|text| text.is_empty() || is_picture(text))
     }
 }
 

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
-use super::pair::Pair;
+use super::picture::Pair;
 use super::select;
 use super::totals::{Terms, Totals};
 use super::worst::{self, Found, Worst};
@@ -56,12 +56,10 @@ pub struct Metrics {
 }
 
 impl Metrics {
-    /// A value by its key in the report. The value of an unknown key is NaN, which no gate accepts.
+    /// A metric of the table by its key in the report, or the largest error, `max`. The value of an unknown key is NaN, which no
+    /// gate accepts.
     pub fn get(&self, key: &str) -> f64 {
         match key {
-            "mean_reference" => self.mean_reference,
-            "mean_test" => self.mean_test,
-            "p99" => self.p99,
             "max" => self.max.error,
             key => self.values.iter().find(|(known, _)| *known == key).map_or(f64::NAN, |(_, value)| *value),
         }
@@ -88,11 +86,8 @@ pub(super) fn measure_each<const N: usize>(
     let measured = |(reference, test)| (Totals::of(reference, test, terms), worst::histogram((reference, test)));
     let planes: Vec<_> = samples.par_iter().copied().map(measured).collect();
     let finish = |totals: &Totals<N>, p99| finish(metrics, totals, p99, Found::in_window(totals.worst, width, window));
-    let each = samples
-        .iter()
-        .zip(&planes)
-        .map(|(plane, (totals, upper))| finish(totals, worst::percentile_99(&[*plane], upper)));
-    let each: Vec<Metrics> = each.collect();
+    let one = |(plane, (totals, upper)): (&Pair<'_>, &_)| finish(totals, worst::percentile_99(&[*plane], upper));
+    let each: Vec<Metrics> = samples.iter().zip(&planes).map(one).collect();
     let totals = planes.iter().fold(Totals::default(), |sum, (totals, _)| sum.and(totals));
     let upper = planes.into_iter().map(|(_, upper)| upper).reduce(|sum, upper| select::and(sum, &upper));
     let p99 = match each.as_slice() {

@@ -1,6 +1,6 @@
 //! What a gate limits, and how it is called on the command line and in limits files.
 
-use super::pair::Pair;
+use super::picture::Pair;
 
 /// A kind of gate: its row in [`super::GATES`] makes it an option of the program and an entry of limits files.
 #[derive(Debug)]

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::gate_kind::{GateKind, GateValue};
-use super::pair::Pair;
+use super::picture::Pair;
 
 pub(super) const ABS: GateKind = GateKind {
     name: "max-abs",

@@ -1,7 +1,10 @@
-//! The picture that both images show in three colors.
+//! The samples that metrics are measured on: those of one channel, and of the picture that both images show in three colors.
 
 use formats::image::Image;
 use rayon::prelude::*;
+
+/// The samples of a channel in the reference and in the test image, which have the same length.
+pub type Pair<'a> = (&'a [f32], &'a [f32]);
 
 /// R, G and B of both images: linear light, `width * height` samples each.
 #[derive(Clone, Copy, Debug)]

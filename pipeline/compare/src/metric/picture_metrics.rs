@@ -10,7 +10,7 @@ use super::picture::Picture;
 
 /// What was measured of the picture. The names are the keys of the JSON report. Every value is NaN, `null` in JSON, if the
 /// picture is not finite.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct PictureMetrics {
     /// The metrics of display values with their keys, in the order of their table. The PSNR of equal pictures is infinite,
     /// `null` in JSON.

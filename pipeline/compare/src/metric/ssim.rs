@@ -7,7 +7,7 @@
 
 use simd::Kernel;
 
-use super::convolve::{Along, Even, INNER, convolve, gaussian};
+use super::convolve::{INNER, blur, gaussian};
 use super::displayed::{DisplayedMetric, Scratch};
 use super::tile::{GROUPS, HALO, LANES, MARGIN, PITCH, Plane, SIDE, Tile, group, lanes};
 
@@ -57,16 +57,16 @@ impl Kernel for Similarity<'_> {
         let Scratch { reference, test, work } = self.scratch;
         let [similarity, product, across, mean_reference, mean_test, mean_squares, mean_product] = work;
         let wanted = (INNER.start - RADIUS) * PITCH..(INNER.end + RADIUS) * PITCH;
-        blur(reference, self.taps, across, mean_reference);
-        blur(test, self.taps, across, mean_test);
+        blur(self.taps, self.taps, reference, across, mean_reference);
+        blur(self.taps, self.taps, test, across, mean_test);
         for at in wanted.clone() {
             product[at] = reference[at] * reference[at] + test[at] * test[at];
         }
-        blur(product, self.taps, across, mean_squares);
+        blur(self.taps, self.taps, product, across, mean_squares);
         for at in wanted {
             product[at] = reference[at] * test[at];
         }
-        blur(product, self.taps, across, mean_product);
+        blur(self.taps, self.taps, product, across, mean_product);
         for at in (0..GROUPS).map(group) {
             let (x, y) = (lanes(mean_reference, at), lanes(mean_test, at));
             let (squares, product) = (lanes(mean_squares, at), lanes(mean_product, at));
@@ -77,12 +77,6 @@ impl Kernel for Similarity<'_> {
             similarity[at..at + LANES].copy_from_slice(&result);
         }
     }
-}
-
-#[inline(always)]
-fn blur(from: &Plane, taps: &[f32], across: &mut Plane, to: &mut Plane) {
-    convolve::<Even>(Along::Rows(RADIUS), taps, from, across);
-    convolve::<Even>(Along::Columns, taps, across, to);
 }
 
 /// Equation 13 of the paper, of weighted means.

@@ -2,8 +2,7 @@
 
 use serde::Serialize;
 
-use super::pair::Pair;
-use super::select;
+use super::{picture::Pair, select};
 
 /// The sample with the largest absolute error. Among equal errors it is the first; NaN counts as the largest.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -6,8 +6,7 @@ use formats::image::{Attribute, Channel, Image};
 
 use super::error::ReplicateError;
 use super::statistic::{Statistic, statistics};
-use crate::meaning;
-use crate::structure::Structure;
+use crate::{meaning, structure::Structure};
 
 /// The smallest number of replicates of either side; the variance of fewer would be known too badly.
 pub const MIN_REPLICATES: usize = 8;
@@ -104,9 +103,7 @@ impl Replicates {
                 replicate.check(structure, scene, path)?;
             }
             if all.is_empty() {
-                let Image { width, height, window, display, .. } = image;
-                mean =
-                    Image { width, height, window, display, attributes: meaning::kept(&image), channels: Vec::new() };
+                mean = meaning::computed_from(&image, Vec::new());
             }
             add(&mut sum, &image);
             all.push(replicate);

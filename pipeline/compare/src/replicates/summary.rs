@@ -7,8 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::error::ReplicateError;
 use super::folder::{MIN_REPLICATES, Replicates};
 use super::statistic::{Kind, is_background};
-use crate::meaning::Meaning;
-use crate::structure::Structure;
+use crate::{meaning::Meaning, structure::Structure};
 
 /// The name of the file in a reference folder.
 pub const SUMMARY: &str = "statistics.json";

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use crate::metric::convolve::gaussian;
 
 /// The pixels of the screen in one degree of the visual field.
-pub const PIXELS_PER_DEGREE: f64 = 3840.0 * PI / 180.0;
+pub(super) const PIXELS_PER_DEGREE: f64 = 3840.0 * PI / 180.0;
 
 /// The paper's a and b: each Gaussian is a sqrt(pi / b) exp(-pi^2 x^2 / b) with x in degrees.
 const LIGHT: [f64; 2] = [1.0, 0.0047];
@@ -30,9 +30,9 @@ pub(super) struct Contrast {
     pub blue_yellow: [Blur; 2],
 }
 
-impl Contrast {
+impl Default for Contrast {
     /// The filters for the screen of [`PIXELS_PER_DEGREE`].
-    pub fn new() -> Contrast {
+    fn default() -> Contrast {
         let total: f64 = BLUE_YELLOW.iter().copied().map(volume).sum();
         Contrast {
             light: blur(LIGHT, 1.0),
@@ -72,7 +72,7 @@ mod tests {
 
     #[test]
     fn filters_fit_and_keep_the_mean() {
-        let contrast = Contrast::new();
+        let contrast = Contrast::default();
         let sum = |taps: &[f32]| 2.0 * taps.iter().sum::<f32>() - taps[0];
         let whole = |blur: &Blur| sum(&blur.rows) * sum(&blur.columns);
         let colors = contrast.blue_yellow.iter().map(whole).sum();
@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn frequencies_fade_as_in_the_paper() {
         // The Fourier transform of the filter for light at f cycles per degree is exp(-b f^2). At 8 it is exp(-0.3008).
-        let taps = Contrast::new().light.rows;
+        let taps = Contrast::default().light.rows;
         let phase = |distance: usize| (2.0 * PI * 8.0 * distance as f64 / PIXELS_PER_DEGREE).cos();
         let pairs = taps.iter().enumerate().skip(1).map(|(distance, tap)| 2.0 * f64::from(*tap) * phase(distance));
         let found = f64::from(taps[0]) + pairs.sum::<f64>();

@@ -3,8 +3,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::metric::picture::Picture;
-use crate::metric::select;
+use crate::metric::{picture::Picture, select};
 
 /// The coefficients of [`color::tone::aces`] in float32, and the factor on the light before it.
 const ACES: [f32; 5] = {

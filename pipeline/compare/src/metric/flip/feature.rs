@@ -17,9 +17,9 @@ pub(super) struct Detectors {
     pub point: Vec<f32>,
 }
 
-impl Detectors {
+impl Default for Detectors {
     /// The detectors for the screen of [`PIXELS_PER_DEGREE`].
-    pub fn new() -> Detectors {
+    fn default() -> Detectors {
         let sigma = 0.5 * WIDTH * PIXELS_PER_DEGREE;
         let smooth = gaussian(sigma, (3.0 * sigma).ceil() as usize);
         let times = |factor: fn(f64) -> f64| smooth.iter().enumerate().map(move |(i, g)| factor(i as f64 / sigma) * g);
@@ -51,7 +51,7 @@ mod tests {
 
     #[test]
     fn weights_are_normalized() {
-        let Detectors { smooth, edge, point } = Detectors::new();
+        let Detectors { smooth, edge, point } = Detectors::default();
         assert_eq!(smooth.len(), 10);
         assert!(smooth.len() <= HALO + 1);
         assert!((edge.iter().sum::<f32>() - 1.0).abs() < 1e-6 && edge[0] == 0.0);

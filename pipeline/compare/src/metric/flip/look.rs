@@ -3,23 +3,18 @@
 use simd::Kernel;
 
 use super::color::{self, hunt_lab, opponents};
-use super::contrast::{Blur, Contrast};
+use super::contrast::Contrast;
 use super::exposure::Tone;
 use super::feature::{self, Detectors};
-use crate::metric::convolve::{Along, Even, EvenOfSumZero, Odd, convolve};
+use crate::metric::convolve::{Along, Symmetry, blur, convolve};
 use crate::metric::elementary::power;
 use crate::metric::tile::{GROUPS, HALO, LANES, PITCH, Plane, ROWS, group, lanes};
 
 /// The filters of the viewer's eye.
+#[derive(Default)]
 pub(super) struct Eye {
     contrast: Contrast,
     detectors: Detectors,
-}
-
-impl Eye {
-    pub fn new() -> Eye {
-        Eye { contrast: Contrast::new(), detectors: Detectors::new() }
-    }
 }
 
 /// What the viewer sees of a tile of one image: L*, a*, b* with Hunt's adjustment, after the filters of contrast sensitivity,
@@ -36,21 +31,12 @@ fn look_lanes([l, a, b, edge, point]: &Look, at: usize) -> [&[f32; LANES]; 5] {
 pub(super) type Work = [Box<Plane>; 5];
 
 /// Shows linear light with a tone, and writes how it looks.
-pub(super) fn see(eye: &Eye, tone: Tone, linear: &[Box<Plane>; 3], work: &mut Work, look: &mut Look) {
-    simd::dispatch(See { eye, tone, linear, work, look });
-}
-
-/// Raises each value of `largest` to the difference of the two looks where that is larger.
-pub(super) fn compare(looks: &[Look; 2], limit: f32, largest: &mut Plane) {
-    simd::dispatch(Compare { looks, limit, largest });
-}
-
-struct See<'a> {
-    eye: &'a Eye,
-    tone: Tone,
-    linear: &'a [Box<Plane>; 3],
-    work: &'a mut Work,
-    look: &'a mut Look,
+pub(super) struct See<'a> {
+    pub eye: &'a Eye,
+    pub tone: Tone,
+    pub linear: &'a [Box<Plane>; 3],
+    pub work: &'a mut Work,
+    pub look: &'a mut Look,
 }
 
 impl Kernel for See<'_> {
@@ -62,20 +48,20 @@ impl Kernel for See<'_> {
         let [l, a, b, edge, point] = self.look;
         let Contrast { light, red_green, blue_yellow } = &self.eye.contrast;
         split(self.tone, self.linear, [y, xy, yz]);
-        blur(light, y, across, l);
-        blur(red_green, xy, across, a);
-        blur(&blue_yellow[0], yz, across, b);
-        blur(&blue_yellow[1], yz, across, second);
+        blur(&light.rows, &light.columns, y, across, l);
+        blur(&red_green.rows, &red_green.columns, xy, across, a);
+        blur(&blue_yellow[0].rows, &blue_yellow[0].columns, yz, across, b);
+        blur(&blue_yellow[1].rows, &blue_yellow[1].columns, yz, across, second);
         adjust([l, a, b], second);
         let Detectors { smooth, edge: slope, point: curvature } = &self.eye.detectors;
-        convolve::<Even>(Along::Rows(HALO), smooth, y, across);
-        convolve::<Odd>(Along::Columns, slope, across, edge);
-        convolve::<EvenOfSumZero>(Along::Columns, curvature, across, point);
-        convolve::<Odd>(Along::Rows(HALO), slope, y, across);
-        convolve::<Even>(Along::Columns, smooth, across, second);
+        convolve(Symmetry::Even, Along::Rows(HALO), smooth, y, across);
+        convolve(Symmetry::Odd, Along::Columns, slope, across, edge);
+        convolve(Symmetry::EvenOfSumZero, Along::Columns, curvature, across, point);
+        convolve(Symmetry::Odd, Along::Rows(HALO), slope, y, across);
+        convolve(Symmetry::Even, Along::Columns, smooth, across, second);
         length(edge, second);
-        convolve::<EvenOfSumZero>(Along::Rows(HALO), curvature, y, across);
-        convolve::<Even>(Along::Columns, smooth, across, second);
+        convolve(Symmetry::EvenOfSumZero, Along::Rows(HALO), curvature, y, across);
+        convolve(Symmetry::Even, Along::Columns, smooth, across, second);
         length(point, second);
     }
 }
@@ -93,12 +79,6 @@ fn split(tone: Tone, [r, g, b]: &[Box<Plane>; 3], [y, xy, yz]: [&mut Plane; 3]) 
         xy[at..at + LANES].copy_from_slice(&result[1]);
         yz[at..at + LANES].copy_from_slice(&result[2]);
     }
-}
-
-#[inline(always)]
-fn blur(filter: &Blur, from: &Plane, across: &mut Plane, to: &mut Plane) {
-    convolve::<Even>(Along::Rows(filter.columns.len() - 1), &filter.rows, from, across);
-    convolve::<Even>(Along::Columns, &filter.columns, across, to);
 }
 
 /// Turns filtered opponent channels into adjusted colors. The third channel is the sum of two filters, the second of which is
@@ -130,10 +110,11 @@ fn length(components: &mut Plane, others: &Plane) {
     }
 }
 
-struct Compare<'a> {
-    looks: &'a [Look; 2],
-    limit: f32,
-    largest: &'a mut Plane,
+/// Raises each value of `largest` to the difference of the two looks where that is larger.
+pub(super) struct Compare<'a> {
+    pub looks: &'a [Look; 2],
+    pub limit: f32,
+    pub largest: &'a mut Plane,
 }
 
 impl Kernel for Compare<'_> {
@@ -171,7 +152,7 @@ mod tests {
         }
         let linear = [gray.clone(), gray.clone(), gray];
         let (mut look, mut work) = (planes(), planes());
-        let (eye, tone) = (Eye::new(), Tone::Clamp);
+        let (eye, tone) = (Eye::default(), Tone::Clamp);
         simd::run_as(level, See { eye: &eye, tone, linear: &linear, work: &mut work, look: &mut look });
         look
     }
@@ -184,7 +165,7 @@ mod tests {
         assert!((step[3][at] - 1.0).abs() < 1e-5, "{}", step[3][at]);
         let line = look(Level::Plain, |_, y| if y == HALO + 20 { 1.0 } else { 0.0 });
         // The weight in the middle alone sees the line.
-        let middle = -f64::from(Detectors::new().point[0]);
+        let middle = -f64::from(Detectors::default().point[0]);
         assert!((f64::from(line[4][at]) - middle).abs() < 1e-5 && line[3][at] == 0.0);
     }
 

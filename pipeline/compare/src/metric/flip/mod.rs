@@ -15,7 +15,6 @@ mod exposure;
 mod feature;
 mod look;
 
-pub use contrast::PIXELS_PER_DEGREE;
 pub use exposure::Exposures;
 
 use super::gate_kind::{GateKind, GateValue};
@@ -23,7 +22,7 @@ use super::picture::Picture;
 use super::select;
 use super::tile::{HALO, MARGIN, PITCH, Plane, SIDE, Tile, planes};
 use exposure::Tone;
-use look::{Eye, Look, Work};
+use look::{Compare, Eye, Look, See, Work};
 
 pub(super) const GATE: GateKind = GateKind {
     name: "max-flip",
@@ -62,32 +61,21 @@ pub struct HdrFlip {
     pub exposures: Exposures,
 }
 
-/// Measures LDR-FLIP.
+/// Measures LDR-FLIP of display values: exposure 0, clamped to 0..1, sRGB.
 pub fn ldr(picture: &Picture<'_>) -> Flip {
-    summary(&ldr_map(picture))
+    summary(&map(picture, &[Tone::Clamp]))
 }
 
-/// Measures HDR-FLIP.
+/// Measures HDR-FLIP, of each pixel the largest LDR-FLIP over the exposures.
 pub fn hdr(picture: &Picture<'_>) -> HdrFlip {
-    let (map, exposures) = hdr_map(picture);
-    HdrFlip { flip: summary(&map), exposures }
-}
-
-/// The LDR-FLIP of each pixel, row after row, of display values: exposure 0, clamped to 0..1, sRGB.
-pub fn ldr_map(picture: &Picture<'_>) -> Vec<f32> {
-    map(picture, &[Tone::Clamp])
-}
-
-/// The HDR-FLIP of each pixel, row after row, and the exposures over which it is the largest LDR-FLIP.
-pub fn hdr_map(picture: &Picture<'_>) -> (Vec<f32>, Exposures) {
     let exposures = Exposures::of(picture);
-    (map(picture, &exposures.tones()), exposures)
+    HdrFlip { flip: summary(&map(picture, &exposures.tones())), exposures }
 }
 
-/// The largest difference of each pixel over the tones.
+/// The largest difference of each pixel over the tones, row after row.
 fn map(picture: &Picture<'_>, tones: &[Tone]) -> Vec<f32> {
     let [width, height] = picture.size;
-    let (eye, limit) = (Eye::new(), color::largest_difference());
+    let (eye, limit) = (Eye::default(), color::largest_difference());
     let mut map = vec![0.0; width * height];
     map.par_chunks_mut(width * SIDE).enumerate().for_each_init(Scratch::default, |scratch, (band, rows)| {
         for tile in Tile::of_band(picture.size, band) {
@@ -135,9 +123,9 @@ impl Scratch {
 
     fn difference(&mut self, eye: &Eye, tone: Tone, limit: f32) {
         for (linear, look) in self.linear.iter().zip(&mut self.looks) {
-            look::see(eye, tone, linear, &mut self.work, look);
+            simd::dispatch(See { eye, tone, linear, work: &mut self.work, look });
         }
-        look::compare(&self.looks, limit, &mut self.largest);
+        simd::dispatch(Compare { looks: &self.looks, limit, largest: &mut self.largest });
     }
 }
 
@@ -170,6 +158,14 @@ fn summary(map: &[f32]) -> Flip {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn ldr_map(picture: &Picture<'_>) -> Vec<f32> {
+        map(picture, &[Tone::Clamp])
+    }
+
+    fn hdr_map(picture: &Picture<'_>) -> Vec<f32> {
+        map(picture, &Exposures::of(picture).tones())
+    }
 
     fn with<T>(size: [usize; 2], reference: &[f32], test: &[f32], measure: impl Fn(&Picture<'_>) -> T) -> T {
         measure(&Picture { size, reference: [reference; 3], test: [test; 3] })
@@ -238,7 +234,7 @@ mod tests {
     fn a_pixel_that_is_not_finite_is_seen_in_the_mean() {
         let mut test = vec![0.5; 400];
         test[77] = f32::INFINITY;
-        for map in [with([20, 20], &[0.5; 400], &test, ldr_map), with([20, 20], &test, &[0.5; 400], |p| hdr_map(p).0)] {
+        for map in [with([20, 20], &[0.5; 400], &test, ldr_map), with([20, 20], &test, &[0.5; 400], hdr_map)] {
             assert_eq!(map.iter().filter(|value| value.is_nan()).count(), 1);
             assert!(map[77].is_nan() && map[78] > 0.0);
             assert!(summary(&map).mean.is_nan() && summary(&map).max.is_nan());
