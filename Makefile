@@ -58,7 +58,7 @@ include $(MAKE_FILES)/clean.mk
 
 .PHONY: .FORCE build scenes help
 
-## build: the programs, optimised
+## build: the programs, optimized
 build:
 	$(CARGO) build --release --workspace --quiet
 

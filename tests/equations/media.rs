@@ -4,7 +4,7 @@ use bssrdf::{DVec3, Exitant, Incident, Medium, MediumError, Model, built_in, eva
 use serde_json::Value;
 use std::f64::consts::PI;
 use test_support::{
-    pipeline::{MODELS, grey},
+    pipeline::{MODELS, gray},
     quadrature::{Extent, plane_integral},
     random::Random,
     walk::{Estimate, Matter, slab},
@@ -114,7 +114,7 @@ fn the_drafts_color_is_that_of_random_walks() {
     let walks = if cfg!(feature = "slow") { 1_000_000 } else { 50_000 };
     for color in [0.1, 0.5, 0.9] {
         let matter = Matter { albedo: single_scattering_albedo(color, 0.0), asymmetry: 0.0, eta: 1.0 };
-        // Under a constant environment cosines have the density 2c: the centres of ten strata.
+        // Under a constant environment cosines have the density 2c: the centers of ten strata.
         let tenths = (0..10u64).map(|k| {
             let cosine = ((k as f64 + 0.5) / 10.0).sqrt();
             slab(&matter, f64::INFINITY, cosine, walks / 10, k).reflected
@@ -150,7 +150,7 @@ fn random_values(model: Model, medium: &Medium) -> impl Iterator<Item = f64> {
 
 #[test]
 fn nothing_scatters_no_light_out() {
-    let clear = [grey(300.0, 0.0, 0.0, 1.3), grey(0.0, 0.0, 0.0, 1.5)];
+    let clear = [gray(300.0, 0.0, 0.0, 1.3), gray(0.0, 0.0, 0.0, 1.5)];
     for (medium, model) in clear.iter().flat_map(|m| MODELS.map(|model| (m, model))) {
         assert!(random_values(model, medium).all(|s| s == 0.0), "{}", model.name());
     }
@@ -158,7 +158,7 @@ fn nothing_scatters_no_light_out() {
 
 #[test]
 fn without_absorption_values_are_finite() {
-    for medium in [grey(0.0, 800.0, 0.0, 1.3), grey(0.0, 1e6, 0.95, 1.0), grey(0.0, 20.0, -0.5, 0.7)] {
+    for medium in [gray(0.0, 800.0, 0.0, 1.3), gray(0.0, 1e6, 0.95, 1.0), gray(0.0, 20.0, -0.5, 0.7)] {
         for model in MODELS {
             let mut lit = 0;
             for value in random_values(model, &medium) {

@@ -4,7 +4,7 @@ use bssrdf::{Medium, Model};
 use serde_json::Value;
 use std::f64::consts::PI;
 use test_support::{
-    pipeline::grey,
+    pipeline::gray,
     quadrature::{Extent, plane_integral},
 };
 
@@ -35,7 +35,7 @@ fn entries() -> Vec<ReferenceValue> {
         let tabulated = |name: &str, key: &str| number(&entry[name][key]);
         ReferenceValue {
             name: format!("{} {}", entry["material"], entry["channel"]),
-            medium: grey(coefficient("sigma_a"), coefficient("sigma_s"), coefficient("g"), coefficient("eta")),
+            medium: gray(coefficient("sigma_a"), coefficient("sigma_s"), coefficient("g"), coefficient("eta")),
             integrals: vec![
                 (Model::StandardDipole, 0.0, tabulated("standard", "I_0deg")),
                 (Model::StandardDipole, 60.0, tabulated("standard", "I_0deg")),
@@ -94,7 +94,7 @@ fn total_reflectance_has_its_closed_form() {
             assert!((value / expected - 1.0).abs() < 1e-12, "{}: {value} for {expected}", entry.name);
         }
     }
-    let conservative = [grey(0.0, 2.0, 0.0, 1.3), grey(0.0, 50.0, 0.9, 1.5), grey(3.0, 7.0, 0.3, 0.8)];
+    let conservative = [gray(0.0, 2.0, 0.0, 1.3), gray(0.0, 50.0, 0.9, 1.5), gray(3.0, 7.0, 0.3, 0.8)];
     let mut worst = 0.0f64;
     for medium in entries.iter().map(|e| &e.medium).chain(&conservative) {
         // R_d = π S_bare (3.6), R_d = 4π C_φ(1/η) S_bare (4.5).
@@ -112,5 +112,5 @@ fn total_reflectance_has_its_closed_form() {
 /// Without absorption the surface returns what enters, up to the exit normalization that the model lacks.
 #[test]
 fn the_standard_dipole_of_a_white_medium_reflects_everything() {
-    assert!((standard_closed_form(&grey(0.0, 5.0, 0.0, 1.3)) - 1.0).abs() < 1e-15);
+    assert!((standard_closed_form(&gray(0.0, 5.0, 0.0, 1.3)) - 1.0).abs() < 1e-15);
 }

@@ -6,11 +6,11 @@ use crate::evaluate::{along_plane, assert_close, assert_is, bare, gather, onto_p
 use bssrdf::{Exitant, Medium, Model, Separation, fresnel};
 use glam::DVec3;
 use std::f64::consts::PI;
-use test_support::{pipeline::grey, random::Random};
+use test_support::{pipeline::gray, random::Random};
 
 /// α' = 0.9.
 fn medium() -> Medium {
-    grey(0.1, 0.9, 0.0, 1.3)
+    gray(0.1, 0.9, 0.0, 1.3)
 }
 
 /// A unit vector `angle` from −Z.
@@ -146,7 +146,7 @@ fn far_away_with_absorption() {
 /// σ_a = 0: `S ~ r⁻³`, though the two sources of a dipole cancel to the last digits (method.md section 9).
 #[test]
 fn far_away_without_absorption() {
-    let medium = grey(0.0, 1.0, 0.0, 1.3);
+    let medium = gray(0.0, 1.0, 0.0, 1.3);
     let first = bare(&medium, &along_plane(1e3));
     for distance in [1e4, 1e5, 1e6] {
         let values = bare(&medium, &along_plane(distance));

@@ -14,7 +14,7 @@ use std::{
 use test_support::{
     EFFORT,
     meshes::{Part, World, sphere, world},
-    pipeline::{cloud, grey, orthographic, settings, stratified},
+    pipeline::{cloud, gray, orthographic, settings, stratified},
     z_test::{Estimate, assert_equal},
 };
 
@@ -33,7 +33,7 @@ fn ball(environment: Environment) -> World {
 /// The ball with an albedo of `sigma_s` over its sum with 20/m, seen under its light.
 fn render(environment: Environment, sigma_s: f64, seed: u64) -> Rendered {
     let world = ball(environment);
-    let (cloud, media) = (cloud(&world, &stratified(1 << 12, seed)), [grey(20.0, sigma_s, 0.0, 1.3)]);
+    let (cloud, media) = (cloud(&world, &stratified(1 << 12, seed)), [gray(20.0, sigma_s, 0.0, 1.3)]);
     let camera = orthographic(DVec3::new(1.0, 2.0, 3.0), 1.1e-2);
     let input =
         Input { scene: &world.scene, rays: &world.rays, clouds: from_ref(&cloud), media: &media, camera: &camera };

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use test_support::{
     EFFORT,
     meshes::{Part, World, slab, world},
-    pipeline::{Sampling, by_area, cloud, grey, orthographic, settings, stratified},
+    pipeline::{Sampling, by_area, cloud, gray, orthographic, settings, stratified},
     z_test::{Estimate, assert_mean},
 };
 
@@ -115,7 +115,7 @@ fn of_shards() {
 #[test]
 fn of_the_whole_sum() {
     // In so thin a medium, independent samples and a view without the silhouette show the part of the cloud.
-    let scene = Scene { half_height: 6e-4, sampling: by_area, ..edge_under_sky(grey(30.0, 300.0, 0.0, 1.3)) };
+    let scene = Scene { half_height: 6e-4, sampling: by_area, ..edge_under_sky(gray(30.0, 300.0, 0.0, 1.3)) };
     for (k, paths) in [2, 4].into_iter().enumerate() {
         let settings = of_paths(Estimator::Exhaustive, paths);
         assert_error_bars(&format!("whole sum, {paths} paths"), &scene, &settings, 60_000 + 1000 * k as u64);
@@ -128,14 +128,14 @@ fn of_the_whole_sum() {
 /// Seen to catch: halves treated as independent although each takes its factors from the other.
 #[test]
 fn of_edges() {
-    let scene = edge(grey(30.0, 300.0, 0.0, 1.3));
+    let scene = edge(gray(30.0, 300.0, 0.0, 1.3));
     for (k, paths) in [2, 4, 8].into_iter().enumerate() {
         let settings = of_paths(Estimator::Exhaustive, paths);
         assert_error_bars(&format!("edges, {paths} paths"), &scene, &settings, 80_000 + 1000 * k as u64);
     }
 }
 
-/// One path through the centre of each pixel of an object of index 1 has no noise of its own: what is left is that of
+/// One path through the center of each pixel of an object of index 1 has no noise of its own: what is left is that of
 /// the cloud and the gather, and it is stated.
 ///
 /// Seen to catch: the mean of both halves taken for each.

@@ -86,7 +86,7 @@ fn looking(world: &World, material: u16, towards: DVec3) -> Camera {
     Camera { position, ..camera }
 }
 
-/// Pixels whose centre shows a lit point, and pixels whose centre shows an unlit one. Points seen at grazing angles,
+/// Pixels whose center shows a lit point, and pixels whose center shows an unlit one. Points seen at grazing angles,
 /// where the interface takes much of the light, are left out: the cut may be that much worse there.
 fn sides(world: &World, material: u16, camera: &Camera) -> [Vec<usize>; 2] {
     let (scene, rays) = (&world.scene, &world.rays);

@@ -14,7 +14,7 @@ use glam::{DVec3, Vec3};
 use test_support::{
     EFFORT,
     meshes::{Light, Part, slab, world},
-    pipeline::{Lit, Point, RULES, by_area, cloud, grey},
+    pipeline::{Lit, Point, RULES, by_area, cloud, gray},
     planted::cloud_of,
     random::Random,
     significance,
@@ -29,7 +29,7 @@ fn equal_samples(count: usize) -> Cloud {
 
 /// How many of the samples of the first half are accepted with probability `p` each.
 fn accepted(cloud: &Cloud, p: f64, key: u64) -> u64 {
-    let model = &StandardLanes::new(&grey(1.0, 1.0, 0.0, 1.3));
+    let model = &StandardLanes::new(&gray(1.0, 1.0, 0.0, 1.3));
     let samples = &LitSamples::new(cloud, &cloud.meta().materials[0].halves[0], 1.3);
     let exit = &Exit::new(DVec3::ZERO, DVec3::Z, key);
     simd::dispatch(Roulette { model, samples, exit, rates: Rates::One(-p.ln()) }).evaluations

@@ -279,8 +279,8 @@ mod tests {
         let size = DVec2::new(200.0, 100.0);
         let (_, top_left) = camera.ray(DVec2::ZERO, size);
         assert!((top_left - DVec3::new(-2.0, 1.0, -1.0).normalize()).length() < 1e-15);
-        let (_, centre) = camera.ray(size / 2.0, size);
-        assert!((centre - DVec3::NEG_Z).length() < 1e-15);
+        let (_, center) = camera.ray(size / 2.0, size);
+        assert!((center - DVec3::NEG_Z).length() < 1e-15);
     }
 
     /// OpenEXR multiplies row vectors: p · M.

@@ -1,7 +1,7 @@
 //! Confidence intervals of errors that were estimated from few independent values.
 //!
 //! An error that is estimated from few values may be small by chance, and a program that stops at the first small one
-//! favours that chance. Student's distribution says by how much the interval that contains the true value in 95 of 100
+//! favors that chance. Student's distribution says by how much the interval that contains the true value in 95 of 100
 //! cases must be wider.
 
 /// Pairs `(ν, t)`: Student's t with `ν` degrees of freedom lies outside `±t` in 5 of 100 cases.

@@ -71,7 +71,7 @@ pub struct Arguments {
     /// error of less than twice this
     #[arg(long, value_name = "X", value_parser = parse_relative_error)]
     pub target_error: Option<f64>,
-    /// Spread the paths over the pixel (box), or send all through its centre (point)
+    /// Spread the paths over the pixel (box), or send all through its center (point)
     #[arg(long, value_name = "FILTER", default_value = "box", value_parser = one_of(&Filter::ALL, Filter::name))]
     pub filter: Filter,
     /// Interface events that a path may have; paths that are cut off are counted

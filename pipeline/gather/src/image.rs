@@ -10,7 +10,7 @@ use scene::{Camera, NormalKind, Rays, Scene};
 pub enum Filter {
     /// Evenly over all of it.
     Box,
-    /// All paths go through its centre.
+    /// All paths go through its center.
     Point,
 }
 

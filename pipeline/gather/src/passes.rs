@@ -84,7 +84,7 @@ impl<'a> Passes<'a> {
     }
 
     /// Finds edge pixels by the transmittance at the corners of all pixels. There are none with one path per pixel, which
-    /// has no second half to estimate the factor of the control variate from, nor with rays through pixel centres, which
+    /// has no second half to estimate the factor of the control variate from, nor with rays through pixel centers, which
     /// are all the same.
     fn find_edges(&mut self) {
         if self.settings.paths_per_pixel == 1 || self.settings.filter == Filter::Point {

@@ -1,4 +1,4 @@
-//! Log-log plots as SVG. The background is transparent and the greys are medium, so that they are legible on light
+//! Log-log plots as SVG. The background is transparent and the grays are medium, so that they are legible on light
 //! and dark pages.
 
 use std::fmt::Write;
@@ -24,7 +24,7 @@ const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 440.0;
 /// Left, top, right and bottom of the area that the curves fill.
 const AREA: [f64; 4] = [70.0, 40.0, 560.0, 385.0];
-/// Color of text and axes: its contrast is above 4 both on white and on the dark grey of code hosts.
+/// Color of text and axes: its contrast is above 4 both on white and on the dark gray of code hosts.
 const INK: &str = "#7b8087";
 /// Colors that are distinct for most color-blind eyes, and neither very dark nor very light.
 const COLORS: [&str; 8] = ["#8c8c8c", "#d98b00", "#2f9bd6", "#00a077", "#b9a400", "#d5557f", "#8d6bd1", "#d9582b"];

@@ -4,11 +4,11 @@ use crate::quadrature::{Extent, integrate_graded, plane_integral};
 use bssrdf::{DVec3, Medium, Model, Separation, fresnel};
 use std::f64::consts::PI;
 
-/// A grey medium of reduced albedo `albedo` and unit reduced extinction.
+/// A gray medium of reduced albedo `albedo` and unit reduced extinction.
 pub fn medium(albedo: f64, eta: f64) -> Medium {
     let (s, a) = (albedo, 1.0 - albedo);
     let json =
-        format!(r#"{{"name":"grey","unit":"1/m","sigma_s":[{s},{s},{s}],"sigma_a":[{a},{a},{a}],"g":0,"eta":{eta}}}"#);
+        format!(r#"{{"name":"gray","unit":"1/m","sigma_s":[{s},{s},{s}],"sigma_a":[{a},{a},{a}],"g":0,"eta":{eta}}}"#);
     Medium::from_json(&json).expect("a valid medium")
 }
 

@@ -56,7 +56,7 @@ impl Meta {
 
     /// The origin of float32 positions in files for other programs (`P` of an image, `x y z` of a PLY), m. It is 0 and the
     /// positions are those in the world, unless float32 would round them by more than 1e-5 of the scene's diagonal. Then it is
-    /// the scene's centre rounded to float32. That rounding moves it by 32 diagonals at most, because the import refuses scenes
+    /// the scene's center rounded to float32. That rounding moves it by 32 diagonals at most, because the import refuses scenes
     /// that lie farther from the origin, and positions relative to it are rounded by 2e-6 of the diagonal.
     pub fn exchange_origin_m(&self) -> [f32; 3] {
         const MAX_ROUNDING: f64 = 1e-5;

@@ -246,7 +246,7 @@ fn records_are_good(records: &[Record], reach: f32) -> bool {
     are_within(bytemuck::cast_slice(records), MASKS, limits)
 }
 
-/// True if centres lie within `reach` of the origin along each axis, no radius or spread exceeds the distance between two such
+/// True if centers lie within `reach` of the origin along each axis, no radius or spread exceeds the distance between two such
 /// points, and flux and deviations are finite and not negative.
 fn nodes_are_good(nodes: &[Node], reach: f32) -> bool {
     const MASKS: [u32; 8] = [!SIGN, !SIGN, !SIGN, !0, !0, !0, !0, !0];

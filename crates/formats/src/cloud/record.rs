@@ -45,10 +45,10 @@ pub type Tile = [Record; TILE];
 #[repr(C)]
 pub struct Node {
     /// Mean position, m.
-    pub centre: [f32; 3],
-    /// Root mean square distance from the centre, m.
+    pub center: [f32; 3],
+    /// Root mean square distance from the center, m.
     pub spread: f32,
-    /// Largest distance of a sample from the centre, m.
+    /// Largest distance of a sample from the center, m.
     pub radius: f32,
     /// Sum of the flux over samples and channels, W.
     pub flux: f32,

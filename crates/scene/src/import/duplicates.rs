@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 /// Drops triangles with the three positions of an earlier one of the same material, in any winding. Returns their number by
 /// material.
 ///
-/// A triangle of a one-sided emitter keeps a copy with the opposite winding: some lamps with two sides are modelled so.
+/// A triangle of a one-sided emitter keeps a copy with the opposite winding: some lamps with two sides are modeled so.
 pub(super) fn drop_duplicates(mesh: &mut Mesh, materials: &[Material]) -> BTreeMap<u16, u64> {
     let mut dropped = BTreeMap::new();
     let later = later_copies(mesh, |material| {

@@ -13,7 +13,7 @@ use obvhs::{
 /// reciprocals, limit, box corners and slab test together can be wrong by seven.
 const MIN_PADDING: f32 = 16.0 * f32::EPSILON;
 
-/// Boxes grow by at most this share, each by a random amount: the builder joins each box with the best of its neighbours,
+/// Boxes grow by at most this share, each by a random amount: the builder joins each box with the best of its neighbors,
 /// and among equal boxes (a mesh on top of itself) all would prefer the same one, which would make the build quadratic and
 /// the tree a list.
 pub(super) const PADDING: f32 = 2.0 * MIN_PADDING;

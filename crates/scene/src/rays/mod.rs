@@ -1,7 +1,7 @@
 //! Closest hit and visibility.
 //!
 //! The walk through the tree is in float32, through boxes that are padded by more than its rounding can amount to. The
-//! triangles are tested in float64 with the watertight test of Woop, Benthin and Wald 2013: neighbours agree on the sign of
+//! triangles are tested in float64 with the watertight test of Woop, Benthin and Wald 2013: neighbors agree on the sign of
 //! their common edge, so no ray slips between them. The mesh is first scaled, exactly, to one size: nothing here depends on
 //! that of the scene. No ray needs an offset: one that starts on a triangle names it.
 //!

@@ -33,7 +33,7 @@ impl ScaledMesh {
         ScaledMesh { tree, leaves, slots }
     }
 
-    /// False for crossings behind the origin, for the triangle that the ray left, and for its neighbours where only rounding
+    /// False for crossings behind the origin, for the triangle that the ray left, and for its neighbors where only rounding
     /// puts them in the way.
     #[inline(always)]
     pub fn counts(&self, distance: f64, leaf: &Leaf, lane: usize, ray: &Ray) -> bool {

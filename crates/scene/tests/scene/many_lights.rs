@@ -48,9 +48,9 @@ fn lamps(count: u64, distances: [f64; 2]) -> Vec<Box<dyn Light>> {
     (0..count).map(|k| Box::new(lamp(k)) as Box<dyn Light>).collect()
 }
 
-fn panel(centre: DVec3, towards: DVec3) -> Box<dyn Light> {
+fn panel(center: DVec3, towards: DVec3) -> Box<dyn Light> {
     let (a, b) = towards.any_orthonormal_pair();
-    let corners = [centre - a, centre + a, centre + b].map(|c| centre + (c - centre) * 0.3);
+    let corners = [center - a, center + a, center + b].map(|c| center + (c - center) * 0.3);
     let mesh: Mesh = mesh(&corners, &[[0, 1, 2]]);
     Box::new(AreaLight::new(&mesh, &[0], DVec3::splat(40.0), false).expect("an area"))
 }
@@ -173,9 +173,9 @@ fn the_cost_of_a_choice_hardly_depends_on_the_number_of_lights() {
         let tree = LightTree::new(lights.iter().map(|light| &**light));
         let (mut weighed, mut variance, regions, points) = (0, 0.0, 40, 256);
         for index in 0..regions {
-            let centre = direction(random(index), 0);
+            let center = direction(random(index), 0);
             let beside = |k: u64| {
-                let normal = (centre + 0.05 * direction(random(1000 * index + k), 2)).normalize();
+                let normal = (center + 0.05 * direction(random(1000 * index + k), 2)).normalize();
                 facing(normal, normal)
             };
             let places: Vec<SurfacePoint> = (0..points).map(beside).collect();

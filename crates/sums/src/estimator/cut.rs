@@ -69,7 +69,7 @@ enum Criterion {
 /// Root mean square deviation of the directions of diffuse light, `√(5/9)`, for which the tables hold the scatter.
 const DIFFUSE_TURN: f32 = 0.745_356;
 
-/// A node is seen under a wide angle if this times its squared radius exceeds the squared distance of its centre.
+/// A node is seen under a wide angle if this times its squared radius exceeds the squared distance of its center.
 const WIDE: f32 = 0.5;
 
 /// The first threshold is this, times the target error to the power 3/2, times a rough estimate of the sum.
@@ -277,7 +277,7 @@ fn predict(tables: &FalloffTables, exit: &Exit, nodes: &[Node], scale: f32, ids:
     for i in 0..LANES {
         // Nodes beyond the end of the tree are empty.
         let node = nodes.get(ids[i] as usize).copied().unwrap_or_default();
-        let o = exit.offset(node.centre);
+        let o = exit.offset(node.center);
         for c in 0..3 {
             offset[c][i] = o[c];
         }
@@ -295,10 +295,10 @@ fn predict(tables: &FalloffTables, exit: &Exit, nodes: &[Node], scale: f32, ids:
         let near2 = near * near;
         let by_position = tables.slope(near2) * spread[i];
         let by_direction = tables.scatter(near2) * turn[i] * (1.0 / DIFFUSE_TURN);
-        // The squared radius of a disc is twice the mean squared distance from its centre.
+        // The squared radius of a disc is twice the mean squared distance from its center.
         let disc2 = 2.0 * spread[i] * spread[i];
         let value = if far2 > disc2 { tables.value(far2) } else { tables.disc(disc2) };
-        // The mean of an exponential over a node is close to the geometric mean of its values at the centre and at the
+        // The mean of an exponential over a node is close to the geometric mean of its values at the center and at the
         // near end.
         let near_value = (value * tables.value(near2)).sqrt();
         let by_flux = value * deviation[i];

@@ -157,9 +157,9 @@ mod tests {
         let small = measure(&uniform(10, 40, 0.2), &uniform(10, 40, 0.3), true);
         assert!(small.get("ssim").is_none() && small.get("psnr").is_some() && small.flip_hdr.is_some());
         assert!(small.missing[0].contains("11 x 11"));
-        let mut grey = uniform(20, 20, 0.2);
-        grey.channels.retain(|channel| channel.name == "G");
-        let metrics = measure(&grey, &grey, true);
+        let mut gray = uniform(20, 20, 0.2);
+        gray.channels.retain(|channel| channel.name == "G");
+        let metrics = measure(&gray, &gray, true);
         assert!(
             metrics.get("psnr").is_none() && metrics.flip_ldr.is_none() && metrics.missing[0].contains("no R, G and B")
         );

@@ -5,7 +5,7 @@
 //! channels of a layer together, each structure check left out, exit code 0 whatever the verdict, a limit that may be NaN.
 
 mod accept;
-mod artefacts;
+mod artifacts;
 mod gates;
 mod limits;
 mod meaning;

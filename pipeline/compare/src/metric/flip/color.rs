@@ -85,11 +85,11 @@ mod tests {
     }
 
     #[test]
-    fn white_grey_and_black_have_no_color() {
-        for (grey, lightness) in [(0.0, 0.0), (0.001, 0.903_3), (0.184_187, 50.0), (1.0, 100.0)] {
-            let [l, a, b] = lab([grey; 3]);
+    fn white_gray_and_black_have_no_color() {
+        for (gray, lightness) in [(0.0, 0.0), (0.001, 0.903_3), (0.184_187, 50.0), (1.0, 100.0)] {
+            let [l, a, b] = lab([gray; 3]);
             // The tolerance is the rounding of 100 in float32.
-            assert!((l - lightness).abs() < 1e-4 && a.abs() < 1e-4 && b.abs() < 1e-4, "{grey}: {l} {a} {b}");
+            assert!((l - lightness).abs() < 1e-4 && a.abs() < 1e-4 && b.abs() < 1e-4, "{gray}: {l} {a} {b}");
         }
     }
 
