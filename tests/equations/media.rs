@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::f64::consts::PI;
 use test_support::{
     pipeline::{MODELS, gray},
-    quadrature::{Extent, plane_integral},
+    quadrature::{Annulus, plane_integral},
     random::Random,
     walk::{Estimate, Matter, slab},
 };
@@ -52,8 +52,9 @@ fn a_medium_shows_the_color_asked_for() {
                 assert!((value - color[c]).abs() < 1e-10, "{value} for {}", color[c]);
                 let transport = medium.channels[c].transport();
                 assert!((transport * radius[c] * 1e-3 - 1.0).abs() < 1e-9, "1/{transport} for {} mm", radius[c]);
-                let extent = Extent { inner: 1e-6 / medium.channels[c].reduced_extinction(), outer: 60.0 / transport };
-                let integral = PI * plane_integral(&*Model::StandardDipole.of(&medium), c, 0.0, extent);
+                let annulus =
+                    Annulus { inner: 1e-6 / medium.channels[c].reduced_extinction(), outer: 60.0 / transport };
+                let integral = PI * plane_integral(&*Model::StandardDipole.of(&medium), c, 0.0, annulus);
                 assert!((integral - color[c]).abs() < 1e-6, "{integral} for {}", color[c]);
             }
         }

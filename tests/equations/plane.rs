@@ -5,16 +5,16 @@ use serde_json::Value;
 use std::f64::consts::PI;
 use test_support::{
     pipeline::gray,
-    quadrature::{Extent, plane_integral},
+    quadrature::{Annulus, plane_integral},
 };
 
 /// Limits that are good for five digits: S is constant within 10⁻⁴ mean free paths, and the part beyond is e^{−40}
 /// or, without absorption, the tail of r⁻³.
-fn extent(medium: &Medium) -> Extent {
+fn annulus(medium: &Medium) -> Annulus {
     let c = medium.channels[0];
     let (path, transport) = (1.0 / c.reduced_extinction(), c.transport().min(c.grosjean_transport()));
     let outer = if transport > 0.0 { 40.0 / transport + 10.0 * path } else { 1e9 * path };
-    Extent { inner: 1e-6 * path, outer }
+    Annulus { inner: 1e-6 * path, outer }
 }
 
 struct ReferenceValue {
@@ -58,7 +58,7 @@ fn plane_integrals_agree_with_the_table() {
     for entry in entries() {
         for (model, degrees, expected) in &entry.integrals {
             let sine = f64::sin(f64::to_radians(*degrees)) / entry.medium.eta;
-            let value = plane_integral(&*model.of(&entry.medium), 0, sine, extent(&entry.medium));
+            let value = plane_integral(&*model.of(&entry.medium), 0, sine, annulus(&entry.medium));
             let error = (value / expected - 1.0).abs();
             assert!(error < 1e-7, "{} {} {degrees}°: {value} for {expected}", entry.name, model.name());
             worst = worst.max(error);
@@ -98,9 +98,9 @@ fn total_reflectance_has_its_closed_form() {
     let mut worst = 0.0f64;
     for medium in entries.iter().map(|e| &e.medium).chain(&conservative) {
         // R_d = π S_bare (3.6), R_d = 4π C_φ(1/η) S_bare (4.5).
-        let standard = PI * plane_integral(&*Model::StandardDipole.of(medium), 0, 0.0, extent(medium));
+        let standard = PI * plane_integral(&*Model::StandardDipole.of(medium), 0, 0.0, annulus(medium));
         let better =
-            PI * medium.interface.exit_norm * plane_integral(&*Model::BetterDipole.of(medium), 0, 0.0, extent(medium));
+            PI * medium.interface.exit_norm * plane_integral(&*Model::BetterDipole.of(medium), 0, 0.0, annulus(medium));
         for (value, expected) in [(standard, standard_closed_form(medium)), (better, better_closed_form(medium))] {
             worst = worst.max((value - expected).abs());
             assert!((value - expected).abs() < 1e-6, "{:?}: {value} for {expected}", medium.channels[0]);

@@ -12,7 +12,7 @@ mod lights;
 mod mirror;
 mod parts;
 mod picture;
-mod place;
+mod position;
 mod scale;
 mod tessellation;
 mod unseen;

@@ -119,8 +119,8 @@ impl Lab {
             words.iter().map(move |word| {
                 let mut forged = self.good.clone();
                 forged.put(at, &word.to_le_bytes());
-                let place = (at - range.start) / 4;
-                (format!("word {place} of {section} is {:e} ({word:x})", f32::from_bits(*word)), forged.sealed())
+                let index = (at - range.start) / 4;
+                (format!("word {index} of {section} is {:e} ({word:x})", f32::from_bits(*word)), forged.sealed())
             })
         })
     }

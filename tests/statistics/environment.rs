@@ -84,10 +84,10 @@ fn a_convex_body_gathers_what_its_shadow_would() {
     let shadow = |direction: DVec3| facets.iter().map(|facet| facet.dot(direction).max(0.0)).sum::<f64>();
     // The middle of the map is +X and its columns proceed to +Z; the map is turned about +Y.
     let cosine = |row: f64| (PI * row / 32.0).cos();
-    let place = |k: u32| (f64::from(k) + 0.5) / 16.0;
+    let offset = |k: u32| (f64::from(k) + 0.5) / 16.0;
     let toward = |x: u32, y: u32| {
-        let angle = TAU * ((column as f64 + place(x)) / 64.0 - 0.5) - f64::to_radians(degrees);
-        let height = cosine(row as f64) * (1.0 - place(y)) + cosine(row as f64 + 1.0) * place(y);
+        let angle = TAU * ((column as f64 + offset(x)) / 64.0 - 0.5) - f64::to_radians(degrees);
+        let height = cosine(row as f64) * (1.0 - offset(y)) + cosine(row as f64 + 1.0) * offset(y);
         let radius = (1.0 - height * height).sqrt();
         DVec3::new(radius * angle.cos(), height, radius * angle.sin())
     };

@@ -9,7 +9,7 @@ pub(crate) fn transport_ratio(color: f64, diffuse_fresnel: f64) -> f64 {
     let reflection = (1.0 + diffuse_fresnel) / (1.0 - diffuse_fresnel);
     let reflectance = |q: f64| 0.5 * (1.0 - q * q / 3.0) * (1.0 + (-4.0 / 3.0 * reflection * q).exp()) * (-q).exp();
     let (mut low, mut high) = (0.0, 3f64.sqrt());
-    // As many halvings as a float64 has digits, and more for a color near 1.
+    // A float64 has 53 bits; colors near 1 need more halvings.
     for _ in 0..100 {
         let middle = 0.5 * (low + high);
         if reflectance(middle) > color { low = middle } else { high = middle }

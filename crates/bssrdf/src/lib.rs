@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! S        = T12 · T21 · S_bare      the full BSSRDF
-//! S_gather = T12 · S_bare            what the gather sums after the roulette on R = 1 − T21
+//! S_gather = T12 · S_bare            the term of the sum, after the choice by R = 1 − T21
 //! ```
 //!
 //! The sum over samples uses `S_gather`, because the choice between reflection and refraction at the exitant point

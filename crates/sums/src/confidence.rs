@@ -54,7 +54,7 @@ impl Estimate {
     }
 }
 
-/// A relative error in per cent, with two significant digits where two decimals would show 0.
+/// A relative error in percent, with two significant digits where two decimals would show 0.
 pub fn percent(error: f64) -> String {
     if error == 0.0 || error >= 1e-4 { format!("{:.2} %", 100.0 * error) } else { format!("{:.1e} %", 100.0 * error) }
 }

@@ -13,7 +13,7 @@ use scene::DVec3;
 /// A pixel is at an edge if `g` differs by more than this between its corners.
 pub const MIN_SPREAD: f64 = 0.1;
 
-/// Rays of each path.
+/// Number of rays for each path.
 pub const RAYS: u32 = 16;
 
 /// Sums over the paths and rays of one edge pixel, by halves.
@@ -66,7 +66,7 @@ impl Edge {
         self.factor(half) * (own.through_rays / own.rays - own.through / own.paths)
     }
 
-    /// What subtracting `c g` from the light of each path of a half takes from its mean and from its mean square.
+    /// The amounts by which subtracting `c g` from the light of each path lowers the mean and the mean square of a half.
     pub fn removed(&self, half: usize) -> (DVec3, DVec3) {
         let (own, factor) = (&self.0[half], self.factor(half));
         let (mean, square) = (factor * own.through, factor * (2.0 * own.products - factor * own.squares));
@@ -78,7 +78,7 @@ impl Edge {
 mod tests {
     use super::*;
 
-    /// Planted: the mean square without the square of `g`.
+    /// Seen to catch: the mean square without the square of `g`.
     #[test]
     fn with_constant_light_below_the_rays_alone_decide() {
         let below = DVec3::new(3.0, 2.0, 1.0);

@@ -15,9 +15,9 @@ use sums::confidence::Estimate;
 pub struct PixelSum {
     layers: Layers,
     count: f64,
-    /// Sums over even and odd paths, each as its half of the cloud estimates them.
+    /// Sums over the even and over the odd paths; each path counts as its own half of the cloud estimates it.
     halves: [DVec3; 2],
-    /// Sums of the squares of the same.
+    /// Sums of the squares of the same values.
     squares: [DVec3; 2],
     counts: [f64; 2],
 }
@@ -163,7 +163,7 @@ impl Pixel {
     /// The numbers of the file, in the order of [`channel_names`]; the position is relative to `origin`, m.
     fn values(&self, origin: DVec3) -> [f32; 28] {
         let mut values = [0.0; 28];
-        // Where no surface was met it is 0, whatever the origin.
+        // The position is 0 where no surface was met, whatever the origin.
         let position = if self.guide.normal == DVec3::ZERO { DVec3::ZERO } else { self.guide.position - origin };
         let vectors = [
             &[self.beauty()],
@@ -193,7 +193,7 @@ fn channel_names() -> Vec<String> {
     names
 }
 
-/// The pixels of a part of an image of this size, at its place there, without attributes. Positions are relative to
+/// The pixels of a part of an image of this size as a data window within the whole, without attributes. Positions are relative to
 /// `origin`, m.
 pub fn part(pixels: &[Pixel], part: Crop, size: [usize; 2], origin: DVec3) -> Image {
     let whole = Window { position: [0, 0], size };
@@ -206,7 +206,7 @@ pub fn image(pixels: &[Pixel], width: usize, height: usize) -> Image {
     about(pixels, width, height, DVec3::ZERO)
 }
 
-/// The same with positions relative to `origin`, m.
+/// The pixels as an image without attributes, with positions relative to `origin`, m.
 fn about(pixels: &[Pixel], width: usize, height: usize, origin: DVec3) -> Image {
     let mut channels: Vec<Channel> =
         channel_names().into_iter().map(|name| Channel { name, samples: Vec::with_capacity(pixels.len()) }).collect();

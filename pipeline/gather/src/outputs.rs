@@ -17,7 +17,7 @@ pub fn declare(files: &mut Files, outputs: &Outputs, jobs: &[ImageJob]) -> Resul
     Ok(())
 }
 
-/// Writes the files of an image, all or none. Of an image with values that are not finite, only its statistics are written.
+/// Writes the files of an image, all or none. If a value of the image is not finite, only its statistics are written.
 pub fn write(facts: &Facts, output: Output, mut seconds: Seconds) -> Result<(), Failure> {
     let mut group = Group::default();
     seconds.time("write", || match facts.rendered.non_finite_count {

@@ -45,8 +45,8 @@ fn key(meta: &Meta) -> (u64, u32, u32) {
     (meta.options.seed, meta.options.shard.count, meta.options.shard.index)
 }
 
-/// A difference that gives the samples of two clouds different means. How the samples are spread, and over which triangles,
-/// makes none.
+/// The first difference that gives the samples of two clouds different means. The pattern of the samples and the choice of
+/// triangles may differ: they do not change the mean.
 fn difference(one: &Meta, two: &Meta) -> Option<&'static str> {
     let names = |meta: &Meta| meta.materials.iter().map(|m| (m.index, m.name.clone())).collect::<Vec<_>>();
     let (a, b) = (&one.options, &two.options);

@@ -7,7 +7,7 @@ use formats::cloud::{Node, Record, TILE, Tile, first_leaf, node_count, tile};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-/// Up to so many samples are ordered by one task.
+/// The largest number of samples that one task orders.
 const ALONE: usize = 1 << 13;
 
 /// A sample's position, and its index in the list of records.
@@ -125,16 +125,16 @@ impl Moments {
 
     fn node(&self) -> Node {
         let center = self.center.as_vec3();
-        let reach = (self.high - center).max(center - self.low);
+        let max_offset = (self.high - center).max(center - self.low);
         // The mean square deviation of unit vectors with mean m is 1 − |m|².
-        let turn = |sum: DVec3| (1.0 - (sum / self.count).length_squared()).max(0.0);
+        let variance = |sum: DVec3| (1.0 - (sum / self.count).length_squared()).max(0.0);
         Node {
             center: center.to_array(),
             spread: (self.scatter / self.count).sqrt() as f32,
-            radius: reach.length(),
+            radius: max_offset.length(),
             flux: (self.flux * self.count).min(f64::from(f32::MAX)) as f32,
             flux_deviation: ((self.flux_scatter / self.count).sqrt() / self.flux) as f32,
-            turn: (turn(self.direction) + turn(self.normal)).sqrt() as f32,
+            direction_deviation: (variance(self.direction) + variance(self.normal)).sqrt() as f32,
         }
     }
 }
@@ -180,7 +180,7 @@ mod tests {
                 assert!(
                     samples.iter().all(|s| s.position.distance(Vec3::from_array(node.center)) <= node.radius + 1e-6)
                 );
-                assert!(node.turn.abs() < 1e-3);
+                assert!(node.direction_deviation.abs() < 1e-3);
             }
         }
     }

@@ -44,7 +44,7 @@ fn index(cell: [u32; 3]) -> u64 {
 mod tests {
     use super::*;
 
-    /// Planted: a missing swap leaves jumps.
+    /// Seen to catch: a missing swap, which leaves jumps.
     #[test]
     fn neighbors_on_the_curve_are_neighbors_in_space() {
         // The curve's first 2^9 cells fill the corner cube of 8 cells a side.

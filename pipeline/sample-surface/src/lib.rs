@@ -51,7 +51,7 @@ mod ribbon;
 mod sample;
 mod trials;
 
-pub use adaptive_count::{Enough, Round, sample_enough};
+pub use adaptive_count::{Round, SufficientCloud, sample_enough};
 pub use bounce::Bounce;
 pub use choice::{Choice, Chosen, TriangleChoice};
 pub use error::SampleError;

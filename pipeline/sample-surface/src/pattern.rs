@@ -27,7 +27,7 @@ pub struct SamplePoint {
     pub pdf_area: f64,
     /// Uniform numbers for the light.
     pub light: [f64; 3],
-    /// More of them, for light that another surface reflects.
+    /// Further uniform numbers, for light that another surface reflects.
     pub bounce: Item,
 }
 
@@ -39,14 +39,14 @@ pub struct Numbers {
     halves: [Half; 2],
 }
 
-/// What the stratified samples of one half have in common.
+/// The parameters that all stratified samples of one half share.
 struct Half {
     light: Sequence,
     /// Number of samples.
     count: f64,
     /// Offset of the first sample along the ribbons, as a share of the distance between samples.
     along: f64,
-    /// Its offset across, in 2^-64 of the width.
+    /// Offset of the first sample across the ribbon, in 2^-64 of the width.
     across: u64,
 }
 

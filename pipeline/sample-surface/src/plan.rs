@@ -1,11 +1,11 @@
-//! What is sampled and how, and the identity of the cloud that comes of it.
+//! The surfaces and settings of a cloud, and the identity of the cloud that results.
 
 use crate::{choice::TriangleChoice, error::SampleError};
 use bssrdf::Medium;
 use formats::cloud::{Options, version};
 use scene::{MeshDefects, NormalKind, Scene, random};
 
-/// How to sample.
+/// The settings of sampling.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// `K`: samples to draw over all sampled surfaces.
@@ -37,8 +37,7 @@ pub struct Surfaces {
 }
 
 impl Surfaces {
-    /// The surfaces that are translucent by the scene's file; true with them if it marks none, so that all that do not
-    /// emit are taken.
+    /// The translucent surfaces of the scene's file, and whether it marks none, so that all that do not emit are taken.
     pub fn translucent(scene: &Scene) -> Result<(Surfaces, bool), SampleError> {
         let (materials, unmarked) = scene.translucent()?;
         if materials.is_empty() {
@@ -59,7 +58,7 @@ impl Surfaces {
     }
 }
 
-/// A scene with the surfaces to sample, and the identity of the cloud that will come of it.
+/// The surfaces to sample, and the identity of the cloud that results.
 pub struct Plan {
     pub surfaces: Surfaces,
     pub geometry: [u8; 32],

@@ -41,7 +41,7 @@ pub struct Trials {
 }
 
 impl Trials {
-    /// Draws trials of so many samples each, all with random numbers of their own.
+    /// Draws trials of `samples` each, all with their own random numbers.
     pub fn draw(
         (scene, rays): (&Scene, &Rays),
         settings: &Settings,

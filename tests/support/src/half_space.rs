@@ -1,6 +1,6 @@
 //! Half-spaces and slabs by the models: plane integrals, in units of the reduced mean free path.
 
-use crate::quadrature::{Extent, integrate_graded, plane_integral};
+use crate::quadrature::{Annulus, integrate_graded, plane_integral};
 use bssrdf::{DVec3, Medium, Model, Separation, fresnel};
 use std::f64::consts::PI;
 
@@ -30,9 +30,9 @@ pub fn reflectance(model: Model, albedo: f64, eta: f64, cosine: f64) -> f64 {
     let medium = medium(albedo, eta);
     let model = model.of(&medium);
     let sine = (1.0 - cosine * cosine).sqrt() / eta;
-    let reach = 40.0 / model.transport()[0].max(4e-5);
-    let extent = Extent { inner: 1e-7, outer: reach.min(1e6) };
-    interface(eta, cosine) * plane_integral(&*model, 0, sine, extent)
+    let outer = 40.0 / model.transport()[0].max(4e-5);
+    let annulus = Annulus { inner: 1e-7, outer: outer.min(1e6) };
+    interface(eta, cosine) * plane_integral(&*model, 0, sine, annulus)
 }
 
 /// Share of the light of normal incidence that a slab of `thickness` reduced mean free paths scatters out of its

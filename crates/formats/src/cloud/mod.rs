@@ -183,11 +183,11 @@ impl Cloud {
     /// Checks the checksum of every section, that every sample lies in the scene and has no negative flux, and that every node
     /// has values in range. It reads the whole file once, at 6 GB/s for each thread where the file is in memory already.
     pub fn verify_with(&self, threads: NonZeroUsize, path: &Path) -> Result<(), Error> {
-        let reach = self.meta.diagonal_m.clamp(0.0, MAX_DIAGONAL) as f32;
+        let max_coordinate = self.meta.diagonal_m.clamp(0.0, MAX_DIAGONAL) as f32;
         for section in &self.header.sections {
             let is_good = |block: &[u8]| match section.name {
-                "tile" => records_are_good(bytemuck::cast_slice(block), reach),
-                "node" => nodes_are_good(bytemuck::cast_slice(block), reach),
+                "tile" => records_are_good(bytemuck::cast_slice(block), max_coordinate),
+                "node" => nodes_are_good(bytemuck::cast_slice(block), max_coordinate),
                 _ => true,
             };
             let blocks = self.map[section.offset as usize..section.end() as usize].chunks(BLOCK).collect();
@@ -239,19 +239,23 @@ impl Cloud {
 
 const SIGN: u32 = 1 << 31;
 
-/// True if positions lie within `reach` of the origin along each axis, and fluxes are finite and not negative.
-fn records_are_good(records: &[Record], reach: f32) -> bool {
+/// True if positions lie within `max_coordinate` of the origin along each axis, and fluxes are finite and not negative.
+fn records_are_good(records: &[Record], max_coordinate: f32) -> bool {
     const MASKS: [u32; 8] = [!SIGN, !SIGN, !SIGN, 0, 0, !0, !0, !0];
-    let limits = [reach, reach, reach, f32::MAX, f32::MAX, f32::MAX, f32::MAX, f32::MAX];
+    let limits = [max_coordinate, max_coordinate, max_coordinate, f32::MAX, f32::MAX, f32::MAX, f32::MAX, f32::MAX];
     are_within(bytemuck::cast_slice(records), MASKS, limits)
 }
 
-/// True if centers lie within `reach` of the origin along each axis, no radius or spread exceeds the distance between two such
+/// True if centers lie within `max_coordinate` of the origin along each axis, no radius or spread exceeds the distance between two such
 /// points, and flux and deviations are finite and not negative.
-fn nodes_are_good(nodes: &[Node], reach: f32) -> bool {
+fn nodes_are_good(nodes: &[Node], max_coordinate: f32) -> bool {
     const MASKS: [u32; 8] = [!SIGN, !SIGN, !SIGN, !0, !0, !0, !0, !0];
-    let apart = 4.0 * reach;
-    are_within(bytemuck::cast_slice(nodes), MASKS, [reach, reach, reach, apart, apart, f32::MAX, f32::MAX, 2.0])
+    let apart = 4.0 * max_coordinate;
+    are_within(
+        bytemuck::cast_slice(nodes),
+        MASKS,
+        [max_coordinate, max_coordinate, max_coordinate, apart, apart, f32::MAX, f32::MAX, 2.0],
+    )
 }
 
 /// True if in each row of eight floats, the masked bits of every float are at most those of its limit.

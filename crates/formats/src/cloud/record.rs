@@ -55,7 +55,7 @@ pub struct Node {
     /// Standard deviation of the flux relative to its mean.
     pub flux_deviation: f32,
     /// Root mean square deviation of directions and normals from their means.
-    pub turn: f32,
+    pub direction_deviation: f32,
 }
 
 /// Index of the first leaf over `tiles` tiles.

@@ -259,8 +259,14 @@ fn a_pipe_is_no_cloud_and_is_not_waited_for() {
 /// Seen to catch: only the flux is checked.
 #[test]
 fn only_nodes_that_a_tree_can_have_are_good() {
-    let good =
-        Node { center: [-2.0, 4.0, 0.0], spread: 1.0, radius: 13.0, flux: f32::MAX, flux_deviation: 30.0, turn: 1.4 };
+    let good = Node {
+        center: [-2.0, 4.0, 0.0],
+        spread: 1.0,
+        radius: 13.0,
+        flux: f32::MAX,
+        flux_deviation: 30.0,
+        direction_deviation: 1.4,
+    };
     assert!(nodes_are_good(&[], 4.0) && nodes_are_good(&[Node::default(), good], 4.0));
     let limits = [4.0, 4.0, 4.0, 16.0, 16.0, f32::MAX, f32::MAX, 2.0];
     for word in 0..8 {

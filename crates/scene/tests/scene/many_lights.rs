@@ -178,10 +178,10 @@ fn the_cost_of_a_choice_hardly_depends_on_the_number_of_lights() {
                 let normal = (center + 0.05 * direction(random(1000 * index + k), 2)).normalize();
                 facing(normal, normal)
             };
-            let places: Vec<SurfacePoint> = (0..points).map(beside).collect();
-            let choice = LightChoice::new(&tree, &ReceiverBounds::around(&places).expect("points"), 1024);
+            let surface: Vec<SurfacePoint> = (0..points).map(beside).collect();
+            let choice = LightChoice::new(&tree, &ReceiverBounds::around(&surface).expect("points"), 1024);
             weighed += choice.weighed;
-            for (k, at) in places.iter().enumerate() {
+            for (k, at) in surface.iter().enumerate() {
                 let all: f64 = lights.iter().map(|l| l.importance(at)).sum();
                 let pick = choice.pick(at, random(1000 * index + k as u64).uniform(9));
                 let ratio = pick.map_or(0.0, |p| p.light.importance(at) / (p.share * all));

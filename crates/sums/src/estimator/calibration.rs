@@ -13,7 +13,7 @@ const ENTRIES: usize = 1 << 10;
 const FIRST: u64 = (1023 - 256) << 1;
 
 impl Calibration {
-    /// From pairs of a predicted sum, W/(m² sr), and its factor, by ascending sums. Between them the logarithm of the
+    /// Takes pairs of a predicted sum, W/(m² sr), and its factor, in order of the sums. Between them the logarithm of the
     /// factor is linear in the logarithm of the sum; beyond them the factor is constant. Without any pair it is 1.
     pub fn new(known: &[(f64, f64)]) -> Calibration {
         let middle = |k: usize| f64::from_bits((k as u64 + FIRST) << SHIFT | 1 << (SHIFT - 1));

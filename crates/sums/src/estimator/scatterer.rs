@@ -1,4 +1,4 @@
-//! A medium under one BSSRDF model, with what the estimators need to know of it.
+//! A medium under one BSSRDF model, prepared for the estimators.
 
 use super::falloff_tables::FalloffTables;
 use bssrdf::{AnyLanes, Medium, Model, simd::Level};

@@ -1,4 +1,4 @@
-//! What an estimator returns, and how it adds.
+//! The result of an estimator, and the accumulator that makes it.
 
 use bssrdf::lanes::{LANES, Lane};
 use glam::DVec3;
