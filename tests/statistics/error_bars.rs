@@ -77,7 +77,7 @@ fn assert_error_bars(what: &str, scene: &Scene, settings: &Settings, first: u64)
 }
 
 pub fn of_paths(estimator: Estimator, paths_per_pixel: u32) -> Settings {
-    // The directional dipole has outliers at silhouettes (method.md section 8), which take many images to average.
+    // The directional dipole has outliers at silhouettes (docs/method.md section 8), which take many images to average.
     let settings = settings(Model::StandardDipole, 10, 8);
     Settings { estimator, paths_per_pixel, filter: Filter::Box, ..settings }
 }

@@ -100,7 +100,7 @@ fn probabilities_below_the_first_bits_are_met() {
 
 /// Roulette over the exhaustive sum, on the same cloud at the same points, one number for each cloud; the mean is one
 /// for every rule, channel and model. The rule of the note is tested only in channels where its variance is finite,
-/// 2σ_tr,c > σ̄ (method.md 7.1).
+/// 2σ_tr,c > σ̄ (docs/method.md 7.1).
 ///
 /// Seen to catch: weights of 1 instead of 1/p; unused lanes of the last block counted with weight 1.
 #[test]

@@ -8,7 +8,7 @@
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Barycentric weights of a uniform point on a triangle (method.md 6.2): `x = (1−√ξ₀) v₀ + (1−ξ₁)√ξ₀ v₁ + ξ₁√ξ₀ v₂`. Its
+/// Barycentric weights of a uniform point on a triangle (docs/method.md 6.2): `x = (1−√ξ₀) v₀ + (1−ξ₁)√ξ₀ v₁ + ξ₁√ξ₀ v₂`. Its
 /// density per area is `1/A`.
 // note: [point]
 pub fn triangle(xi: [f64; 2]) -> [f64; 3] {

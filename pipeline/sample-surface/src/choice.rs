@@ -11,7 +11,7 @@ use scene::{Mesh, random::BELOW_ONE, warp};
 /// A triangle that was chosen.
 pub struct Chosen {
     pub triangle: u32,
-    /// Density `pdf(x)` of a uniform point on it per area of the whole surface, 1/m² (method.md 6.3):
+    /// Density `pdf(x)` of a uniform point on it per area of the whole surface, 1/m² (docs/method.md 6.3):
     /// `1/(N A_j)` for the note's rule, `1/A` by area.
     // note: [pdf]
     pub pdf_area: f64,

@@ -71,7 +71,7 @@ fn drawn(
             Lit::Light { direction, irradiance } => (direction, irradiance / (1.0 - share)),
         },
     };
-    // note: [flux] Φ = E/pdf(x); the estimator divides by K (method.md 6.5).
+    // note: [flux] Φ = E/pdf(x); the estimator divides by K (docs/method.md 6.5).
     // A color of -0 would make a flux of -0: adding 0 removes the sign.
     let flux = (irradiance / sample.pdf_area).as_vec3() + Vec3::ZERO;
     if !flux.is_finite() {

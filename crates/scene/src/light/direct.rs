@@ -20,7 +20,7 @@ pub enum Lit {
     Shadowed,
 }
 
-/// Picks one light by importance, then a direction, and tests whether it is visible (method.md 6.4). Light must come
+/// Picks one light by importance, then a direction, and tests whether it is visible (docs/method.md 6.4). Light must come
 /// from above the triangle, whatever normal the cosine is taken with. `shadow_rays` counts the rays traced.
 pub fn light_at(choice: &LightChoice, rays: &Rays, at: &SurfacePoint, xi: [f64; 3], shadow_rays: &mut u64) -> Lit {
     let Some(Pick { light, share, .. }) = choice.pick(at, xi[0]) else {

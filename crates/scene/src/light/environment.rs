@@ -60,7 +60,7 @@ impl Light for Environment {
         }
     }
 
-    /// A constant environment gives cosine-distributed directions, `E = V π L` (method.md 6.4).
+    /// A constant environment gives cosine-distributed directions, `E = V π L` (docs/method.md 6.4).
     fn illuminate(&self, at: &SurfacePoint, xi: [f64; 2]) -> Option<Illumination> {
         match self {
             Environment::Constant(radiance) => Some(Illumination {
