@@ -40,7 +40,7 @@ fn colored(color: [f64; 3], radius: [f64; 3], rest: &str) -> Result<Medium, Medi
 }
 
 /// A half-space of that medium reflects the color: by the closed form (3.5), and by the integral of the model itself
-/// over a plane. Planted: one index for all media (10 % in a dark color).
+/// over a plane. Seen to catch: one index for all media (10 % in a dark color).
 #[test]
 fn a_medium_shows_the_color_asked_for() {
     for (eta, g) in [(1.0, 0.0), (1.3, 0.0), (1.5, 0.8), (0.7, -0.5)] {
@@ -108,8 +108,8 @@ fn the_albedo_of_the_gltf_drafts() {
     assert!((single_scattering_albedo(0.5, 0.5) - 0.9117 / (1.0 - 0.5 * 0.0883)).abs() < 1e-4);
 }
 
-/// The purpose of the formula of the drafts: without a reflecting boundary, the medium shows the color under a
-/// constant environment, to the 1 % of the fit. Random walks, false alarms 1 in 10⁵. Planted: the albedo 2 % too low.
+/// The purpose of the formula of the drafts: without a reflecting boundary, the medium shows the color under a constant
+/// environment, to the 1 % of the fit. Random walks, false alarms 1 in 10⁵. Seen to catch: the albedo 2 % too low.
 #[test]
 fn the_drafts_color_is_that_of_random_walks() {
     let walks = if cfg!(feature = "slow") { 1_000_000 } else { 50_000 };

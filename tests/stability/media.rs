@@ -128,7 +128,8 @@ fn the_largest_coefficients() {
     }
 }
 
-/// `S(x; σ) = σ_t'² Ŝ(σ_t' x)`: exactly so for powers of two, mean free paths from 10⁻⁶ to 10⁶ of the object and beyond.
+/// `S(x; σ) = σ_t'² Ŝ(σ_t' x)`: exactly so for powers of two, mean free paths from 10⁻⁶ to 10⁶ of the object and
+/// beyond.
 #[test]
 fn any_scale_is_like_any_other() {
     for name in ["ketchup", "marble"] {

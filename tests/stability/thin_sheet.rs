@@ -1,5 +1,5 @@
-//! A thin sheet lit from behind, `n_o = −n_i`: the back-lit branch of the directional dipole, against the published form
-//! with its mirrored source as a vector, and through both phases.
+//! A thin sheet lit from behind, `n_o = −n_i`: the back-lit branch of the directional dipole, against the published
+//! form with its mirrored source as a vector, and through both phases.
 
 use crate::evaluate::{assert_close, assert_is, bare};
 use bssrdf::{Coefficients, Exitant, Incident, Medium, Separation, evaluate};

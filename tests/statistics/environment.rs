@@ -67,8 +67,8 @@ fn a_picture_of_one_color_is_a_constant_environment() {
 /// For a closed convex object the projected area `P` has the mean `A/4` over any hemisphere; towards the sun, the
 /// projected area of the polyhedron is summed over the sun's pixel.
 ///
-/// Seen to catch: the probability of a pixel without that of its tile; one solid angle for all pixels; `A/4` towards the
-/// sun (0.08 %); a rotation the other way (0.14 %).
+/// Seen to catch: the probability of a pixel without that of its tile; one solid angle for all pixels; `A/4` towards
+/// the sun (0.08 %); a rotation the other way (0.14 %).
 #[test]
 fn a_convex_body_gathers_what_its_shadow_would() {
     let size = (64, 32);

@@ -58,8 +58,8 @@ impl View {
         gather::render(&input, &settings, |_| ()).pixels
     }
 
-    /// Root mean square of the relative error over lit and over unlit points, as a multiple of the one asked for. Points
-    /// darker than a millionth of the brightest do not count.
+    /// Root mean square of the relative error over lit and over unlit points, as a multiple of the one asked for.
+    /// Points darker than a millionth of the brightest do not count.
     fn errors(&self, medium: &Medium) -> [f64; 2] {
         let [whole, cut] =
             [Estimator::Exhaustive, Estimator::Cut { accuracy: ACCURACY }].map(|e| self.image(medium, e));

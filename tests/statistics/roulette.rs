@@ -76,8 +76,8 @@ fn key_of_zero(high: u32) -> u64 {
     u64::from(high) << 32 | u64::from(low)
 }
 
-/// Below 2⁻³² the first 32 bits of ξ are zero, once in 2³² times; given that, acceptance has the probability 2³² p. Only
-/// such keys are tried here.
+/// Below 2⁻³² the first 32 bits of ξ are zero, once in 2³² times; given that, acceptance has the probability 2³² p.
+/// Only such keys are tried here.
 ///
 /// Seen to catch: acceptance decided by 32 bits alone (always accepted), or by the same 32 bits twice.
 #[test]

@@ -1,8 +1,8 @@
 //! The albedo of a medium from the color that it shows: the inverse of multiple scattering.
 
 /// `q = σ_tr/σ_t' = √(3(1 − α'))` of the half-space whose standard dipole reflects the share `color` of the light that
-/// enters it, by bisection of its total reflectance (docs/method.md 3.5), which falls as `q` grows. `α' = 1 − q²/3`, and
-/// `diffuse_fresnel` is `F_dr`.
+/// enters it, by bisection of its total reflectance (docs/method.md 3.5), which falls as `q` grows. `α' = 1 − q²/3`,
+/// and `diffuse_fresnel` is `F_dr`.
 ///
 /// Jensen and Buhler 2002, A Rapid Hierarchical Rendering Technique for Translucent Materials.
 pub(crate) fn transport_ratio(color: f64, diffuse_fresnel: f64) -> f64 {

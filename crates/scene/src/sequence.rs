@@ -104,8 +104,8 @@ mod tests {
     }
 
     /// Of the first 2^m points, each interval of length 2^-m of each axis holds one, and so does each box of area 2^-m of
-    /// the first two axes: a (0, m, 2)-net, which scrambling keeps. Planted: a wrong initial number, a scramble that
-    /// mixes downwards, fail.
+    /// the first two axes: a (0, m, 2)-net, which scrambling keeps. Seen to catch: a wrong initial number, a scramble that
+    /// mixes downwards.
     #[test]
     fn powers_of_two_are_nets() {
         for (seed, m) in [(1, 4), (2, 8), (3, 10)] {

@@ -58,7 +58,7 @@ pub fn cosine_hemisphere_pdf_solid_angle(cosine: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Planted: shares exchanged; a column cut in the middle.
+    /// Seen to catch: shares exchanged; a column cut in the middle.
     #[test]
     fn the_halves_of_the_square_are_covered_evenly_and_by_their_shares() {
         let n = 400;

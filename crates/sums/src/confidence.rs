@@ -22,9 +22,9 @@ const QUANTILES: [(f64, f64); 14] = [
     (f64::INFINITY, 1.959_964),
 ];
 
-/// The `t` such that Student's t with `freedom` degrees of freedom, of which there is at least one, lies outside `±t` in
-/// 5 of 100 cases. Between the entries of the table, `ln t` is interpolated linearly in `1/ν`, which is at most 2 % too
-/// large and never too small.
+/// The `t` such that Student's t with `freedom` degrees of freedom, of which there is at least one, lies outside `±t`
+/// in 5 of 100 cases. Between the entries of the table, `ln t` is interpolated linearly in `1/ν`, which is at most 2 %
+/// too large and never too small.
 pub fn student(freedom: f64) -> f64 {
     // NaN counts as one degree of freedom.
     let inverse = if freedom > 1.0 { 1.0 / freedom } else { 1.0 };

@@ -55,8 +55,8 @@ impl DrawnCounts {
             return ShardPick { shard: 0, weight: 1.0 };
         };
         let drawn = self.shards[shard][half];
-        // A shard that some path is certain to pick is weighted by its samples over the number of its paths. Any other is
-        // picked with a probability in proportion to its samples, which makes its mean right without a weight.
+        // A shard that some path is certain to pick is weighted by its samples over the number of its paths. Any other
+        // is picked with a probability in proportion to its samples, which makes its mean right without a weight.
         let certain = u128::from(drawn) * u128::from(paths) >= u128::from(self.halves[half]);
         let picks = first_at(&sample, paths, end) - first_at(&sample, paths, end - drawn);
         let share = drawn as f64 / self.halves[half] as f64;
@@ -90,8 +90,8 @@ mod tests {
         DrawnCounts::new(shards.iter().map(|n| [*n; 2]).collect())
     }
 
-    /// Computed by hand: two shards with 2 and 3 of 5 samples. With five paths all weights are 1; with fewer, the weights of a
-    /// shard that is certain to be picked add up to its share.
+    /// Computed by hand: two shards with 2 and 3 of 5 samples. With five paths all weights are 1; with fewer, the
+    /// weights of a shard that is certain to be picked add up to its share.
     ///
     /// Seen to catch: no weights; weights for shards that are not certain to be picked.
     #[test]

@@ -72,8 +72,8 @@ impl<'a> LitSamples<'a> {
         LitSamples { tiles, nodes, len: len.min(tiles.len() * TILE), entry: EntryRefraction::new(eta), scale }
     }
 
-    /// The power of two that scales the total flux to about 1. Squares and sums of fluxes then neither overflow nor vanish
-    /// in float32, however strong or weak the light is, and a power of two rounds nothing.
+    /// The power of two that scales the total flux to about 1. Squares and sums of fluxes then neither overflow nor
+    /// vanish in float32, however strong or weak the light is, and a power of two rounds nothing.
     #[inline(always)]
     pub fn scale(&self) -> f32 {
         self.scale

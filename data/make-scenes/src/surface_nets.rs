@@ -91,8 +91,8 @@ impl Grid {
         Self::all(sizes).map(|point| field(self.position(point))).collect()
     }
 
-    /// Where inside and outside alternate around a face of a cell, four quads would meet in one edge: the nearest of the
-    /// corners to the surface is taken to its other side, until there is no such face.
+    /// Where inside and outside alternate around a face of a cell, four quads would meet in one edge: the nearest of
+    /// the corners to the surface is taken to its other side, until there is no such face.
     fn settle(&self, values: &mut [f64]) {
         for _ in 0..SETTLING_ROUNDS {
             let mut settled = true;

@@ -13,8 +13,8 @@ pub fn render_all(input: &Input, settings: &Settings, common: &Common) -> Render
     rendered
 }
 
-/// Doubles the paths until the error meets the target, or the cloud's own error exceeds it, or `settings.paths_per_pixel`
-/// are reached.
+/// Doubles the paths until the error meets the target, or the cloud's own error exceeds it, or
+/// `settings.paths_per_pixel` are reached.
 pub fn render_to(target: f64, input: &Input, settings: &Settings, common: &Common) -> Rendered {
     let max_paths = settings.paths_per_pixel;
     let mut paths = FIRST_PATHS.min(max_paths);
@@ -105,12 +105,13 @@ impl Round<'_> {
     /// Whether the cloud's own error exceeds its share of the target.
     fn judge_cloud(&self, errors: &Errors, estimate: &Estimate, settings: &Settings) -> Verdict {
         let clouds = self.input.clouds.len();
-        // Until the paths of a pixel have used all shards, part of the difference between its halves comes from the choice of
-        // shards, and vanishes with more paths.
+        // Until the paths of a pixel have used all shards, part of the difference between its halves comes from the
+        // choice of shards, and vanishes with more paths.
         if clouds > 1 && (self.done as usize) < 2 * clouds {
             return Verdict::More;
         }
-        // In an image of few pixels the two errors may differ by chance; the cloud's must exceed three standard deviations.
+        // In an image of few pixels the two errors may differ by chance; the cloud's must exceed three standard
+        // deviations.
         let [paths, total] = [errors.paths, errors.total].map(|error| error * error);
         let significant = total > variance_quantile(errors.paths_freedom) * paths;
         let irreducible = irreducible_error(errors.total, self.before, estimate.freedom, settings.estimator);
@@ -167,19 +168,19 @@ impl Round<'_> {
     }
 }
 
-/// The part of the error that more paths do not reduce, given that the error was `before` with half the paths and is `now`.
-/// The variance of paths falls as their number (that of well-spread paths falls faster); the error that the cut adds stays,
-/// because the cut's target is per pixel, whatever the number of paths. If nothing stays, the variance of `before` is twice that of `now`, and their
-/// difference has a relative standard deviation of four over the root of the degrees of freedom. Up to three standard
-/// deviations are attributed to chance.
+/// The part of the error that more paths do not reduce, given that the error was `before` with half the paths and is
+/// `now`. The variance of paths falls as their number (that of well-spread paths falls faster); the error that the cut
+/// adds stays, because the cut's target is per pixel, whatever the number of paths. If nothing stays, the variance of
+/// `before` is twice that of `now`, and their difference has a relative standard deviation of four over the root of the
+/// degrees of freedom. Up to three standard deviations are attributed to chance.
 fn irreducible_error(now: f64, before: f64, freedom: f64, estimator: Estimator) -> f64 {
     let added = estimator.accuracy().unwrap_or(0.0);
     let chance = 3.0 * 4.0 / freedom.sqrt();
     ((2.0 - chance) * now * now - before * before - added * added).max(0.0).sqrt()
 }
 
-/// The multiple of the true variance that an estimate with so many degrees of freedom exceeds in 1 of 1000 cases (Wilson
-/// and Hilferty 1931).
+/// The multiple of the true variance that an estimate with so many degrees of freedom exceeds in 1 of 1000 cases
+/// (Wilson and Hilferty 1931).
 fn variance_quantile(freedom: f64) -> f64 {
     let a = 2.0 / (9.0 * freedom);
     (1.0 - a + 3.09 * a.sqrt()).powi(3)

@@ -1,5 +1,5 @@
-//! Calibrates the cut for this camera and these media: its true error is measured at a few points of the image before the
-//! image is rendered, so that it meets the target.
+//! Calibrates the cut for this camera and these media: its true error is measured at a few points of the image before
+//! the image is rendered, so that it meets the target.
 
 use crate::{
     path_state::ThreadContext,

@@ -6,7 +6,8 @@ use formats::atomic::{Group, Output};
 use gather::{film, preview};
 use std::io::Write;
 
-/// Refuses outputs that cannot be written, that would replace an input, or that are the same file, before any work is done.
+/// Refuses outputs that cannot be written, that would replace an input, or that are the same file, before any work is
+/// done.
 pub fn declare(files: &mut Files, outputs: &Outputs, jobs: &[ImageJob]) -> Result<(), Failure> {
     let image = [("--output", &outputs.image)].into_iter();
     let preview = outputs.preview.iter().map(|path| ("--preview", path));

@@ -83,9 +83,9 @@ impl<'a> Passes<'a> {
         passes
     }
 
-    /// Finds edge pixels by the transmittance at the corners of all pixels. There are none with one path per pixel, which
-    /// has no second half to estimate the factor of the control variate from, nor with rays through pixel centers, which
-    /// are all the same.
+    /// Finds edge pixels by the transmittance at the corners of all pixels. There are none with one path per pixel,
+    /// which has no second half to estimate the factor of the control variate from, nor with rays through pixel
+    /// centers, which are all the same.
     fn find_edges(&mut self) {
         if self.settings.paths_per_pixel == 1 || self.settings.filter == Filter::Point {
             return;
@@ -175,7 +175,8 @@ impl<'a> Passes<'a> {
         self.sums[index].pixel(self.edges[index].as_deref(), self.renderer.guide(origin, direction))
     }
 
-    /// Adds `paths` to each pixel; `progress` is called with the number of pixels that were completed since its last call.
+    /// Adds `paths` to each pixel; `progress` is called with the number of pixels that were completed since its last
+    /// call.
     pub fn pass(&mut self, paths: u32, progress: impl Fn(u64) + Sync) {
         let range = self.paths..self.paths.saturating_add(paths);
         self.renderer.paths_per_pixel = self.settings.paths_per_pixel.max(range.end);

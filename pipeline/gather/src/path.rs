@@ -101,8 +101,8 @@ impl Renderer<'_> {
         match (object, side) {
             (None, _) => self.meet_opaque(state, &point, side, &hit, light, &mut context.counts),
             (Some(_), Side::Outside) if state.inside.is_some() => {
-                // The path is inside another object already and goes straight on. It starts a little beyond the surface, because
-                // two triangles at the same point of the ray would send it back and forth.
+                // The path is inside another object already and goes straight on. It starts a little beyond the
+                // surface, because two triangles at the same point of the ray would send it back and forth.
                 context.counts.nested += 1;
                 state.origin = point.position + state.direction * self.clearance;
                 state.from = None;
@@ -138,8 +138,8 @@ impl Renderer<'_> {
         light.add(state, Layer::Emission, seen);
     }
 
-    /// Multiplies the throughput by the transmittance `e^{−σ̃_t s}` of a medium (docs/method.md 6.9) over the probability
-    /// that the ray came so far: no channel grows by more than a factor of 3. False if the path ends.
+    /// Multiplies the throughput by the transmittance `e^{−σ̃_t s}` of a medium (docs/method.md 6.9) over the
+    /// probability that the ray came so far: no channel grows by more than a factor of 3. False if the path ends.
     fn attenuate(&self, state: &mut PathState, material: u16, side: Side, distance: f64) -> bool {
         // Without a known medium, a back face is met if the camera is inside or the mesh is open. Then no free path was
         // drawn for this ray.
@@ -158,8 +158,8 @@ impl Renderer<'_> {
         survival > 0.0
     }
 
-    /// Adds the light of an opaque surface, which may emit. A specular surface sends the path on; any other is lit directly
-    /// and ends the path.
+    /// Adds the light of an opaque surface, which may emit. A specular surface sends the path on; any other is lit
+    /// directly and ends the path.
     fn meet_opaque(
         &self,
         state: &mut PathState,
@@ -186,8 +186,8 @@ impl Renderer<'_> {
         false
     }
 
-    /// Reflection with probability `R`, otherwise refraction, which shows emitted and scattered light and goes on inside.
-    /// The first interface of a path does both: a choice there would be most of the noise of an image.
+    /// Reflection with probability `R`, otherwise refraction, which shows emitted and scattered light and goes on
+    /// inside. The first interface of a path does both: a choice there would be most of the noise of an image.
     fn meet_from_outside(
         &self,
         state: &mut PathState,
@@ -223,8 +223,8 @@ impl Renderer<'_> {
         meeting.scatter(state, Lobe::Transmission, Layer::Transmission, &mut context.counts)
     }
 
-    /// Reflection inside with probability `R_in` (docs/method.md 6.9), otherwise refraction out into the scene. Nothing is
-    /// gathered from inside.
+    /// Reflection inside with probability `R_in` (docs/method.md 6.9), otherwise refraction out into the scene. Nothing
+    /// is gathered from inside.
     fn meet_from_inside(
         &self,
         state: &mut PathState,
@@ -284,7 +284,8 @@ struct Meeting<'a> {
 }
 
 impl Meeting<'_> {
-    /// The view uses the interpolated normal, unless that normal faces away from `direction` and the triangle's own does not.
+    /// The view uses the interpolated normal, unless that normal faces away from `direction` and the triangle's own
+    /// does not.
     fn new<'a>(
         point: &'a SurfacePoint,
         bsdf: Surface,
@@ -302,8 +303,9 @@ impl Meeting<'_> {
         self.bsdf.transmittance(&self.view)
     }
 
-    /// Sends the path on in a direction of one lobe, and assigns its light to the layer `event`. The direction is sampled about the
-    /// geometric normal if the interpolated one puts it on the wrong side of the triangle. False if there is none.
+    /// Sends the path on in a direction of one lobe, and assigns its light to the layer `event`. The direction is
+    /// sampled about the geometric normal if the interpolated one puts it on the wrong side of the triangle. False if
+    /// there is none.
     fn scatter(&self, state: &mut PathState, lobe: Lobe, event: Layer, counts: &mut Counts) -> bool {
         let geometric = self.point.geometric_normal;
         let mut sample = |view: &View| self.bsdf.sample(view, lobe, || [state.uniform(), state.uniform()]);

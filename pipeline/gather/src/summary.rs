@@ -4,8 +4,8 @@ use crate::report::Facts;
 use cli::{Failure, count};
 use gather::{Settings, counts::Counts, film};
 
-/// If more than this share of the paths meet translucent surfaces from within, the camera is inside a medium or looks into
-/// an open mesh; a smaller share are rays that slip between triangles.
+/// If more than this share of the paths meet translucent surfaces from within, the camera is inside a medium or looks
+/// into an open mesh; a smaller share are rays that slip between triangles.
 const STRAY: f64 = 0.01;
 
 /// Prints the error of the image and warns of unusual views; fails if a value of the image is not finite.

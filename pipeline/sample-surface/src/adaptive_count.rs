@@ -2,10 +2,11 @@
 //! only part of phase one that depends on a medium, and only the number of samples depends on it.
 //!
 //! The difference of a cloud's two halves estimates its error. That estimate follows a chi-square distribution: a
-//! search that stopped at the first small estimate would often stop by chance. Trial clouds therefore show first how many
-//! degrees of freedom the estimate has ([`crate::trials`]). With many, the halves are trusted within the bounds of Student's distribution.
-//! With few, as where all light comes through one small hole, larger trials are drawn until the error of their mean, which
-//! 16 independent halves estimate well, meets the target; one cloud of as many samples as all trials has no larger error.
+//! search that stopped at the first small estimate would often stop by chance. Trial clouds therefore show first how
+//! many degrees of freedom the estimate has ([`crate::trials`]). With many, the halves are trusted within the bounds of
+//! Student's distribution. With few, as where all light comes through one small hole, larger trials are drawn until the
+//! error of their mean, which 16 independent halves estimate well, meets the target; one cloud of as many samples as
+//! all trials has no larger error.
 
 use crate::{
     error::SampleError,
@@ -54,13 +55,13 @@ const MANY: f64 = 8.0;
 /// The degrees of freedom are measured again for a cloud with more than this many times the samples of all trials.
 const STALE: u64 = 8;
 
-/// The largest growth from one cloud to the next, and from one round of trials to the next: larger trials may turn out to
-/// have more degrees of freedom.
+/// The largest growth from one cloud to the next, and from one round of trials to the next: larger trials may turn out
+/// to have more degrees of freedom.
 const CLOUDS_GROW: f64 = 64.0;
 const TRIALS_GROW: f64 = 8.0;
 
-/// The error of one cloud, which is two well-spread halves, relative to that of the mean of trials with as many samples in
-/// all.
+/// The error of one cloud, which is two well-spread halves, relative to that of the mean of trials with as many samples
+/// in all.
 const GAIN: f64 = 0.5;
 
 /// A cloud whose error exceeds the bound from trials by this factor has found light that the trials had not.

@@ -1,7 +1,7 @@
 //! The spatial order of the samples, and the tree that is stored with them.
 //!
-//! The samples of a group are split recursively across the longest side of their bounding box, at a power of two of tiles,
-//! down to single samples. The order, and with it every node, depends on the samples alone and not on threads.
+//! The samples of a group are split recursively across the longest side of their bounding box, at a power of two of
+//! tiles, down to single samples. The order, and with it every node, depends on the samples alone and not on threads.
 
 use formats::cloud::{Node, Record, TILE, Tile, first_leaf, node_count, tile};
 use glam::{DVec3, Vec3};

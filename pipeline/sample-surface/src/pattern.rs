@@ -92,8 +92,9 @@ fn independent(choice: &TriangleChoice, random: Item, bounce: Item) -> SamplePoi
 const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
 
 impl Half {
-    /// Sample `index` of the half. The samples are equidistant along the ribbons, and each is offset across by the golden
-    /// ratio from the one before: a lattice without gaps or clusters, whatever its density and the ribbon's width.
+    /// Sample `index` of the half. The samples are equidistant along the ribbons, and each is offset across by the
+    /// golden ratio from the one before: a lattice without gaps or clusters, whatever its density and the ribbon's
+    /// width.
     fn point(&self, choice: &TriangleChoice, index: u64, bounce: Item) -> SamplePoint {
         let along = ((index as f64 + self.along) / self.count).min(BELOW_ONE);
         let across = unit(self.across.wrapping_add(index.wrapping_mul(GOLDEN)));

@@ -32,7 +32,8 @@ impl Settings {
 pub struct Surfaces {
     /// Indices of the sampled materials, ascending.
     pub materials: Vec<u16>,
-    /// Materials of these with the share of the samples that each takes; the others share the rest by the rule of choice.
+    /// Materials of these with the share of the samples that each takes; the others share the rest by the rule of
+    /// choice.
     pub shares: Vec<(u16, f64)>,
 }
 
@@ -87,8 +88,8 @@ impl Plan {
         Ok(Plan { surfaces, geometry, defects, content: *hasher.finalize().as_bytes() })
     }
 
-    /// The same plan, with an identity that also depends on the medium and the relative error in it that decide the number
-    /// of samples.
+    /// The same plan, with an identity that also depends on the medium and the relative error in it that decide the
+    /// number of samples.
     pub fn for_target(self, medium: &Medium, error: f64) -> Plan {
         // `trials` tells these clouds from older ones, whose number of samples was decided otherwise.
         let what = format!("trials {:?} {:?} {error}", medium.channels, medium.eta);

@@ -4,8 +4,8 @@
 use rayon::prelude::*;
 use scene::{Mesh, Vec3, random::mix};
 
-/// The part that a triangle has in a cell of a ribbon. A cell is a quadrilateral `a b d c`, mapped to the unit square with
-/// `a = (0, 0)`, `b = (1, 0)`, `c = (0, 1)`, `d = (1, 1)` and cut from `b` to `c`; or the first half of one.
+/// The part that a triangle has in a cell of a ribbon. A cell is a quadrilateral `a b d c`, mapped to the unit square
+/// with `a = (0, 0)`, `b = (1, 0)`, `c = (0, 1)`, `d = (1, 1)` and cut from `b` to `c`; or the first half of one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// `a b c`, without a second half.
@@ -82,8 +82,8 @@ impl Weaver<'_> {
         }
     }
 
-    /// The first cell of a ribbon. It is cut along the longest edge with a free triangle across, and oriented so that the
-    /// ribbon can continue.
+    /// The first cell of a ribbon. It is cut along the longest edge with a free triangle across, and oriented so that
+    /// the ribbon can continue.
     fn start(&self, index: usize) -> Start {
         let a = [1, 2].into_iter().fold(0, |best, a| if self.cuts_better(index, a, best) { a } else { best });
         let (p, q) = ((a + 1) % 3, (a + 2) % 3);

@@ -12,8 +12,8 @@ pub fn medium(albedo: f64, eta: f64) -> Medium {
     Medium::from_json(&json).expect("a valid medium")
 }
 
-/// `T12(θ) ∫ T21 cosθ_o dω_o`: turns `∫ S_bare dA` into a reflectance (docs/method.md sections 2 and 12). The exit integral
-/// is the exact one, of which the models' `4π C_φ(1/η)` is a fit.
+/// `T12(θ) ∫ T21 cosθ_o dω_o`: turns `∫ S_bare dA` into a reflectance (docs/method.md sections 2 and 12). The exit
+/// integral is the exact one, of which the models' `4π C_φ(1/η)` is a fit.
 fn interface(eta: f64, cosine: f64) -> f64 {
     let steps = 4000;
     let exit: f64 = (0..steps)

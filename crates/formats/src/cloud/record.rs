@@ -39,8 +39,8 @@ pub type Tile = [Record; TILE];
 
 /// Moments of the samples in 2^k neighboring tiles.
 ///
-/// The tree is a heap: node 1 is the root, and nodes `2i` and `2i + 1` are the children of node `i`. Over `T` tiles, the leaf
-/// of tile `t` is node `2^d + t` with the smallest `2^d ≥ T`. Node 0 is unused; nodes without tiles are zero.
+/// The tree is a heap: node 1 is the root, and nodes `2i` and `2i + 1` are the children of node `i`. Over `T` tiles,
+/// the leaf of tile `t` is node `2^d + t` with the smallest `2^d ≥ T`. Node 0 is unused; nodes without tiles are zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Node {

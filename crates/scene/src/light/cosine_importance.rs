@@ -107,7 +107,7 @@ mod tests {
         DVec3::new(radius * cosine, radius * sine, z)
     }
 
-    /// Planted: sides of the cube mixed up, columns of a partial last tile taken for whole ones.
+    /// Seen to catch: sides of the cube mixed up, columns of a partial last tile taken for whole ones.
     #[test]
     fn normal_bins_and_tiles_lie_within_their_cones() {
         let stream = Stream::new(3, Purpose::Surface);

@@ -59,7 +59,7 @@ mod tests {
         DVec3::new(at(0), at(1), at(2)).normalize()
     }
 
-    /// Planted: the wider cone returned when the other sticks out; half of the sum of the angles alone.
+    /// Seen to catch: the wider cone returned when the other sticks out; half of the sum of the angles alone.
     #[test]
     fn joined_cones_hold_both() {
         let stream = Stream::new(5, Purpose::Surface);
@@ -80,7 +80,7 @@ mod tests {
         assert_eq!(a.join(b).half_angle, PI);
     }
 
-    /// The largest cosine is an upper bound, and a close one. Planted: angles added with the wrong sign.
+    /// The largest cosine is an upper bound, and a close one. Seen to catch: angles added with the wrong sign.
     #[test]
     fn cosines_are_bounded_from_above() {
         let stream = Stream::new(4, Purpose::Surface);

@@ -136,8 +136,9 @@ mod tests {
     use super::*;
 
     /// Every cell is chosen as often as its weight says, by its own probability, and the numbers left are uniform.
-    /// Planted: halves taken in the wrong order, a
-    /// probability of one direction only, a border cell lost, a parent's cell divided by the sum of other cells.
+    ///
+    /// Seen to catch: halves taken in the wrong order, a probability of one direction only, a border cell lost, a parent's
+    /// cell divided by the sum of other cells.
     #[test]
     fn cells_are_chosen_in_proportion_to_their_weights() {
         let weights = [[1.0, 0.0, 3.0, 2.0, 4.0], [0.0, 0.0, 0.5, 1.5, 1e-60], [2.0, 6.0, 0.0, 0.0, 5.0]];

@@ -53,7 +53,7 @@ mod tests {
     use crate::random::{Purpose, Stream};
 
     /// No normal has a larger cosine with a direction than the bound, and all points lie within the sphere.
-    /// Planted: the spread left out; the cone of the mean of the first two normals.
+    /// Seen to catch: the spread left out; the cone of the mean of the first two normals.
     #[test]
     fn receivers_hold_their_points_and_normals() {
         let stream = Stream::new(6, Purpose::Surface);

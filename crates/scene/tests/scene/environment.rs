@@ -129,7 +129,7 @@ fn the_picture_lies_where_it_should() {
 }
 
 /// Light from one pixel comes from where that pixel is seen, whatever the numbers, and a turn of the picture turns it.
-/// Planted: rays turned the other way than light.
+/// Seen to catch: rays turned the other way than light.
 #[test]
 fn light_comes_from_where_it_is_seen() {
     let size = (16, 8);
@@ -186,7 +186,7 @@ fn a_turn_by_whole_pixels_shifts_them_and_scale_multiplies() {
 }
 
 /// Well-spread numbers stay well spread: of sixteen times as many, independent ones would have a quarter of the error.
-/// Planted: numbers that are drawn anew below a window.
+/// Seen to catch: numbers that are drawn anew below a window.
 #[test]
 fn the_choice_of_a_direction_keeps_numbers_well_spread() {
     let size = (256, 128);

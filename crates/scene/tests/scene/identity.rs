@@ -13,7 +13,8 @@ fn imported(name: &str) -> Scene {
     Scene::import(&path, &options).expect("the scene can be read")
 }
 
-/// A cloud is kept as long as these do not change: other bytes, or the same in another order, would make all clouds stale.
+/// A cloud is kept as long as these do not change: other bytes, or the same in another order, would make all clouds
+/// stale.
 ///
 /// Seen to catch: the range of a point light left out.
 #[test]

@@ -9,7 +9,8 @@ const UNSIGNED_BYTE: u32 = 5121;
 const SHORT: u32 = 5122;
 const UNSIGNED_SHORT: u32 = 5123;
 
-/// The tetrahedron with the attribute of this accessor as integers in a view of `stride` bytes, to be scaled by `scale`.
+/// The tetrahedron with the attribute of this accessor as integers in a view of `stride` bytes, to be scaled by
+/// `scale`.
 fn quantized(accessor: usize, vectors: &[[i32; 3]; 4], kind: (u32, usize, bool), scale: f64) -> Asset {
     let (component, width, normalized) = kind;
     let mut asset = tetrahedron();

@@ -141,8 +141,8 @@ fn a_picture_beside_the_scene() {
     assert!(fault(&asset).contains("not a file in the scene's folder"));
 }
 
-/// Seen to catch: the angle with the other sign; scale after rotation; the texture's set of coordinates where the transform states
-/// its own.
+/// Seen to catch: the angle with the other sign; scale after rotation; the texture's set of coordinates where the
+/// transform states its own.
 #[test]
 fn coordinates_of_another_set_transformed() {
     let angle = 0.5_f64;

@@ -66,11 +66,12 @@ fn everything() -> Vec<Box<dyn Light>> {
 }
 
 /// One over its share, and 0 when another light is picked: the mean is 1 for every light that reaches a point. Means of
-/// the 2000 lights and points that are picked at least a hundred times lie within 5 standard errors; of so many, one lies
-/// outside in 1700 runs with other numbers. Lights that are not picked at all would have to be faint.
+/// the 2000 lights and points that are picked at least a hundred times lie within 5 standard errors; of so many, one
+/// lies outside in 1700 runs with other numbers. Lights that are not picked at all would have to be faint.
 ///
 /// Seen to catch: a share that lacks the choice between near and distant lights; one that lacks the way down the tree;
-/// a range that cuts lights off; a light that is left out of the tree; candidates compared by the number that drew them.
+/// a range that cuts lights off; a light that is left out of the tree; candidates compared by the number that drew
+/// them.
 #[test]
 fn every_light_is_picked_as_often_as_its_share_says() {
     let lights = everything();
@@ -162,8 +163,8 @@ fn one_of_many_lights_has_the_mean_of_all() {
     }
 }
 
-/// For points that lie together, the lists cost a few entries a point however many lamps there are, and a choice is hardly
-/// noisier than by what each lamp really sends, which would have no noise at all.
+/// For points that lie together, the lists cost a few entries a point however many lamps there are, and a choice is
+/// hardly noisier than by what each lamp really sends, which would have no noise at all.
 ///
 /// Seen to catch: lists that grow with the number of lights; nodes opened in the order of the tree.
 #[test]

@@ -112,8 +112,8 @@ fn unknown_properties_are_named_wherever_they_are() {
     }
 }
 
-/// Defaults, what is honoured, and what means nothing. A metal is one that its file says is one, not one that leaves the
-/// word out.
+/// Defaults, what is honoured, and what means nothing. A metal is one that its file says is one, not one that leaves
+/// the word out.
 #[test]
 fn what_changes_no_picture_is_not_named() {
     assert_eq!(warnings(&asset()), Vec::<String>::new());

@@ -4,8 +4,8 @@
 //! `n` times. The sum is unbiased for every cut that is chosen without regard to the samples that are picked. A node is
 //! opened while the standard deviation that it would add, as [`FalloffTables`] predict it, exceeds a threshold. The
 //! threshold is the same for all nodes, which takes the fewest nodes for a given sum of variances. It follows from the
-//! target error and from an estimate of the sum, which is the contribution of the open leaves and the predicted one of the
-//! closed nodes, and is lowered until the predicted error of the cut is small enough.
+//! target error and from an estimate of the sum, which is the contribution of the open leaves and the predicted one of
+//! the closed nodes, and is lowered until the predicted error of the cut is small enough.
 
 use super::{
     calibration::Calibration,
@@ -96,7 +96,8 @@ impl<M: LaneModel> Kernel for Cut<'_, M> {
 }
 
 impl<M: LaneModel> Cut<'_, M> {
-    /// Finds the cut and adds the samples of its open leaves; returns the number of visited nodes and the predicted sum.
+    /// Finds the cut and adds the samples of its open leaves; returns the number of visited nodes and the predicted
+    /// sum.
     #[inline(always)]
     fn choose(&mut self, sum: &mut Accumulator) -> (u64, f64) {
         self.scratch.closed.clear();
@@ -187,7 +188,8 @@ impl<M: LaneModel> Cut<'_, M> {
             let depth = first_leaf.ilog2() - node.id.ilog2();
             let first = ((u64::from(node.id) << depth) - first_leaf) * TILE as u64;
             let end = (((u64::from(node.id) + 1) << depth) - first_leaf) * TILE as u64;
-            // A node beyond the last sample has no flux and is dropped; only in a forged file can it have flux and be closed.
+            // A node beyond the last sample has no flux and is dropped; only in a forged file can it have flux and be
+            // closed.
             let Some(count) = end.min(self.samples.len() as u64).checked_sub(first).filter(|count| *count > 0) else {
                 continue;
             };

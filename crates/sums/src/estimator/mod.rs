@@ -67,9 +67,9 @@ impl Estimator {
         }
     }
 
-    /// Whether a sum over many samples costs hardly more than one over few. If so, each point gathers from one whole shard
-    /// instead of from all: cuts through the trees of four shards evaluate twice as many samples as one cut through the
-    /// tree of a cloud of the same total size.
+    /// Whether a sum over many samples costs hardly more than one over few. If so, each point gathers from one whole
+    /// shard instead of from all: cuts through the trees of four shards evaluate twice as many samples as one cut
+    /// through the tree of a cloud of the same total size.
     pub fn is_hierarchical(self) -> bool {
         matches!(self, Estimator::Cut { .. })
     }

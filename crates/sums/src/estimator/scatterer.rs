@@ -20,8 +20,8 @@ pub struct Scatterer {
 }
 
 impl Scatterer {
-    /// `size` is that of the surface, m, which is nearly a plane over shorter distances; it changes only how fast the cut
-    /// is, and may be infinite.
+    /// `size` is that of the surface, m, which is nearly a plane over shorter distances; it changes only how fast the
+    /// cut is, and may be infinite.
     pub fn new(model: Model, medium: &Medium, size: f64) -> Scatterer {
         Scatterer {
             model,

@@ -1,5 +1,5 @@
-//! A list of views: one call, an image for each, the same bytes as one by one. Planted errors seen: the first view's size for
-//! all; files numbered from one; outputs looked at one by one.
+//! A list of views: one call, an image for each, the same bytes as one by one. Planted errors seen: the first view's
+//! size for all; files numbered from one; outputs looked at one by one.
 
 use std::fs;
 use test_support::{Bench, data};

@@ -1,5 +1,5 @@
-//! The geometry that the three channels of the directional dipole share, with the equation of docs/method.md on each line. Lengths are
-//! in m. Each part is one loop: the compiler makes worse vector code of several short ones.
+//! The geometry that the three channels of the directional dipole share, with the equation of docs/method.md on each
+//! line. Lengths are in m. Each part is one loop: the compiler makes worse vector code of several short ones.
 
 use crate::lanes::block::{Block, LANES, Lane, cross, dot};
 

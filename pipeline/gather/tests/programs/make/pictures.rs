@@ -101,8 +101,8 @@ fn cameras_are_of_the_scene_that_was_named() {
     }
 }
 
-/// The gallery and the images of `make check`, of one scene. Seen to fail where the .png stood for nothing, where an older
-/// picture in the place of the environment changed nothing, and where the sheet of one model stayed for another.
+/// The gallery and the images of `make check`, of one scene. Seen to fail where the .png stood for nothing, where an
+/// older picture in the place of the environment changed nothing, and where the sheet of one model stayed for another.
 #[test]
 fn the_gallery_is_of_what_it_was_made_from() {
     let tree = Tree::new();
