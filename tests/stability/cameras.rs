@@ -1,4 +1,4 @@
-//! Cameras in unusual places, and rays that meet edges and vertices. The object is clear and the sky constant: every
+//! Cameras at unusual positions, and rays that meet edges and vertices. The object is clear and the sky constant: every
 //! path must show exactly the sky, or it was lost at an interface.
 
 use crate::scenes::{Clear, aimed_at, assert_invisible, channel, render};

@@ -25,7 +25,7 @@ impl Failure {
         Failure { code: 2, message: message.into() }
     }
 
-    /// The same failure, in a part of the input that the message does not name.
+    /// Adds to the failure the part of the input in which it occurred.
     pub fn within(self, part: impl Display) -> Failure {
         Failure { message: format!("{part}: {}", self.message), ..self }
     }

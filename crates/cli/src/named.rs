@@ -1,4 +1,4 @@
-//! Which of a scene's cameras or materials a word on a command line means.
+//! Finds the camera or material of a scene that a word on a command line means.
 
 /// A camera or material that a word may mean.
 pub struct Candidate<'a> {

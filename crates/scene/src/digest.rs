@@ -1,4 +1,4 @@
-//! Identity of a scene: what clouds are known by.
+//! The identity of a scene, by which clouds recognize it.
 
 use crate::scene::Scene;
 use std::{collections::BTreeMap, sync::Arc};

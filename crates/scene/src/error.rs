@@ -1,4 +1,4 @@
-//! What can be wrong with a scene or a view.
+//! Errors of scenes and views.
 
 use crate::unhonoured::{quoted, rest};
 use std::path::PathBuf;

@@ -1,10 +1,10 @@
-//! What is lit and seen: a triangle mesh, its lights and cameras, and rays through it.
+//! The scene: a triangle mesh, its lights and cameras, and rays through it.
 //!
 //! [`Scene::import`] reads a glTF file and checks it. [`Rays`] finds what a ray meets, and [`light`] chooses lights for a
 //! point of the surface and tells what arrives there. Random numbers are pure functions of their index ([`random`]), some
 //! of them well spread ([`sequence`]), and [`warp`] turns them into points and directions.
 //!
-//! The crate knows neither a medium nor how an image is made. After import, lengths are in metres. Positions are float32
+//! The crate does not depend on scattering in media or on the rendering of images. After import, lengths are in metres. Positions are float32
 //! relative to [`Scene::origin`], the center of the mesh in float64: an object far from the origin loses no digits.
 //!
 //! A triangle in the sun:

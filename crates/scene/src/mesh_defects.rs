@@ -75,7 +75,7 @@ impl Mesh {
         let own = self.triangles.iter().filter(|t| belongs(t.material));
         let mut triangles: Vec<[u32; 3]> = own.map(|t| t.vertices.map(|i| welded[i as usize])).collect();
         let count = triangles.len();
-        // Of triangles with the same corners, the first of the mesh is kept.
+        // The first of several triangles with the same corners is kept.
         triangles.sort_by_key(sorted);
         triangles.dedup_by_key(|t| sorted(t));
         let mut parts = Parts::new(&points, &triangles);

@@ -12,7 +12,7 @@ pub enum Purpose {
     CameraPath,
     /// Acceptance and choice of samples in the sums of phase two.
     Gather,
-    /// Where paths cross their pixel.
+    /// Points at which paths cross their pixel.
     Pixel,
     /// Transmittance rays of edge pixels.
     Edge,
@@ -22,7 +22,7 @@ pub enum Purpose {
     Scramble,
     /// Light that opaque surfaces reflect to the samples of phase one.
     Bounce,
-    /// Which shard the paths of a pixel gather from.
+    /// The shards that the paths of a pixel gather from.
     ShardPick,
     /// The bits below those of one of these sequences.
     Remainder(u64),

@@ -27,7 +27,7 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// World position of the mesh's center, m.
     pub origin: DVec3,
-    /// What was left out or looks wrong, one line each.
+    /// Warnings about parts that were left out or look wrong, one line each.
     pub warnings: Vec<String>,
     /// For each material, how many triangles were left out because they have no area.
     pub degenerate_triangles: BTreeMap<u16, u64>,
@@ -37,7 +37,7 @@ pub struct Scene {
     pub duplicate_triangles: BTreeMap<u16, u64>,
     /// Materials that a primitive of the scene names, though it may have no triangle left.
     pub(crate) claimed: BTreeSet<u16>,
-    /// What the file asks for and the image does not show.
+    /// Properties of the file that the image does not show.
     pub(crate) unhonoured: Vec<Unhonoured>,
 }
 

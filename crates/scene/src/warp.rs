@@ -41,7 +41,7 @@ pub fn cosine_hemisphere(normal: DVec3, xi: [f64; 2]) -> DVec3 {
     cosine_hemisphere_in([tangent, bitangent, normal], xi)
 }
 
-/// The same about the last of three orthonormal vectors.
+/// Cosine-distributed unit direction about the last of three orthonormal vectors.
 pub fn cosine_hemisphere_in([tangent, bitangent, normal]: [DVec3; 3], xi: [f64; 2]) -> DVec3 {
     let radius = xi[0].sqrt();
     let (sine, cosine) = (2.0 * PI * xi[1]).sin_cos();

@@ -1,4 +1,4 @@
-//! Which gates judge which layers, and what they find.
+//! Judges layers by gates.
 
 use crate::choice::Choice;
 use crate::gate::{Gate, Judgement};

@@ -66,7 +66,7 @@ pub(crate) struct Difference {
     pub name: &'static str,
     pub reference: String,
     pub test: String,
-    /// What can be done.
+    /// The remedy.
     pub way_out: &'static str,
 }
 
@@ -103,7 +103,7 @@ impl Meaning {
         })
     }
 
-    /// What else a reader should know: attributes that differ but are not judged, and those that one header alone has.
+    /// Further remarks: attributes that differ but are not judged, and those that one header alone has.
     pub(crate) fn notes(&self, reference: &Meaning) -> Vec<String> {
         let only = |rule: &Rule, image| {
             Some(format!("{} is in the {image} only, so that another value would not be noticed", rule.name))

@@ -27,7 +27,7 @@ pub struct Report {
     pub height: usize,
     /// The number that is added to the squared reference in relMSE.
     pub relmse_epsilon: f64,
-    /// What both headers say of the inputs that the images were made from.
+    /// The attributes of both headers that identify the inputs of the images.
     pub inputs: Vec<Input>,
     /// The number of samples that are not finite, in all channels.
     pub nonfinite: NonFinite,
@@ -41,7 +41,7 @@ pub struct Report {
     pub judged: Vec<String>,
     /// The layers that differ and that no gate judges.
     pub unjudged: Vec<String>,
-    /// What else a reader should know of the headers, in words.
+    /// Further remarks about the headers, in words.
     pub notes: Vec<String>,
     /// Whether every gate passed.
     pub pass: bool,

@@ -21,7 +21,7 @@ pub struct Input {
 }
 
 impl Input {
-    /// What a reader should know, unless both images have the same value or none.
+    /// A remark for the reader, unless both images have the same value or none.
     pub(crate) fn note(&self) -> Option<String> {
         let Input { name, reference, test } = self;
         match (reference, test) {
@@ -81,7 +81,7 @@ pub enum Mismatch {
         reference: String,
         /// Its value, or the meaning of its absence.
         test: String,
-        /// What can be done.
+        /// The remedy.
         way_out: &'static str,
     },
     /// The images were made from different inputs.
@@ -111,7 +111,7 @@ impl Mismatch {
     }
 }
 
-/// What two images must have in common.
+/// The structure that two images must share.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Structure {
     /// Width and height in pixels.

@@ -32,7 +32,7 @@ const ALWAYS_ALLOWED: u64 = 64 << 20;
 /// Bytes at the start of a file in which its compression is found for a refusal.
 const START: u64 = 1 << 20;
 
-/// What the header of an OpenEXR file says about its size.
+/// The size of an OpenEXR file as its header states it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Dimensions {
     /// Pixels per row of the data window.

@@ -38,8 +38,8 @@ pub struct Pick<'a> {
     /// Its index in the list that the tree was made of.
     pub index: usize,
     pub light: &'a dyn Light,
-    /// What its irradiance is divided by to stand for that of all lights: the probability of its choice or, where
-    /// candidates were compared, an estimate of it that keeps the mean.
+    /// Divisor of its irradiance with which it represents all lights: the probability of its choice or, where candidates
+    /// were compared, an estimate of that probability that keeps the mean.
     pub share: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What every light must say of itself.
+//! The contract of all lights.
 
 use super::bounds::LightBounds;
 use crate::mesh::SurfacePoint;
@@ -22,7 +22,7 @@ pub trait Light: Send + Sync {
     /// light could reach that point, and 0 only where it certainly cannot.
     fn importance(&self, at: &SurfacePoint) -> f64;
 
-    /// Where the light is and what it can send; none if it is infinitely far away.
+    /// Bounds of the light's position and emission; none if it is infinitely far away.
     fn bounds(&self) -> Option<LightBounds>;
 
     /// Samples the light that arrives at `at`, from the direction that the uniform numbers `xi` choose; none if it arrives

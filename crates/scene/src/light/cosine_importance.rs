@@ -1,4 +1,4 @@
-//! What a surface sees of an environment, by its normal: the light of each part of the sky times a cosine.
+//! The light that a surface receives from each part of an environment, by its normal: the light of each part times a cosine.
 
 use super::{direction_cone::DirectionCone, hierarchical_sampler::HierarchicalSampler2d};
 use glam::DVec3;

@@ -9,7 +9,7 @@ use super::{
 use crate::{mesh::SurfacePoint, rays::Rays};
 use glam::DVec3;
 
-/// What became of one attempt to light a point.
+/// The outcome of one attempt to light a point.
 #[derive(Clone, Copy, Debug)]
 pub enum Lit {
     /// Direction towards the light, and its irradiance over the share of the choice, W/m².

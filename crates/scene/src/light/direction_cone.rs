@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 pub struct DirectionCone {
     /// Unit vector.
     pub axis: DVec3,
-    /// rad, 0 to π.
+    /// Half of the opening angle, rad, 0 to π.
     pub half_angle: f64,
 }
 

@@ -26,7 +26,7 @@ impl Environment {
         }
     }
 
-    /// What distinguishes it from others, as text: `R,G,B`, or a digest of the map's pixels with its scale and rotation.
+    /// Its identity as text: `R,G,B`, or a digest of the map's pixels with its scale and rotation.
     pub fn identity(&self) -> String {
         match self {
             Environment::Constant(DVec3 { x, y, z }) => format!("{x},{y},{z}"),

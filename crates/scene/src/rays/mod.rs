@@ -42,7 +42,7 @@ pub struct Rays<'a> {
     scale: f64,
     /// m per scaled unit.
     metres: f64,
-    /// Where rays pass through triangles.
+    /// Holes through which rays pass.
     cutouts: Option<Cutouts<'a>>,
 }
 
@@ -58,7 +58,7 @@ impl<'a> Rays<'a> {
         Rays { mesh: ScaledMesh::new(&corners), bounds, scale, metres: 1.0 / scale, cutouts: None }
     }
 
-    /// The same on the mesh of a scene, where rays pass through the holes of opaque surfaces.
+    /// Builds the tree over the mesh of a scene, where rays pass through the holes of opaque surfaces.
     pub fn of_scene(scene: &'a Scene, translucent: impl Fn(u16) -> bool) -> Self {
         Rays { cutouts: Cutouts::new(scene, translucent), ..Rays::new(&scene.mesh) }
     }

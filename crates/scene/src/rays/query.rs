@@ -10,7 +10,7 @@ use super::{
 use crate::cutouts::Cutouts;
 use std::ops::ControlFlow;
 
-/// Which points of triangles are solid, and which are holes.
+/// Tells whether a point of a triangle is solid or a hole.
 pub(super) trait Solid: Copy {
     fn is_solid(self, triangle: u32, crossing: &Crossing) -> bool;
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// Where a ray meets a triangle.
+/// The point where a ray meets a triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit {
     /// m along the unit direction.

@@ -8,7 +8,7 @@ pub(super) struct Tree {
     pub nodes: Vec<Node>,
 }
 
-/// What a walk does with the leaves.
+/// The action of a walk at the leaves.
 pub(super) trait Visitor {
     /// Whether nearer children are visited first. Where any hit will do, the order costs more than it saves.
     const ORDERED: bool;

@@ -53,7 +53,7 @@ fn copies_are_found_by_where_they_are() {
     assert_eq!(import(&asset).mesh.triangles.len(), 8, "beside, not upon");
 }
 
-/// Which of two materials is meant, nobody can say: both stay, and are counted if both are translucent.
+/// Copies of two materials are ambiguous: both stay, and are counted if both materials are translucent.
 #[test]
 fn copies_of_other_materials_stay() {
     let mut asset = tetrahedron();

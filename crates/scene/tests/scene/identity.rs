@@ -1,4 +1,4 @@
-//! What clouds are known by: the digests of a scene's lights and geometry.
+//! The digests of a scene's lights and geometry, by which clouds recognize it.
 
 use scene::{ImportOptions, LightUnit, Scene};
 use std::path::Path;

@@ -52,7 +52,7 @@ struct Grid {
 /// The samples that the page holds.
 pub(super) struct Fitted {
     pub layers: Vec<LayerData>,
-    /// What was reduced or left out, in words.
+    /// The reductions and omissions, in words.
     pub notes: Vec<String>,
 }
 

@@ -21,7 +21,7 @@ pub enum IndexError {
     Io {
         /// The report, or the index itself.
         path: PathBuf,
-        /// What the operating system said.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// The file is something else, or from another version.

@@ -48,7 +48,7 @@ struct Picture<'a> {
     window: [i32; 2],
     layers: &'a [LayerData],
     attributes: Vec<AttributePair<'a>>,
-    /// What was reduced or left out, in words.
+    /// The reductions and omissions, in words.
     notes: Vec<String>,
     colors: color::Maps,
 }

@@ -1,4 +1,4 @@
-//! What is measured of one channel, or of all channels of a layer together.
+//! The metrics of one channel, or of all channels of a layer together.
 
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
@@ -17,7 +17,7 @@ pub struct ChannelMetric {
     pub heading: &'static str,
     /// Whether the table shows a plus sign.
     pub signed: bool,
-    /// What is averaged over the samples: a function of reference and test image.
+    /// The term that is averaged over the samples: a function of reference and test image.
     pub(super) term: fn(f64, f64) -> f64,
     /// The metric as a function of the means.
     pub(super) value: fn(&Means) -> f64,
@@ -34,7 +34,7 @@ pub(super) struct Means {
     pub term: f64,
 }
 
-/// What was measured. Values are in units of the channel unless a metric says otherwise. The names are the keys of the JSON
+/// The measured values. They are in units of the channel unless a metric says otherwise. The names are the keys of the JSON
 /// report.
 #[derive(Clone, Debug, Serialize)]
 pub struct Metrics {

@@ -1,4 +1,4 @@
-//! What is measured of a channel, of all channels of a layer together, and of the picture that they show.
+//! The metrics of a channel, of all channels of a layer together, and of the picture that they show.
 //!
 //! A metric is a file of this folder and a row in one of the tables below, and in [`GATES`] if it can be limited. The report,
 //! the table for people, the limits files, the options of the program and the HTML page take the rest from there.

@@ -8,7 +8,7 @@ use super::displayed::{self, DisplayedMetric};
 use super::flip::{self, Exposures, Flip, HdrFlip};
 use super::picture::Picture;
 
-/// What was measured of the picture. The names are the keys of the JSON report. Every value is NaN, `null` in JSON, if the
+/// The metrics of the picture. The names are the keys of the JSON report. Every value is NaN, `null` in JSON, if the
 /// picture is not finite.
 #[derive(Clone, Debug, Serialize)]
 pub struct PictureMetrics {

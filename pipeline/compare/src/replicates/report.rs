@@ -17,7 +17,7 @@ const NAMED: usize = 3;
 pub struct Judged {
     /// The layer, the part of it, and the channel.
     pub name: String,
-    /// What the statistic measures.
+    /// The quantity that the statistic measures.
     pub kind: Kind,
     /// The mean of the reference; it is the geometric mean if logarithms are compared.
     pub reference: f64,

@@ -14,7 +14,7 @@ const SCATTERED: &str = "subsurface";
 /// The channels of a color layer.
 const RGB: [&str; 3] = ["R", "G", "B"];
 
-/// What a statistic measures.
+/// The quantity that a statistic measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {

@@ -53,7 +53,7 @@ pub struct Summary {
 pub struct Summarised {
     /// The layer, the part of it, and the channel.
     pub name: String,
-    /// What the statistic measures.
+    /// The quantity that the statistic measures.
     pub kind: Kind,
     /// Whether mean and variance are those of its logarithm.
     pub logarithm: bool,

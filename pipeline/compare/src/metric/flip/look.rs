@@ -22,7 +22,7 @@ impl Eye {
     }
 }
 
-/// What the viewer sees of a tile of one image: L*, a*, b* with Hunt's adjustment, after the filters of contrast sensitivity,
+/// The appearance of a tile of one image to the viewer: L*, a*, b* with Hunt's adjustment, after the filters of contrast sensitivity,
 /// then the strength of edges and of points.
 pub(super) type Look = [Box<Plane>; 5];
 

@@ -1,4 +1,4 @@
-//! What make removes and where it writes: nothing of others.
+//! make removes and overwrites no files of others.
 
 use super::{IMAGES, Tree, said, view};
 use std::{fs, os::unix::fs::symlink, process::Command};
