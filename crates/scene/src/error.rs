@@ -3,7 +3,8 @@
 use crate::unhonoured::{quoted, rest};
 use std::path::PathBuf;
 
-/// A scene or view that cannot be used. The message names the file and the field and, where the file can be mended, how.
+/// A scene or view that cannot be used. The message names the file and the field and, where the file can be mended,
+/// how.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     #[error("{}: {source}", path.display())]

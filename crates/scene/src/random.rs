@@ -1,7 +1,7 @@
 //! Counter-based random numbers: a pure function of (seed, purpose, index, dimension).
 //!
-//! There is no state, so any thread may compute any number, and nothing depends on order. The first values are pinned in
-//! a test: changing them changes every cloud and image.
+//! There is no state, so any thread may compute any number, and nothing depends on order. The first values are pinned
+//! in a test: changing them changes every cloud and image.
 
 /// The purpose of a stream: streams of different purposes are independent.
 #[derive(Clone, Copy, Debug)]
@@ -45,7 +45,8 @@ impl Purpose {
     }
 }
 
-/// The seed of shard `index` of `count`: `seed` itself if there is only one shard, else another for each index and count.
+/// The seed of shard `index` of `count`: `seed` itself if there is only one shard, else another for each index and
+/// count.
 pub fn shard_seed(seed: u64, index: u32, count: u32) -> u64 {
     if count == 1 { seed } else { mix(mix(!seed) ^ (u64::from(index) << 32 | u64::from(count))) }
 }

@@ -16,7 +16,8 @@ use std::{
 
 /// An imported scene, checked: indices are in range, every number is finite, and every triangle has an area.
 pub struct Scene {
-    /// Every file that was read to make the scene, each once: its own, then buffers and pictures in the order of reading.
+    /// Every file that was read to make the scene, each once: its own, then buffers and pictures in the order of
+    /// reading.
     pub files: Vec<PathBuf>,
     pub mesh: Mesh,
     pub materials: Vec<Material>,
@@ -48,9 +49,9 @@ impl Scene {
         self.file_lights.iter().map(|light| &**light).chain(environment)
     }
 
-    /// Indices of the materials whose surfaces bound media by default: those that the file marks as volumes or, if it marks
-    /// none, all that do not emit, with `true` for the latter. Only materials that cover a triangle count. It is an error
-    /// if the file marks materials and none of them covers a triangle.
+    /// Indices of the materials whose surfaces bound media by default: those that the file marks as volumes or, if it
+    /// marks none, all that do not emit, with `true` for the latter. Only materials that cover a triangle count. It is
+    /// an error if the file marks materials and none of them covers a triangle.
     pub fn translucent(&self) -> Result<(Vec<u16>, bool), LostVolumes> {
         let mut used = vec![false; self.materials.len()];
         self.mesh.triangles.iter().for_each(|t| used[t.material as usize] = true);

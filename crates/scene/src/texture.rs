@@ -85,7 +85,8 @@ mod tests {
         Texture { picture: Arc::new(Picture { width: 3, texels }), wrap: [wrap; 2], nearest }
     }
 
-    /// Seen to catch: `v` upwards; a mirror that does not repeat the edge texel; a remainder with the sign of the index.
+    /// Seen to catch: `v` upwards; a mirror that does not repeat the edge texel; a remainder with the sign of the
+    /// index.
     #[test]
     fn beyond_the_edges() {
         let rows = [

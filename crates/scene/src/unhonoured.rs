@@ -10,7 +10,8 @@ pub(crate) struct Unhonoured {
     pub property: String,
     /// The holder of the property; none for the file itself.
     pub holder: Option<Holder>,
-    /// On opaque and on translucent surfaces: none if it is honoured there, else the numbers that stand in for it, if any.
+    /// On opaque and on translucent surfaces: none if it is honoured there, else the numbers that stand in for it, if
+    /// any.
     pub on: [Option<&'static [f64]>; 2],
 }
 

@@ -213,8 +213,8 @@ impl ViewFile {
     }
 }
 
-/// Checks each view and names the first that is invalid. An array is refused, though serde reads structures from lists of
-/// their fields. Fields that occur twice are found later, in the text.
+/// Checks each view and names the first that is invalid. An array is refused, though serde reads structures from lists
+/// of their fields. Fields that occur twice are found later, in the text.
 fn check_views(list: &[Value]) -> Result<(), String> {
     list.iter().enumerate().try_for_each(|(k, value)| match View::deserialize(value) {
         Err(e) => Err(format!("view {k}: {e}; {EXPECTED}")),

@@ -8,17 +8,17 @@
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Barycentric weights of a uniform point on a triangle (docs/method.md 6.2): `x = (1−√ξ₀) v₀ + (1−ξ₁)√ξ₀ v₁ + ξ₁√ξ₀ v₂`. Its
-/// density per area is `1/A`.
+/// Barycentric weights of a uniform point on a triangle (docs/method.md 6.2):
+/// `x = (1−√ξ₀) v₀ + (1−ξ₁)√ξ₀ v₁ + ξ₁√ξ₀ v₂`. Its density per area is `1/A`.
 // note: [point]
 pub fn triangle(xi: [f64; 2]) -> [f64; 3] {
     let root = xi[0].sqrt();
     [1.0 - root, (1.0 - xi[1]) * root, xi[1] * root]
 }
 
-/// A point `[x, y]` of the unit square, which is cut from (1, 0) to (0, 1) into two triangles, and whether it lies in the
-/// second one. Points are uniform in each triangle, and each gets its share of them; `x` grows with the first number, and
-/// at each `x`, `y` grows with the second. With a share of 0 the second triangle is empty.
+/// A point `[x, y]` of the unit square, which is cut from (1, 0) to (0, 1) into two triangles, and whether it lies in
+/// the second one. Points are uniform in each triangle, and each gets its share of them; `x` grows with the first
+/// number, and at each `x`, `y` grows with the second. With a share of 0 the second triangle is empty.
 pub fn halved_square(xi: [f64; 2], shares: [f64; 2]) -> ([f64; 2], bool) {
     // The column at x holds 2 s₀ (1−x) + 2 s₁ x, so with q = (s₁−s₀)/(s₀+s₁) its integral q x² + (1−q) x is ξ₀.
     let total = shares[0] + shares[1];

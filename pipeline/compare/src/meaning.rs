@@ -1,5 +1,5 @@
-//! The attributes of a header that give the numbers of the channels their meaning: equal numbers with other primaries, or of
-//! pixels of another shape, are another picture.
+//! The attributes of a header that give the numbers of the channels their meaning: equal numbers with other primaries,
+//! or of pixels of another shape, are another picture.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 /// An attribute of the header, and the consequence if the images disagree about it.
 struct Rule {
     name: &'static str,
-    /// The meaning of its absence by the OpenEXR standard, in the words of [`words`], or `None` if the standard has none.
+    /// The meaning of its absence by the OpenEXR standard, in the words of [`words`], or `None` if the standard has
+    /// none.
     absent: Option<&'static str>,
     /// The largest difference of two numbers that count as equal.
     tolerance: f64,
@@ -36,8 +37,8 @@ const RENDER: &str = "write both with one setting of the renderer";
 const DISPLAY: &str = "displayWindow";
 const AS_DATA: &str = "the data window";
 
-/// The attributes that are compared, by name. Others describe how the file was made or is to be shown. The data window is
-/// compared in `structure.rs`.
+/// The attributes that are compared, by name. Others describe how the file was made or is to be shown. The data window
+/// is compared in `structure.rs`.
 #[rustfmt::skip]
 const RULES: [Rule; 13] = [
     Rule { name: "acesImageContainerFlag", absent: None, tolerance: EXACT, judgement: Refused("convert one of them") },

@@ -153,8 +153,8 @@ impl Report {
         table
     }
 
-    /// One line: `PASS name relmse=... bias=...` with the values of the worst channel, or `FAIL gate value > limit`. Layers that
-    /// differ and that no gate judges are named at its end.
+    /// One line: `PASS name relmse=... bias=...` with the values of the worst channel, or `FAIL gate value > limit`.
+    /// Layers that differ and that no gate judges are named at its end.
     pub fn verdict(&self, name: &str) -> String {
         let failed: Vec<String> = self.gates.iter().filter(|gate| !gate.ok).map(failure).collect();
         if !failed.is_empty() {

@@ -11,8 +11,8 @@ use glam::{DMat3, DVec3, Vec3};
 use memmap2::MmapMut;
 use std::collections::BTreeMap;
 
-/// Limits with all instances. They are checked before memory is allocated, because a small file can have many instances of a
-/// large mesh.
+/// Limits with all instances. They are checked before memory is allocated, because a small file can have many instances
+/// of a large mesh.
 const MAX_TRIANGLES: u64 = 1 << 26;
 const MAX_VERTICES: u64 = 1 << 27;
 const MAX_PRIMITIVES: u64 = 1 << 22;
@@ -173,9 +173,9 @@ impl Builder {
         Ok(positions)
     }
 
-    /// Drops triangles without area, and makes positions relative to the center of the rest. Triangles that have no area in
-    /// float32 relative to their own center are dropped first: a needle to a stray vertex far away would move the center of all
-    /// and cost the others their precision.
+    /// Drops triangles without area, and makes positions relative to the center of the rest. Triangles that have no
+    /// area in float32 relative to their own center are dropped first: a needle to a stray vertex far away would move
+    /// the center of all and cost the others their precision.
     fn finish(mut self) -> Result<Geometry, Refusal> {
         if self.triangles.is_empty() {
             return Err(Refusal::Invalid("no triangles: nothing to light or to see".into()));
@@ -187,8 +187,8 @@ impl Builder {
             |corners| area_alone(corners.map(|i| self.positions[i as usize])),
             &mut degenerate,
         );
-        // Dropping a triangle can move the center, so this repeats until none is dropped. A dropped triangle is 2^24 times smaller
-        // than the mesh, so that there are few iterations.
+        // Dropping a triangle can move the center, so this repeats until none is dropped. A dropped triangle is 2^24
+        // times smaller than the mesh, so that there are few iterations.
         let (origin, positions) = loop {
             if self.triangles.is_empty() {
                 return Err(format!("all {count} triangles have no area (scale 0?)").into());

@@ -1,4 +1,5 @@
-//! The light that a surface receives from each part of an environment, by its normal: the light of each part times a cosine.
+//! The light that a surface receives from each part of an environment, by its normal: the light of each part times a
+//! cosine.
 
 use super::{direction_cone::DirectionCone, hierarchical_sampler::HierarchicalSampler2d};
 use glam::DVec3;
@@ -21,7 +22,8 @@ pub(super) struct CosineImportanceTable {
 const MIN_SHARE: f64 = 0.5;
 
 impl CosineImportanceTable {
-    /// The table of a map whose pixels have this `power`. Its tiles are the cells of the finest level with few enough cells.
+    /// The table of a map whose pixels have this `power`. Its tiles are the cells of the finest level with few enough
+    /// cells.
     pub fn new(power: &HierarchicalSampler2d) -> CosineImportanceTable {
         let level = power.level_within(TILE_COLUMNS, TILE_ROWS);
         let (columns, rows) = power.size(level);

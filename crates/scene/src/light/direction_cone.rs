@@ -39,8 +39,8 @@ impl DirectionCone {
         DirectionCone { axis: (wide.axis * cosine + across * sine).normalize(), half_angle }
     }
 
-    /// An upper bound of the cosine between a vector of this cone and one of the other, 0 if they are all perpendicular or
-    /// farther apart.
+    /// An upper bound of the cosine between a vector of this cone and one of the other, 0 if they are all perpendicular
+    /// or farther apart.
     pub fn max_cosine(&self, other: &DirectionCone) -> f64 {
         let between = self.axis.angle_between(other.axis);
         // Rounding must not hide what lies on the horizon.

@@ -3,8 +3,8 @@
 use crate::mesh::SurfacePoint;
 use glam::DVec3;
 
-/// A sphere that holds some surface points, and a cone that holds their normals. Of the cone's half angle it keeps cosine
-/// and sine: the choice of lights asks for nothing else, for many lights each time.
+/// A sphere that holds some surface points, and a cone that holds their normals. Of the cone's half angle it keeps
+/// cosine and sine: the choice of lights asks for nothing else, for many lights each time.
 #[derive(Clone, Copy, Debug)]
 pub struct ReceiverBounds {
     /// The center of the sphere, with the axis of the cone as its normals.

@@ -33,8 +33,8 @@ impl Solid for &Cutouts<'_> {
     }
 }
 
-/// Finds the nearest hit within `limit`, of equally near ones that of the first triangle. Its distance is measured from the
-/// ray's start, in scaled units.
+/// Finds the nearest hit within `limit`, of equally near ones that of the first triangle. Its distance is measured from
+/// the ray's start, in scaled units.
 pub(super) struct Closest<'a, S> {
     pub mesh: &'a ScaledMesh,
     pub solid: S,

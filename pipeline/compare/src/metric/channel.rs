@@ -34,8 +34,8 @@ pub(super) struct Means {
     pub term: f64,
 }
 
-/// The measured values. They are in units of the channel unless a metric says otherwise. The names are the keys of the JSON
-/// report.
+/// The measured values. They are in units of the channel unless a metric says otherwise. The names are the keys of the
+/// JSON report.
 #[derive(Clone, Debug, Serialize)]
 pub struct Metrics {
     /// The mean of the reference.
@@ -76,8 +76,8 @@ pub(super) fn as_map<V: Serialize, S: Serializer>(
     serializer.collect_map(values.iter().map(|(key, value)| (key, value)))
 }
 
-/// Measures all samples together, and each plane by itself. The image is `width` pixels wide, `window` is its top left pixel.
-/// `terms` computes the terms of `metrics`, in the same order.
+/// Measures all samples together, and each plane by itself. The image is `width` pixels wide, `window` is its top left
+/// pixel. `terms` computes the terms of `metrics`, in the same order.
 pub(super) fn measure_each<const N: usize>(
     metrics: &[ChannelMetric; N],
     terms: impl Terms<N>,

@@ -1,4 +1,5 @@
-//! One-dimensional filters over a tile, along its rows or its columns. One after the other, two make a separable filter.
+//! One-dimensional filters over a tile, along its rows or its columns. One after the other, two make a separable
+//! filter.
 
 use std::ops::Range;
 
@@ -27,8 +28,8 @@ pub(super) struct Even;
 /// Both sides have the same weights with opposite signs, and the middle has none.
 pub(super) struct Odd;
 
-/// Both sides have the same weights, and the weight of the middle makes their sum zero. The result is exactly zero where
-/// nothing varies.
+/// Both sides have the same weights, and the weight of the middle makes their sum zero. The result is exactly zero
+/// where nothing varies.
 pub(super) struct EvenOfSumZero;
 
 impl Symmetry for Even {
@@ -85,8 +86,8 @@ pub(super) fn convolve<S: Symmetry>(along: Along, taps: &[f32], from: &Plane, to
     }
 }
 
-/// The weights of a Gaussian with a standard deviation of `sigma` pixels, from the middle to `radius`. With both sides they sum
-/// to 1.
+/// The weights of a Gaussian with a standard deviation of `sigma` pixels, from the middle to `radius`. With both sides
+/// they sum to 1.
 pub(super) fn gaussian(sigma: f64, radius: usize) -> Vec<f64> {
     let weight = |distance: usize| (-0.5 * (distance as f64 / sigma).powi(2)).exp();
     let weights: Vec<f64> = (0..=radius).map(weight).collect();

@@ -12,8 +12,8 @@ use super::picture::Picture;
 /// picture is not finite.
 #[derive(Clone, Debug, Serialize)]
 pub struct PictureMetrics {
-    /// The metrics of display values with their keys, in the order of their table. The PSNR of equal pictures is infinite,
-    /// `null` in JSON.
+    /// The metrics of display values with their keys, in the order of their table. The PSNR of equal pictures is
+    /// infinite, `null` in JSON.
     #[serde(flatten, serialize_with = "as_map")]
     pub values: Vec<(&'static str, Option<f64>)>,
     /// LDR-FLIP of display values.
@@ -126,8 +126,8 @@ mod tests {
         assert_eq!(metrics.missing, ["flip: not asked for"]);
     }
 
-    /// The similarity lost by all windows that see one black pixel in a plane of display value `a`. If w is its weight in a
-    /// window, the means are a and a (1 - w), and the variances 0 and a^2 w (1 - w).
+    /// The similarity lost by all windows that see one black pixel in a plane of display value `a`. If w is its weight
+    /// in a window, the means are a and a (1 - w), and the variances 0 and a^2 w (1 - w).
     fn lost_by_a_black_pixel(a: f64) -> f64 {
         let weight = |x: i32| (-f64::from(x * x) / 4.5).exp();
         let sum: f64 = (-5..=5).map(weight).sum();

@@ -112,7 +112,8 @@ impl NoiseReport {
         table + "visible is the smallest bias that is found nine times in ten; of `noise`, only growth is tested\n"
     }
 
-    /// One line: `PASS name` with the smallest p-value and the visible biases, or `FAIL name` with the statistics that differ.
+    /// One line: `PASS name` with the smallest p-value and the visible biases, or `FAIL name` with the statistics that
+    /// differ.
     pub fn verdict(&self, name: &str) -> String {
         let (p, whose) = self.min_p();
         let (name, whose) = (printable(name), printable(whose));

@@ -22,8 +22,8 @@ impl Eye {
     }
 }
 
-/// The appearance of a tile of one image to the viewer: L*, a*, b* with Hunt's adjustment, after the filters of contrast sensitivity,
-/// then the strength of edges and of points.
+/// The appearance of a tile of one image to the viewer: L*, a*, b* with Hunt's adjustment, after the filters of
+/// contrast sensitivity, then the strength of edges and of points.
 pub(super) type Look = [Box<Plane>; 5];
 
 /// [`LANES`] pixels of the planes of a look.
@@ -101,8 +101,8 @@ fn blur(filter: &Blur, from: &Plane, across: &mut Plane, to: &mut Plane) {
     convolve::<Even>(Along::Columns, &filter.columns, across, to);
 }
 
-/// Turns filtered opponent channels into adjusted colors. The third channel is the sum of two filters, the second of which is
-/// `addend`.
+/// Turns filtered opponent channels into adjusted colors. The third channel is the sum of two filters, the second of
+/// which is `addend`.
 #[inline(always)]
 fn adjust([first, second, third]: [&mut Plane; 3], addend: &Plane) {
     for at in (0..GROUPS).map(group) {
