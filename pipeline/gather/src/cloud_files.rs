@@ -43,7 +43,7 @@ impl CloudFiles {
         self.clouds.iter().zip(&self.paths).try_for_each(|(cloud, path)| cloud.check_unchanged(path))
     }
 
-    /// Refuses clouds that were sampled from another scene or with other units and normals; the message says what
+    /// Refuses clouds that were sampled from another scene or with other units or normals; the message says what
     /// differs.
     pub fn check_fit(&self, scene: &Scene, request: &Request) -> Result<(), Failure> {
         let (how, options) = (&request.scene, &self.clouds[0].meta().options);
