@@ -5,16 +5,16 @@
 #   gallery.mk   the scenes of data/                  reports.mk  the documents that programs write
 #   own.mk       your own scene: make SCENE=...       clean.mk    removal of what was made
 #
-# Every recipe that renders is $(SUBMIT) PROGRAM --threads $(THREADS) ... -o $@: it reads files, writes one and never asks,
-# so that SUBMIT may hand it to a queue of machines (docs/farm.md).
+# Every recipe that renders is $(SUBMIT) PROGRAM --threads $(THREADS) ... -o $@: it reads files, writes one and never
+# asks, so that SUBMIT may hand it to a queue of machines (docs/farm.md).
 
 .DELETE_ON_ERROR:
 .SECONDARY:
 .SUFFIXES:
 unexport MAKEFLAGS
 
-# Everything that is made goes to OUT, where `make clean` removes it. OUT is taken from the command line alone, because the
-# environment may hold a variable of that name by chance.
+# All rendered files go to OUT, where `make clean` removes it. OUT is taken from the command line alone, because
+# the environment may hold a variable of that name by chance.
 ifneq ($(filter environment%,$(origin OUT)),)
 $(warning OUT=$(OUT) of the environment is not used; give it to make: make OUT=FOLDER)
 override OUT := out
@@ -58,7 +58,7 @@ include $(MAKE_FILES)/clean.mk
 
 .PHONY: .FORCE build scenes help
 
-## build: the programs, optimised
+## build: the programs, optimized
 build:
 	$(CARGO) build --release --workspace --quiet
 

@@ -1,5 +1,6 @@
-# The regression test (docs/check.md): small images of each scene of the gallery, each from a cloud with a seed of its own,
-# are tested against the figures of tests/golden. Offers check, check-images, references, check-alarms and check-power.
+# The regression test (docs/check.md): small images of each scene of the gallery, each from a cloud with a seed of its
+# own, are tested against the figures of tests/golden. Offers check, check-images, references, check-alarms and
+# check-power.
 
 .PHONY: check check-images check-alarms check-power references golden
 

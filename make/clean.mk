@@ -1,6 +1,6 @@
 # Removal: `make clean` and `make clean-images` find the .settings files in OUT that begin with their own names, remove
-# what was made with them, and then the folders that are empty. No other file in OUT was made by make, whatever its name,
-# and no link in OUT is followed. Offers clean and clean-images.
+# what was made with them, and then the folders that are empty. No other file in OUT was made by make, whatever its
+# name, and no link in OUT is followed. Offers clean and clean-images.
 
 .PHONY: clean clean-images
 

@@ -1,9 +1,9 @@
-# The gallery: the scenes of data/, each with a medium and from every view of the scene in data/views. Offers the targets
-# gallery, images, contact-sheet and clouds, and to check.mk the media, files and light of each scene.
+# The gallery: the scenes of data/, each with a medium and from every view of the scene in data/views. Offers the
+# targets gallery, images, contact-sheet and clouds, and to check.mk the media, files and light of each scene.
 
-# scene:medium. A scene with several media has a list of MATERIAL=medium in MEDIA_<name>, and <name> stands for the list.
-# ENVIRONMENT_<scene> is the light from all around, in both programs: a picture or R,G,B. EXPOSURE_<scene> is that of the
-# preview.
+# scene:medium. A scene with several media has a list of MATERIAL=medium in MEDIA_<name>, and <name> stands for the
+# list. ENVIRONMENT_<scene> is the light from all around, in both programs: a picture or R,G,B. EXPOSURE_<scene> is that
+# of the preview.
 GALLERY := gummies:fruit chess:stones piglet:skin2 candle:candle_wax milk:wholemilk
 MEDIA_fruit  := Cherry=cherry Orange=orange Lime=lime
 MEDIA_stones := Marble=marble Jade=jade

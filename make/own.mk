@@ -1,5 +1,5 @@
-# Your own scene: `make SCENE=path.glb MEDIUM=marble` renders one image for each camera of the file. Offers the target own,
-# and the variables
+# Your own scene: `make SCENE=path.glb MEDIUM=marble` renders one image for each camera of the file. Offers the target
+# own, and the variables
 #   VIEWS='path/*.json'       one image for each of these view files, or several for one that holds a list of views
 #   MEDIUM=name|file.json     the medium of all translucent surfaces; with an empty MEDIUM= the file's own media
 #   ENVIRONMENT=sky.exr|R,G,B light from all around
@@ -56,8 +56,8 @@ $(OWN).cloud: $(SCENE) $(OWN).settings crates/formats/cloud-version | $(SAMPLE)
 lost_of_list = $(shell cd $(dir $(1)) 2>/dev/null && while IFS= read -r image; do [ -e "$$image" ] && [ -e "$${image%.exr}.png" ] || \
   echo .FORCE; done 2>/dev/null < $(notdir $(1)))
 
-# $(1) image, or the .views file of a list; $(2) view file, if it has one; $(3) option that chooses the camera. A medium may
-# be one of the built-in media, which are those of data/media.
+# $(1) image, or the .views file of a list; $(2) view file, if it has one; $(3) option that chooses the camera. A medium
+# may be one of the built-in media, which are those of data/media.
 define own_picture
 $(call settings,$(basename $(1)),--spp $$(SPP) --exposure $$(EXPOSURE) --medium $$(MEDIUM) $(3),$(wildcard $(MEDIUM) data/media/$(MEDIUM).json) $(2))
 $(1): $(OWN).cloud $(OWN).settings $(basename $(1)).settings $(if $(filter %.views,$(1)),$(call lost_of_list,$(1)),$(call \

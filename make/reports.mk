@@ -9,8 +9,8 @@ REPORTS := $(CARGO) run --release --quiet --package reports -- --output docs/rep
 accuracy:
 	$(REPORTS) accuracy
 
-# The folder in which `make curve` finds bunny.glb and dragon.glb, with peers/ in the folder above. Without them it renders a
-# scene of data/.
+# The folder in which `make curve` finds bunny.glb and dragon.glb, with peers/ in the folder above. Without them it
+# renders a scene of data/.
 MESHES ?= data/scenes
 CURVE  := $(REPORTS) speed --meshes $(MESHES) --programs $(BIN)
 

@@ -121,8 +121,8 @@ class Browser:
     def drag(self, start, end):
         self.mouse("mousePressed", *start, button="left", buttons=1, clickCount=1)
         middle = [(a + b) / 2 for a, b in zip(start, end)]
-        for place in [middle, end]:
-            self.mouse("mouseMoved", *place, button="left", buttons=1)
+        for point in [middle, end]:
+            self.mouse("mouseMoved", *point, button="left", buttons=1)
         self.mouse("mouseReleased", *end, button="left", clickCount=1)
 
     def key(self, key, modifiers=0, times=1):

@@ -26,7 +26,7 @@ class Report:
     def text(self, selector):
         return self.browser.run(f"document.querySelector({selector!r}).textContent")
 
-    def place(self, x, y):
+    def point(self, x, y):
         """Screen coordinates of the middle of a pixel; they may be outside the window."""
         return self.browser.run(f"""(() => {{ const box = stage.getBoundingClientRect(); const pane = panes().at(-1);
             const [x, y] = toStage(pane, {x - WINDOW[0] + 0.5}, {y - WINDOW[1] + 0.5});
@@ -35,9 +35,9 @@ class Report:
     def color(self, x, y, shift=0.25):
         """Color of the canvas in a pixel, beside its middle, where no value is written."""
         return self.browser.run(f"""(() => {{ const pane = panes().at(-1);
-            const place = toStage(pane, {x - WINDOW[0]} + {shift}, {y - WINDOW[1]} + {shift}).map(Math.round);
+            const point = toStage(pane, {x - WINDOW[0]} + {shift}, {y - WINDOW[1]} + {shift}).map(Math.round);
             const one = new OffscreenCanvas(1, 1).getContext('2d', {{ willReadFrequently: true }});
-            one.drawImage(stage, -place[0], -place[1]);
+            one.drawImage(stage, -point[0], -point[1]);
             return Array.from(one.getImageData(0, 0, 1, 1).data); }})()""")
 
     def readout(self):
@@ -82,14 +82,14 @@ def slider(report):
 def values(report):
     browser = report.browser
     # Events of wheels have whole coordinates.
-    x, y = map(int, report.place(15, -12))
+    x, y = map(int, report.point(15, -12))
     under = f"((box) => toImage((({x}) - box.left) * density(), (({y}) - box.top) * density()))(stage.getBoundingClientRect())"
-    before, place = browser.run("state.zoom"), browser.run(under)
+    before, point = browser.run("state.zoom"), browser.run(under)
     for _ in range(4):
         browser.mouse("mouseWheel", x, y, deltaX=0, deltaY=-100)
     check.true("the wheel zooms", abs(browser.run("state.zoom") / before - 4) < 1e-6, browser.run("state.zoom"))
-    check.true("and keeps the place under the mouse", max(abs(a - b) for a, b in zip(place, browser.run(under))) < 1e-9, place)
-    browser.mouse("mouseMoved", *report.place(15, -12))
+    check.true("and keeps the point under the mouse", max(abs(a - b) for a, b in zip(point, browser.run(under))) < 1e-9, point)
+    browser.mouse("mouseMoved", *report.point(15, -12))
     check.equal("coordinates of the data window", report.text("#position"), "15, -12")
     green = float32(report.reference["G"][number(15, -12)])
     row = report.readout()[1]
@@ -97,17 +97,17 @@ def values(report):
     check.equal("its reference, to the last bit", float32(float(row[1])), green)
     check.true("and its difference", abs(float(row[3].replace("−", "-")) - (-0.5 - green)) < 1e-6, row[3])
     browser.run("byId('fit').click()")
-    browser.mouse("mouseMoved", *report.place(12, -18))
+    browser.mouse("mouseMoved", *report.point(12, -18))
     check.equal("NaN in coordinates", report.text("#position"), "12, -18")
     row = report.readout()[0]
     check.equal("NaN and its difference", row[2:], ["NaN", "NaN"])
-    browser.drag(report.place(16, -12), report.place(14, -12))
+    browser.drag(report.point(16, -12), report.point(14, -12))
     check.true("dragging moves the picture", browser.run("!state.fitted"))
 
 
 def written_values(report):
     browser = report.browser
-    browser.run("written = []; context.fillText = function (text, ...place) { written.push(text); CanvasRenderingContext2D.prototype.fillText.call(this, text, ...place); }")
+    browser.run("written = []; context.fillText = function (text, ...point) { written.push(text); CanvasRenderingContext2D.prototype.fillText.call(this, text, ...point); }")
     browser.run("document.querySelectorAll('#worst button')[2].click()")
     browser.settle()
     check.equal("the worst pixel of blue", report.text("#position"), "30, -7")
@@ -232,9 +232,9 @@ def keyboard(report):
     zoom = browser.run("state.zoom")
     browser.key("+")
     check.equal("plus zooms", browser.run("state.zoom"), 2 * zoom)
-    centre = browser.run("state.centre[0]")
+    center = browser.run("state.center[0]")
     browser.key("ArrowRight", SHIFT)
-    check.true("shift and arrows move the picture", browser.run("state.centre[0]") > centre)
+    check.true("shift and arrows move the picture", browser.run("state.center[0]") > center)
     browser.key("w")
     check.equal("W goes to the worst pixel", report.text("#position"), "12, -18")
     browser.key("?")

@@ -24,8 +24,8 @@ for ((run = 0; run < runs; run++)); do
     rm -rf "$out/check/s$seed-n8"
 done
 
-# The smallest p-value of each run, corrected for the number of its tests: uniform, or somewhat larger, since the tests of one
-# image are correlated.
+# The smallest p-value of each run, corrected for the number of its tests: uniform, or somewhat larger, since the tests
+# of one image are correlated.
 awk -v runs="$runs" '
     $2 == "FAIL" { failed[$1] = 1 }
     $2 == "PASS" {

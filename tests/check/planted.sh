@@ -39,8 +39,8 @@ planted=(
   'diffusion-coefficient-1-percent|crates/bssrdf/src/medium.rs|1.0 / \(3.0 \* self.reduced_extinction|1.01 / (3.0 * self.reduced_extinction'
 )
 
-# The copy is of the working tree, not of the last commit. All of its files are new, because cargo compares times. A copy of
-# an earlier run has the mark and is removed; a folder without the mark is not.
+# The copy is of the working tree, not of the last commit. All of its files are new, because cargo compares times. A
+# copy of an earlier run has the mark and is removed; a folder without the mark is not.
 mark=$work/tree/.planted
 if [ -e "$work/tree" ] && [ ! -e "$mark" ]; then
     echo "$work/tree: this script did not make it; give another folder as WORK" >&2
@@ -54,7 +54,8 @@ build() {
     (cd "$work/tree" && cargo build --release --quiet -p sample-surface -p gather -p compare)
 }
 
-# `true` stands in for cargo, since a full build would also make what the check does not need; make keeps what is unchanged.
+# `true` stands in for cargo, since a full build would also make what the check does not need; make keeps what is
+# unchanged.
 check() {
     mkdir -p "$work/out"
     if [ -d "$work/out/nothing" ] && [ "$1" != nothing ]; then cp -al "$work/out/nothing" "$work/out/$1"; fi
@@ -76,7 +77,8 @@ plant() {
     code=0
     check "$name" >"$work/$name.log" 2>"$work/$name.err" || code=$?
     if [ "$name" != nothing ]; then rm -rf "$work/out/$name"; fi
-    # A restored medium keeps its old time, so that nothing is built for it; restored code gets a new one, so that it is built.
+    # A restored medium keeps its old time, so that nothing is built for it; restored code gets a new one, so that it is
+    # built.
     if [[ $file == data/* ]]; then cp -p "$file" "$work/tree/$file"; else cp "$file" "$work/tree/$file"; fi
     echo "| $name | $([ $code = 0 ] && echo passed || echo failed) | $(verdicts "$work/$name.log") |"
     if [ "$name" = nothing ]; then [ $code = 0 ]; else [ $code != 0 ] && grep -q '^FAIL' "$work/$name.log"; fi

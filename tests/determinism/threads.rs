@@ -1,4 +1,4 @@
-//! The same bytes for any number of threads.
+//! Results have the same bytes for any number of threads.
 
 use bssrdf::{Model, built_in};
 use formats::cloud::{Cloud, Shard};

@@ -1,5 +1,5 @@
-//! Documents and scripts agree with the code: equations are cited by the numbers of docs/method.md, docs/architecture.md
-//! says where those of the note are, and planted errors are where tests/check/planted.sh says.
+//! Documents and scripts agree with the code: equations are cited by the numbers of docs/method.md,
+//! docs/architecture.md says where those of the note are, and planted errors are where tests/check/planted.sh says.
 
 use std::{
     fs,

@@ -70,7 +70,7 @@ fn diffuse_reflectance_is_the_first_moment() {
     }
 }
 
-/// `∫ T21 cos θ dω = π(1 − 2C₁(1/η)) = 4π C_φ(1/η)`: what normalises the exit lobe.
+/// `∫ T21 cos θ dω = π(1 − 2C₁(1/η)) = 4π C_φ(1/η)`: what normalizes the exit lobe.
 #[test]
 fn transmitted_lobe_has_the_norm_of_the_exit() {
     for eta in [1.05, 1.3, 1.5, 2.0] {

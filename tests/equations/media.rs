@@ -4,8 +4,8 @@ use bssrdf::{DVec3, Exitant, Incident, Medium, MediumError, Model, built_in, eva
 use serde_json::Value;
 use std::f64::consts::PI;
 use test_support::{
-    pipeline::{MODELS, grey},
-    quadrature::{Extent, plane_integral},
+    pipeline::{MODELS, gray},
+    quadrature::{Annulus, plane_integral},
     random::Random,
     walk::{Estimate, Matter, slab},
 };
@@ -40,7 +40,7 @@ fn colored(color: [f64; 3], radius: [f64; 3], rest: &str) -> Result<Medium, Medi
 }
 
 /// A half-space of that medium reflects the color: by the closed form (3.5), and by the integral of the model itself
-/// over a plane. Planted: one index for all media (10 % in a dark color).
+/// over a plane. Seen to catch: one index for all media (10 % in a dark color).
 #[test]
 fn a_medium_shows_the_color_asked_for() {
     for (eta, g) in [(1.0, 0.0), (1.3, 0.0), (1.5, 0.8), (0.7, -0.5)] {
@@ -52,8 +52,9 @@ fn a_medium_shows_the_color_asked_for() {
                 assert!((value - color[c]).abs() < 1e-10, "{value} for {}", color[c]);
                 let transport = medium.channels[c].transport();
                 assert!((transport * radius[c] * 1e-3 - 1.0).abs() < 1e-9, "1/{transport} for {} mm", radius[c]);
-                let extent = Extent { inner: 1e-6 / medium.channels[c].reduced_extinction(), outer: 60.0 / transport };
-                let integral = PI * plane_integral(&*Model::StandardDipole.of(&medium), c, 0.0, extent);
+                let annulus =
+                    Annulus { inner: 1e-6 / medium.channels[c].reduced_extinction(), outer: 60.0 / transport };
+                let integral = PI * plane_integral(&*Model::StandardDipole.of(&medium), c, 0.0, annulus);
                 assert!((integral - color[c]).abs() < 1e-6, "{integral} for {}", color[c]);
             }
         }
@@ -107,14 +108,14 @@ fn the_albedo_of_the_gltf_drafts() {
     assert!((single_scattering_albedo(0.5, 0.5) - 0.9117 / (1.0 - 0.5 * 0.0883)).abs() < 1e-4);
 }
 
-/// The purpose of the formula of the drafts: without a reflecting boundary, the medium shows the color under a
-/// constant environment, to the 1 % of the fit. Random walks, false alarms 1 in 10⁵. Planted: the albedo 2 % too low.
+/// The purpose of the formula of the drafts: without a reflecting boundary, the medium shows the color under a constant
+/// environment, to the 1 % of the fit. Random walks, false alarms 1 in 10⁵. Seen to catch: the albedo 2 % too low.
 #[test]
 fn the_drafts_color_is_that_of_random_walks() {
     let walks = if cfg!(feature = "slow") { 1_000_000 } else { 50_000 };
     for color in [0.1, 0.5, 0.9] {
         let matter = Matter { albedo: single_scattering_albedo(color, 0.0), asymmetry: 0.0, eta: 1.0 };
-        // Under a constant environment cosines have the density 2c: the centres of ten strata.
+        // Under a constant environment cosines have the density 2c: the centers of ten strata.
         let tenths = (0..10u64).map(|k| {
             let cosine = ((k as f64 + 0.5) / 10.0).sqrt();
             slab(&matter, f64::INFINITY, cosine, walks / 10, k).reflected
@@ -150,7 +151,7 @@ fn random_values(model: Model, medium: &Medium) -> impl Iterator<Item = f64> {
 
 #[test]
 fn nothing_scatters_no_light_out() {
-    let clear = [grey(300.0, 0.0, 0.0, 1.3), grey(0.0, 0.0, 0.0, 1.5)];
+    let clear = [gray(300.0, 0.0, 0.0, 1.3), gray(0.0, 0.0, 0.0, 1.5)];
     for (medium, model) in clear.iter().flat_map(|m| MODELS.map(|model| (m, model))) {
         assert!(random_values(model, medium).all(|s| s == 0.0), "{}", model.name());
     }
@@ -158,7 +159,7 @@ fn nothing_scatters_no_light_out() {
 
 #[test]
 fn without_absorption_values_are_finite() {
-    for medium in [grey(0.0, 800.0, 0.0, 1.3), grey(0.0, 1e6, 0.95, 1.0), grey(0.0, 20.0, -0.5, 0.7)] {
+    for medium in [gray(0.0, 800.0, 0.0, 1.3), gray(0.0, 1e6, 0.95, 1.0), gray(0.0, 20.0, -0.5, 0.7)] {
         for model in MODELS {
             let mut lit = 0;
             for value in random_values(model, &medium) {

@@ -4,17 +4,17 @@ use bssrdf::{Medium, Model};
 use serde_json::Value;
 use std::f64::consts::PI;
 use test_support::{
-    pipeline::grey,
-    quadrature::{Extent, plane_integral},
+    pipeline::gray,
+    quadrature::{Annulus, plane_integral},
 };
 
 /// Limits that are good for five digits: S is constant within 10⁻⁴ mean free paths, and the part beyond is e^{−40}
 /// or, without absorption, the tail of r⁻³.
-fn extent(medium: &Medium) -> Extent {
+fn annulus(medium: &Medium) -> Annulus {
     let c = medium.channels[0];
     let (path, transport) = (1.0 / c.reduced_extinction(), c.transport().min(c.grosjean_transport()));
     let outer = if transport > 0.0 { 40.0 / transport + 10.0 * path } else { 1e9 * path };
-    Extent { inner: 1e-6 * path, outer }
+    Annulus { inner: 1e-6 * path, outer }
 }
 
 struct ReferenceValue {
@@ -35,7 +35,7 @@ fn entries() -> Vec<ReferenceValue> {
         let tabulated = |name: &str, key: &str| number(&entry[name][key]);
         ReferenceValue {
             name: format!("{} {}", entry["material"], entry["channel"]),
-            medium: grey(coefficient("sigma_a"), coefficient("sigma_s"), coefficient("g"), coefficient("eta")),
+            medium: gray(coefficient("sigma_a"), coefficient("sigma_s"), coefficient("g"), coefficient("eta")),
             integrals: vec![
                 (Model::StandardDipole, 0.0, tabulated("standard", "I_0deg")),
                 (Model::StandardDipole, 60.0, tabulated("standard", "I_0deg")),
@@ -58,7 +58,7 @@ fn plane_integrals_agree_with_the_table() {
     for entry in entries() {
         for (model, degrees, expected) in &entry.integrals {
             let sine = f64::sin(f64::to_radians(*degrees)) / entry.medium.eta;
-            let value = plane_integral(&*model.of(&entry.medium), 0, sine, extent(&entry.medium));
+            let value = plane_integral(&*model.of(&entry.medium), 0, sine, annulus(&entry.medium));
             let error = (value / expected - 1.0).abs();
             assert!(error < 1e-7, "{} {} {degrees}°: {value} for {expected}", entry.name, model.name());
             worst = worst.max(error);
@@ -94,13 +94,13 @@ fn total_reflectance_has_its_closed_form() {
             assert!((value / expected - 1.0).abs() < 1e-12, "{}: {value} for {expected}", entry.name);
         }
     }
-    let conservative = [grey(0.0, 2.0, 0.0, 1.3), grey(0.0, 50.0, 0.9, 1.5), grey(3.0, 7.0, 0.3, 0.8)];
+    let conservative = [gray(0.0, 2.0, 0.0, 1.3), gray(0.0, 50.0, 0.9, 1.5), gray(3.0, 7.0, 0.3, 0.8)];
     let mut worst = 0.0f64;
     for medium in entries.iter().map(|e| &e.medium).chain(&conservative) {
         // R_d = π S_bare (3.6), R_d = 4π C_φ(1/η) S_bare (4.5).
-        let standard = PI * plane_integral(&*Model::StandardDipole.of(medium), 0, 0.0, extent(medium));
+        let standard = PI * plane_integral(&*Model::StandardDipole.of(medium), 0, 0.0, annulus(medium));
         let better =
-            PI * medium.interface.exit_norm * plane_integral(&*Model::BetterDipole.of(medium), 0, 0.0, extent(medium));
+            PI * medium.interface.exit_norm * plane_integral(&*Model::BetterDipole.of(medium), 0, 0.0, annulus(medium));
         for (value, expected) in [(standard, standard_closed_form(medium)), (better, better_closed_form(medium))] {
             worst = worst.max((value - expected).abs());
             assert!((value - expected).abs() < 1e-6, "{:?}: {value} for {expected}", medium.channels[0]);
@@ -112,5 +112,5 @@ fn total_reflectance_has_its_closed_form() {
 /// Without absorption the surface returns what enters, up to the exit normalization that the model lacks.
 #[test]
 fn the_standard_dipole_of_a_white_medium_reflects_everything() {
-    assert!((standard_closed_form(&grey(0.0, 5.0, 0.0, 1.3)) - 1.0).abs() < 1e-15);
+    assert!((standard_closed_form(&gray(0.0, 5.0, 0.0, 1.3)) - 1.0).abs() < 1e-15);
 }

@@ -10,7 +10,7 @@ use bssrdf::{
 };
 use glam::DVec3;
 use serde_json::Value;
-use test_support::pipeline::{MODELS, grey};
+use test_support::pipeline::{MODELS, gray};
 
 /// One reference vector.
 struct Vector {
@@ -41,7 +41,7 @@ fn read(vector: &Value) -> Vector {
     };
     Vector {
         tag: vector["tag"].as_str().unwrap_or_default().into(),
-        medium: grey(number("sigma_a"), number("sigma_s"), number("g"), number("eta")),
+        medium: gray(number("sigma_a"), number("sigma_s"), number("g"), number("eta")),
         incident: Incident { position: three("x_i"), normal: three("n_i"), direction: three("w_i") },
         exitant: Exitant { position: three("x_o"), normal: three("n_o"), direction: three("w_o") },
         transmittances: [number("T12"), number("T21")],

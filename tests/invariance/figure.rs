@@ -22,7 +22,7 @@ pub const PANEL: f64 = 4.0;
 pub struct Figure(pub Asset);
 
 impl Figure {
-    /// As it is in the repository.
+    /// The file as it is in the repository.
     pub fn read() -> Figure {
         Figure(Asset::read(&fs::read(data("scenes/figure.glb")).expect("the repository has the figure")))
     }
@@ -70,7 +70,7 @@ impl Figure {
         self
     }
 
-    /// Adds a light in the place of a node's light, with a color of its own.
+    /// Adds a light at the position of a node's light, with a color of its own.
     pub fn with_copy_of(mut self, name: &str, color: DVec3) -> Figure {
         let node = self.node(name).clone();
         let index = index_of(&node["extensions"]["KHR_lights_punctual"]["light"]);

@@ -62,7 +62,7 @@ fn lights_add_up() {
     }
 }
 
-/// A white light, and its three channels as three lights in the same place.
+/// A white light, and its three channels as three lights at the same position.
 ///
 /// Seen to catch: irradiance not divided by the probability of the light's choice.
 #[test]

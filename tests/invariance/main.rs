@@ -1,4 +1,4 @@
-//! What must not change, or must change in a known way, when a scene is described differently: other units, another
+//! Images must not change, or must change in a known way, when a scene is described differently: other units, another
 //! position or orientation, its mirror image, other triangles for the same surface, other lights.
 //!
 //! All tests render the figure of `data/scenes`, whose glTF document they edit: 38 000 triangles, spot lights and a
@@ -12,7 +12,7 @@ mod lights;
 mod mirror;
 mod parts;
 mod picture;
-mod place;
+mod position;
 mod scale;
 mod tessellation;
 mod unseen;

@@ -41,8 +41,8 @@ fn mirror(cloud: &Cloud) -> Cloud {
     filed(&planted(cloud.meta(), &materials))
 }
 
-/// Signs change, digits do not: camera rays, hits and offsets are mirror images of each other up to the order of sums of
-/// three, and so are the codes of normals and directions.
+/// Signs change, digits do not: camera rays, hits and offsets are mirror images of each other up to the order of sums
+/// of three, and so are the codes of normals and directions.
 ///
 /// Seen to catch: the winding of mirrored meshes left as it is; interpolated normals not mirrored; a camera's
 /// right taken from its node instead of from forward and up.

@@ -21,7 +21,7 @@ pub const SEEDS: u64 = 24;
 
 /// Channels of the light that comes from the cloud.
 pub const SUBSURFACE: [&str; 3] = ["subsurface.R", "subsurface.G", "subsurface.B"];
-/// The channels of what lights light.
+/// The channels of all light that comes from lights.
 pub const DIFFUSE: [&str; 3] = ["diffuse.R", "diffuse.G", "diffuse.B"];
 
 /// How a picture is taken.
@@ -141,7 +141,7 @@ pub fn assert_close_at(
     assert!(beyond <= exceptions, "{what}: {beyond} pixels differ by more than {tolerance:e}");
 }
 
-/// [`assert_close_at`] for pixels in the same place.
+/// [`assert_close_at`] for pixels at the same position.
 pub fn assert_close(what: &str, images: [&Image; 2], tolerance: f64, exceptions: usize) {
     assert_close_at(what, images, tolerance, exceptions, |k| k);
 }

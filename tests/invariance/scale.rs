@@ -46,7 +46,7 @@ fn powers_of_two_give_the_same_bits() {
 
 /// Other factors round every coordinate anew to float32, by 3·10⁻⁸ of 0.05 m, which is 10⁻⁶ of a mean free path:
 /// light changes by that much where one sample outshines the others, and by less where many add up. The uniform
-/// choice picks the same triangles; the choice by area can take a neighbour where the running sum of areas rounds
+/// choice picks the same triangles; the choice by area can take a neighbor where the running sum of areas rounds
 /// across the number drawn. Pixels that one sample outshines are the few exceptions; with this seed no sum of areas
 /// rounds across, which would change many. Samples that the floor lights carry the light of the point where their ray
 /// ends, which moves with the rounding of its origin: they are some of the exceptions.

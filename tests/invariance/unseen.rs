@@ -12,14 +12,14 @@ use test_support::{
 };
 
 /// A box of 4 cm about a point.
-fn box_at(centre: Vec3) -> Mesh {
+fn box_at(center: Vec3) -> Mesh {
     let mut mesh = slab(DVec3::splat(0.02), 2);
-    mesh.positions.iter_mut().for_each(|p| *p += centre);
+    mesh.positions.iter_mut().for_each(|p| *p += center);
     mesh
 }
 
 /// An opaque, unlit box on the floor behind the camera. In its first position it leaves the bounds of the scene as
-/// they are, and the subsurface layer keeps its bits. In the second it moves the centre up by 0.13 m: coordinates of
+/// they are, and the subsurface layer keeps its bits. In the second it moves the center up by 0.13 m: coordinates of
 /// the figure are then rounded to float32 at that height, by up to 8·10⁻⁹ m or 10⁻⁵ of a mean free path, areas of
 /// triangles 0.4 mm across change by 4·10⁻⁵, and so does the flux of their samples. The uniform choice keeps the
 /// triangles; a sample or two may become shadowed.

@@ -46,7 +46,7 @@ def firefly(picture):
 
 def pictures():
     base = scene(48, 40)
-    grey = 0.4 + 0.02 * hashed((40, 48, 1), 5) * numpy.ones(3)
+    gray = 0.4 + 0.02 * hashed((40, 48, 1), 5) * numpy.ones(3)
     negative = base - 0.2 * (hashed(base.shape, 6) > 0.8)
     result = {
         "base": base,
@@ -54,8 +54,8 @@ def pictures():
         "blur": blurred(base),
         "firefly": firefly(base),
         "brighter": base * 1.01,
-        "grey": grey,
-        "grey-tinted": grey * numpy.array([1.03, 1.0, 0.97]),
+        "gray": gray,
+        "gray-tinted": gray * numpy.array([1.03, 1.0, 0.97]),
         "negative": negative,
     }
     # Smaller than a window of SSIM, and larger than a tile of 128 pixels, both ways.

@@ -18,7 +18,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 IMAGES, EXPECTED = HERE / "images", HERE / "expected.json"
 PACKAGES = ["scikit-image==0.26.0", "flip-evaluator==1.7", "OpenEXR==3.5.3", "numpy==2.4.6"]
 PAIRS = [("base", test) for test in ("base", "noise", "blur", "firefly", "brighter", "negative")]
-PAIRS += [("firefly", "base"), ("negative", "base"), ("grey", "grey-tinted")]
+PAIRS += [("firefly", "base"), ("negative", "base"), ("gray", "gray-tinted")]
 PAIRS += [(size, f"{size}-noise") for size in ("17x13", "7x40", "1x1", "140x20", "20x140")]
 # Tolerances; that of PSNR is in dB.
 TOLERANCE = {"psnr": 1e-4, "ssim": 1e-4, "flip_ldr": 1e-3, "flip_hdr": 1e-3, "start": 1e-4, "stop": 1e-4, "count": 0}

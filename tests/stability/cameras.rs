@@ -1,4 +1,4 @@
-//! Cameras in unusual places, and rays that meet edges and vertices. The object is clear and the sky constant: every
+//! Cameras at unusual positions, and rays that meet edges and vertices. The object is clear and the sky constant: every
 //! path must show exactly the sky, or it was lost at an interface.
 
 use crate::scenes::{Clear, aimed_at, assert_invisible, channel, render};
@@ -8,7 +8,7 @@ use glam::DVec3;
 use scene::Camera;
 use test_support::{
     meshes::{Mesh, Part, quad, slab, sphere, world},
-    pipeline::{by_area, cloud, grey, settings},
+    pipeline::{by_area, cloud, gray, settings},
     random::Random,
 };
 
@@ -21,7 +21,7 @@ fn one_pixel() -> Settings {
 }
 
 /// The camera is inside: the first interface is met from within, without one before it, and the way to it lies in the
-/// medium. The camera is close enough to the centre to avoid total reflection.
+/// medium. The camera is close enough to the center to avoid total reflection.
 #[test]
 fn camera_inside_a_clear_medium() {
     let body = body(sphere(1.0, 3));
@@ -37,7 +37,7 @@ fn camera_inside_a_clear_medium() {
     }
 }
 
-/// The same through an absorbing medium of index 1: `e^{−σ_a s}` from the centre, by roulette, so that each path
+/// The same through an absorbing medium of index 1: `e^{−σ_a s}` from the center, by roulette, so that each path
 /// carries all or nothing.
 #[test]
 fn camera_inside_an_absorbing_medium() {
@@ -46,7 +46,7 @@ fn camera_inside_an_absorbing_medium() {
     let projection = scene::Projection::Perspective { tangent: 1.0 };
     let camera = Camera { position: DVec3::ZERO, projection, ..aimed_at(DVec3::ZERO, DVec3::X, 1.0) };
     let cloud = cloud(&body.world, &by_area(16, 0));
-    let rendered = render(&body.world, &cloud, &[grey(0.5, 0.0, 0.0, 1.0)], &camera, &settings);
+    let rendered = render(&body.world, &cloud, &[gray(0.5, 0.0, 0.0, 1.0)], &camera, &settings);
     let mean = rendered.pixels.iter().map(|p| p.beauty().x).sum::<f64>() / 64.0;
     // Five standard errors of 16 384 paths.
     assert!((mean - (-0.5f64).exp()).abs() < 5.0 * 0.5 / 128.0, "{mean}");
@@ -75,7 +75,7 @@ fn camera_ray_along_an_edge() {
     }
 }
 
-/// Rays through vertices from all sides, into the object and past it: no ray may pass between neighbouring faces. (A
+/// Rays through vertices from all sides, into the object and past it: no ray may pass between neighboring faces. (A
 /// ray that touches the object only in a vertex may miss it, and is counted.)
 #[test]
 fn camera_ray_through_a_vertex() {

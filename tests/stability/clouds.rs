@@ -15,7 +15,7 @@ use glam::{DVec3, Vec3};
 use test_support::{
     lit::{scatterer, sum},
     meshes::{Light, Part, World, quad, slab, world},
-    pipeline::{ESTIMATORS, Lit, MODELS, Point, cloud, grey, settings, stratified},
+    pipeline::{ESTIMATORS, Lit, MODELS, Point, cloud, gray, settings, stratified},
     planted::{Halves, alternating, cloud_of},
     random::Random,
 };
@@ -27,7 +27,7 @@ fn default_settings(model: Model) -> Settings {
 }
 
 fn milky() -> Medium {
-    grey(100.0, 1000.0, 0.0, 1.3)
+    gray(100.0, 1000.0, 0.0, 1.3)
 }
 
 fn sunny_slab() -> World {
@@ -95,7 +95,7 @@ fn all_samples_in_one_point() {
     assert_sums("uneven samples in a point", &uneven, &around(at.as_dvec3()), 0.1);
 }
 
-/// Samples along a line, evenly spaced and increasingly crowded: nodes whose centre is far from most of their
+/// Samples along a line, evenly spaced and increasingly crowded: nodes whose center is far from most of their
 /// samples.
 #[test]
 fn all_samples_on_a_line() {
@@ -109,8 +109,8 @@ fn all_samples_on_a_line() {
 /// Points on a square of 8 mm.
 fn scattered(count: usize) -> Vec<Sample> {
     let mut random = Random(8);
-    let mut place = || Vec3::new(random.between(-4e-3, 4e-3) as f32, random.between(-4e-3, 4e-3) as f32, 0.0);
-    (0..count).map(|_| sample(place(), 1.0)).collect()
+    let mut position = || Vec3::new(random.between(-4e-3, 4e-3) as f32, random.between(-4e-3, 4e-3) as f32, 0.0);
+    (0..count).map(|_| sample(position(), 1.0)).collect()
 }
 
 /// The exitant point coincides with a sample to the last digit, amid others.
@@ -193,7 +193,9 @@ fn samples_and_nodes_that_were_never_checked_do_no_harm() {
             4 => nodes.iter_mut().for_each(|n| n.flux = -n.flux),
             1 => tiles.iter_mut().flatten().for_each(|r| r.flux = [number(); 3]),
             2 => nodes.iter_mut().for_each(|n| (n.flux, n.radius) = (number(), number())),
-            _ => nodes.iter_mut().for_each(|n| (n.centre[0], n.spread, n.turn) = (number(), number(), number())),
+            _ => nodes
+                .iter_mut()
+                .for_each(|n| (n.center[0], n.spread, n.direction_deviation) = (number(), number(), number())),
         }
         for len in [group.samples as usize, usize::MAX] {
             let samples = LitSamples::of(&tiles, &nodes, len, 1.3);

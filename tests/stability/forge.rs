@@ -25,14 +25,14 @@ impl Forged {
         0..HEADER + ENTRY * u32::from_le_bytes(self.0[32..36].try_into().expect("four bytes")) as usize
     }
 
-    /// Where the table says that a section is.
+    /// The range of a section, as the table states it.
     pub fn section(&self, name: &str) -> Range<usize> {
         let at = self.entry(name);
         let (offset, bytes) = (self.word(at + 24) as usize, self.word(at + 32) as usize);
         offset..offset + bytes
     }
 
-    /// Where a section's entry is in the table.
+    /// The range of a section's entry in the table.
     pub fn entry(&self, name: &str) -> usize {
         let entries = (HEADER..self.head().end).step_by(ENTRY);
         let named = |at: &usize| self.0[*at..].starts_with(name.as_bytes());

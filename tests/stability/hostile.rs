@@ -21,7 +21,7 @@ use test_support::{
     Bench,
     lit::{scatterer, sum},
     meshes::{Light, Part, World, quad, world},
-    pipeline::{ESTIMATORS, grey, sampled, settings, stratified, write},
+    pipeline::{ESTIMATORS, gray, sampled, settings, stratified, write},
 };
 
 /// Stored samples: five tiles in each half, whose trees have room for eight, so that some nodes hold nothing.
@@ -50,7 +50,7 @@ impl Lab {
         write(&sampled(&world, &stratified(samples, 1)), &bench.path("good.cloud"));
         let good = Forged(bench.read("good.cloud"));
         let camera = aimed_at(DVec3::ZERO, DVec3::new(0.3, 0.2, 1.0), 2e-3);
-        let scatterer = scatterer(Model::StandardDipole, &grey(100.0, 1000.0, 0.0, 1.3));
+        let scatterer = scatterer(Model::StandardDipole, &gray(100.0, 1000.0, 0.0, 1.3));
         Lab { bench, world, camera, scatterer, good }
     }
 
@@ -86,7 +86,7 @@ impl Lab {
             && let Ok(cloud) = Cloud::open(&self.path())
             && cloud.meta().materials.iter().all(|m| m.index == 0)
         {
-            let media = vec![grey(100.0, 1000.0, 0.0, 1.3); cloud.meta().materials.len()];
+            let media = vec![gray(100.0, 1000.0, 0.0, 1.3); cloud.meta().materials.len()];
             let estimator = Estimator::Cut { accuracy: 0.01 };
             let settings = Settings { estimator, paths_per_pixel: 2, ..settings(Model::StandardDipole, 2, 2) };
             let (scene, rays) = (&self.world.scene, &self.world.rays);
@@ -119,8 +119,8 @@ impl Lab {
             words.iter().map(move |word| {
                 let mut forged = self.good.clone();
                 forged.put(at, &word.to_le_bytes());
-                let place = (at - range.start) / 4;
-                (format!("word {place} of {section} is {:e} ({word:x})", f32::from_bits(*word)), forged.sealed())
+                let index = (at - range.start) / 4;
+                (format!("word {index} of {section} is {:e} ({word:x})", f32::from_bits(*word)), forged.sealed())
             })
         })
     }

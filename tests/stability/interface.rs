@@ -7,13 +7,13 @@ use gather::samples::{Exit, LitSamples};
 use glam::{DVec3, Vec3};
 use test_support::{
     lit::{scatterer, sum},
-    pipeline::{ESTIMATORS, MODELS, grey},
+    pipeline::{ESTIMATORS, MODELS, gray},
     planted::{alternating, cloud_of},
 };
 
 /// α' = 0.9; lengths are mean free paths.
 fn medium(eta: f64) -> Medium {
-    grey(0.1, 0.9, 0.0, eta)
+    gray(0.1, 0.9, 0.0, eta)
 }
 
 /// Light that enters at an angle and leaves nearby: `S_bare` with the same ω12 for all indices.

@@ -10,10 +10,10 @@ use scene::{
 };
 use test_support::{
     meshes::{Light, Part, World, quad, rectangle, slab, world},
-    pipeline::{ESTIMATORS, MODELS, by_area, cloud, grey, settings},
+    pipeline::{ESTIMATORS, MODELS, by_area, cloud, gray, settings},
 };
 
-/// The centre of the square in z = 0.
+/// The center of the square in z = 0.
 fn middle() -> SurfacePoint {
     SurfacePoint { position: DVec3::ZERO, normal: DVec3::Z, geometric_normal: DVec3::Z, triangle: 0, material: 0 }
 }
@@ -24,12 +24,12 @@ fn under(height: f64) -> World {
     world(&[Part::translucent(quad(0.5, 0.0, 1))], &[light], DVec3::ZERO)
 }
 
-/// An image of the centre by all models and estimators.
+/// An image of the center by all models and estimators.
 fn render_all(world: &World, cloud: &Cloud) {
     for (estimator, model) in ESTIMATORS.into_iter().flat_map(|estimator| MODELS.map(|model| (estimator, model))) {
         let settings = Settings { paths_per_pixel: 4, filter: Filter::Box, estimator, ..settings(model, 8, 8) };
         let camera = aimed_at(DVec3::ZERO, DVec3::new(0.3, 0.2, 1.0), 0.4);
-        render(world, cloud, &[grey(10.0, 1000.0, 0.5, 1.3)], &camera, &settings);
+        render(world, cloud, &[gray(10.0, 1000.0, 0.5, 1.3)], &camera, &settings);
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::evaluate::{along_plane, assert_close, assert_is, bare, gather, onto_plane, out_of_plane};
 use bssrdf::{Coefficients, Medium, Model, Separation, built_in, built_in_names};
 use glam::DVec3;
-use test_support::pipeline::{MODELS, grey, medium};
+use test_support::pipeline::{MODELS, gray, medium};
 
 /// Separations lit from the front, and from behind through a sheet; `scale` in m.
 fn separations(scale: f64) -> [Separation; 3] {
@@ -19,7 +19,7 @@ fn separations(scale: f64) -> [Separation; 3] {
 /// σ_a = 0: no σ_tr to divide by, and the roulette accepts everything: the sum is the exhaustive one.
 #[test]
 fn no_absorption() {
-    let medium = grey(0.0, 1.0, 0.0, 1.3);
+    let medium = gray(0.0, 1.0, 0.0, 1.3);
     for model in MODELS {
         assert_eq!(model.of(&medium).transport(), [0.0; 3]);
     }
@@ -29,7 +29,7 @@ fn no_absorption() {
         assert!(values.iter().all(|v| v.fast.min_element() > 0.0));
     }
     // The value is the limit of decreasing absorption.
-    let little = grey(1e-12, 1.0, 0.0, 1.3);
+    let little = gray(1e-12, 1.0, 0.0, 1.3);
     for separation in separations(1.0) {
         for (none, little) in bare(&medium, &separation).iter().zip(bare(&little, &separation)) {
             assert_is(none.model.name(), little.exact, none.exact, 1e-4);
@@ -44,7 +44,7 @@ fn no_scattering() {
     let milky = Coefficients { sigma_a: 1.0, sigma_s: 2.0, asymmetry: 0.5 };
     let half = medium([clear(1.0), milky, clear(0.0)], 1.3);
     for separation in separations(1.0) {
-        for value in bare(&grey(1.0, 0.0, 0.0, 1.3), &separation) {
+        for value in bare(&gray(1.0, 0.0, 0.0, 1.3), &separation) {
             assert_eq!((value.exact, value.fast), (DVec3::ZERO, DVec3::ZERO));
         }
         for (half, all) in bare(&half, &separation).iter().zip(bare(&medium([milky; 3], 1.3), &separation)) {
@@ -58,7 +58,7 @@ fn no_scattering() {
 /// σ_t = 0: a vacuum has no mean free path, and scatters nothing.
 #[test]
 fn vacuum() {
-    let vacuum = grey(0.0, 0.0, 0.0, 1.3);
+    let vacuum = gray(0.0, 0.0, 0.0, 1.3);
     assert!(vacuum.is_clear());
     assert!(MODELS.iter().all(|model| model.of(&vacuum).transport() == [0.0; 3]));
     for separation in separations(1.0) {
@@ -73,7 +73,7 @@ fn vacuum() {
 #[test]
 fn asymmetry_near_its_ends() {
     for g in [-0.99, -0.5, 0.5, 0.9, 0.99, 0.9999] {
-        let [sharp, soft] = [grey(0.1, 0.9 / (1.0 - g), g, 1.3), grey(0.1, 0.9, 0.0, 1.3)];
+        let [sharp, soft] = [gray(0.1, 0.9 / (1.0 - g), g, 1.3), gray(0.1, 0.9, 0.0, 1.3)];
         for (k, separation) in separations(1.0).iter().enumerate() {
             let values = bare(&sharp, separation);
             assert_close(&values, 1e-5);
@@ -90,7 +90,7 @@ fn asymmetry_near_its_ends() {
 /// Albedo 1 − 10⁻⁹: no digits are lost against σ_a = 0, from which the result differs by `σ_tr r`.
 #[test]
 fn almost_no_absorption() {
-    let [almost, none] = [grey(1e-9, 1.0 - 1e-9, 0.0, 1.3), grey(0.0, 1.0, 0.0, 1.3)];
+    let [almost, none] = [gray(1e-9, 1.0 - 1e-9, 0.0, 1.3), gray(0.0, 1.0, 0.0, 1.3)];
     for separation in separations(1.0) {
         let values = bare(&almost, &separation);
         assert_close(&values, 1e-5);
@@ -105,7 +105,7 @@ fn almost_no_absorption() {
 fn coefficients_that_underflow() {
     for tiny in [1e-30, 1e-60, 1e-120, 1e-160, 1e-200, 1e-300, f64::MIN_POSITIVE, 5e-324] {
         for (sigma_a, sigma_s) in [(0.0, tiny), (tiny, tiny), (tiny, 0.0), (1.0, tiny), (tiny, 1.0)] {
-            let medium = grey(sigma_a, sigma_s, 0.0, 1.3);
+            let medium = gray(sigma_a, sigma_s, 0.0, 1.3);
             assert!(MODELS.iter().all(|model| model.of(&medium).transport().iter().all(|t| t.is_finite())));
             for separation in separations(1.0) {
                 bare(&medium, &separation);
@@ -121,14 +121,15 @@ fn the_largest_coefficients() {
     for (sigma_a, sigma_s) in [(0.0, 1e12), (1e12, 1e12), (1e12, 1.0), (1.0, 1e12)] {
         for size in [1e-15, 1e-9, 1e-3, 1.0, 1e3, 1e6] {
             for separation in separations(size) {
-                bare(&grey(sigma_a, sigma_s, 0.0, 1.3), &separation);
+                bare(&gray(sigma_a, sigma_s, 0.0, 1.3), &separation);
             }
-            gather(&grey(sigma_a, sigma_s, 0.0, 1.3), &onto_plane(DVec3::Z), &out_of_plane(size));
+            gather(&gray(sigma_a, sigma_s, 0.0, 1.3), &onto_plane(DVec3::Z), &out_of_plane(size));
         }
     }
 }
 
-/// `S(x; σ) = σ_t'² Ŝ(σ_t' x)`: exactly so for powers of two, mean free paths from 10⁻⁶ to 10⁶ of the object and beyond.
+/// `S(x; σ) = σ_t'² Ŝ(σ_t' x)`: exactly so for powers of two, mean free paths from 10⁻⁶ to 10⁶ of the object and
+/// beyond.
 #[test]
 fn any_scale_is_like_any_other() {
     for name in ["ketchup", "marble"] {

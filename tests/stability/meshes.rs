@@ -1,4 +1,4 @@
-//! Meshes that modelling programs make: without area, with needles, duplicates, holes, or inside out.
+//! Meshes that modeling programs make: without area, with needles, duplicates, holes, or inside out.
 
 use crate::{
     evaluate::assert_is,
@@ -12,7 +12,7 @@ use sample_surface::Choice;
 use scene::NormalKind;
 use test_support::{
     meshes::{Light, Mesh, Part, World, quad, rectangle, slab, sphere, world},
-    pipeline::{Lit, MODELS, Point, Sampling, by_area, cloud, grey, settings},
+    pipeline::{Lit, MODELS, Point, Sampling, by_area, cloud, gray, settings},
 };
 
 fn sun() -> Light {
@@ -74,7 +74,7 @@ fn slivers_of_a_millionth() {
         assert_eq!(cloud.len(), 1000, "a flat mesh has no shadow");
         let settings = spread(Model::DirectionalDipole);
         let camera = aimed_at(DVec3::new(1e-5, 0.0, 0.0), DVec3::new(0.3, 0.0, 1.0), 2e-5);
-        let rendered = render(&world, &cloud, &[grey(1.0, 10.0, 0.0, 1.3)], &camera, &settings);
+        let rendered = render(&world, &cloud, &[gray(1.0, 10.0, 0.0, 1.3)], &camera, &settings);
         assert!(channel(&rendered, &settings, "Z").iter().all(|z| *z > 0.0), "a ray slipped through");
     }
 }
@@ -97,7 +97,7 @@ fn duplicate_triangles_are_one_surface() {
         assert_is("flux", DVec3::from_array(two.meta().mean_flux_w), DVec3::splat(0.8), 1e-6);
         let settings = spread(Model::StandardDipole);
         let camera = aimed_at(DVec3::ZERO, DVec3::new(0.3, 0.2, 1.0), 0.2);
-        let counts = render(&twice, &two, &[grey(1.0, 10.0, 0.0, 1.3)], &camera, &settings).counts;
+        let counts = render(&twice, &two, &[gray(1.0, 10.0, 0.0, 1.3)], &camera, &settings).counts;
         assert_eq!((counts.nested, counts.rays), (0, 3 * counts.paths));
     }
 }
@@ -113,10 +113,10 @@ fn open_mesh() {
     let below = aimed_at(DVec3::ZERO, DVec3::new(0.3, 0.2, -1.0), 0.2);
     for model in MODELS {
         let settings = spread(model);
-        let counts = render(&world, &cloud, &[grey(1.0, 10.0, 0.0, 1.5)], &above, &settings).counts;
+        let counts = render(&world, &cloud, &[gray(1.0, 10.0, 0.0, 1.5)], &above, &settings).counts;
         assert_eq!((counts.gathers, counts.escaped_inside), (counts.paths, 0), "{counts:?}");
         assert_eq!((counts.rays, counts.cut_by_depth, counts.nested), (3 * counts.paths, 0, 0));
-        let behind = render(&world, &cloud, &[grey(1.0, 10.0, 0.0, 1.5)], &below, &settings);
+        let behind = render(&world, &cloud, &[gray(1.0, 10.0, 0.0, 1.5)], &below, &settings);
         assert_eq!(behind.counts.gathers, 0);
         let [above, below] =
             [&above, &below].map(|camera| assert_invisible("open and clear", &clear, &[1.5], camera, &settings));
@@ -137,12 +137,12 @@ fn inside_out_mesh() {
     assert!(cloud.is_empty());
     assert_eq!(cloud.meta().samples_dropped.values().sum::<u64>(), 1000);
     let settings = spread(Model::DirectionalDipole);
-    let rendered = render(&world, &cloud, &[grey(1.0, 10.0, 0.0, 1.3)], &camera, &settings);
+    let rendered = render(&world, &cloud, &[gray(1.0, 10.0, 0.0, 1.3)], &camera, &settings);
     assert!(channel(&rendered, &settings, "subsurface.R").iter().all(|x| *x == 0.0));
     assert_invisible("inside out", &Clear::new(world), &[1.0], &camera, &settings);
 }
 
-/// Two objects in one place: neither shadows the other, and a path that enters one of them leaves one of them, never
+/// Two objects at the same position: neither shadows the other, and a path that enters one of them leaves one of them, never
 /// both or none.
 #[test]
 fn two_coincident_shells() {
@@ -152,7 +152,7 @@ fn two_coincident_shells() {
     assert_eq!(sampled.meta().samples_dropped["shadowed"], 0);
     let camera = aimed_at(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0), 1.2);
     let settings = spread(Model::BetterDipole);
-    let milky = [grey(1.0, 10.0, 0.0, 1.3), grey(1.0, 5.0, 0.0, 1.5)];
+    let milky = [gray(1.0, 10.0, 0.0, 1.3), gray(1.0, 5.0, 0.0, 1.5)];
     let counts = render(&world, &sampled, &milky, &camera, &settings).counts;
     assert_eq!((counts.escaped_inside, counts.nested), (0, 0));
     let clear = Clear::new(world);
@@ -172,7 +172,7 @@ fn one_triangle() {
     for model in MODELS {
         let settings = spread(model);
         let camera = aimed_at(DVec3::new(0.25, 0.25, 0.0), DVec3::new(0.1, 0.2, 1.0), 0.1);
-        let rendered = render(&world, &cloud, &[grey(1.0, 10.0, 0.0, 1.3)], &camera, &settings);
+        let rendered = render(&world, &cloud, &[gray(1.0, 10.0, 0.0, 1.3)], &camera, &settings);
         assert!(rendered.counts.gathers > 0);
         assert!(channel(&rendered, &settings, "subsurface.R").iter().all(|x| *x > 0.0));
     }
@@ -182,7 +182,7 @@ fn one_triangle() {
 #[test]
 fn one_sample() {
     let world = sunny(slab(DVec3::new(1.0, 1.0, 0.5), 1));
-    let medium = grey(1.0, 3.0, 0.0, 1.3);
+    let medium = gray(1.0, 3.0, 0.0, 1.3);
     let point = Point { position: DVec3::new(0.1, 0.2, 0.5), normal: DVec3::Z };
     let exitant = Exitant { position: point.position, normal: point.normal, direction: DVec3::Z };
     let mut unlit = 0;
@@ -221,7 +221,7 @@ fn ten_million_triangles() {
         assert_is("flux", DVec3::from_array(cloud.meta().mean_flux_w), DVec3::splat(0.8), 1e-3);
         let settings = spread(Model::DirectionalDipole);
         let camera = aimed_at(DVec3::ZERO, DVec3::new(0.3, 0.2, 1.0), 0.4);
-        let rendered = render(&world, &cloud, &[grey(1.0, 10.0, 0.0, 1.3)], &camera, &settings);
+        let rendered = render(&world, &cloud, &[gray(1.0, 10.0, 0.0, 1.3)], &camera, &settings);
         assert_eq!((rendered.counts.gathers, rendered.counts.escaped_inside), (rendered.counts.paths, 0));
         assert!(channel(&rendered, &settings, "Z").iter().all(|z| *z > 0.0));
     }

@@ -8,7 +8,7 @@ use sample_surface::{Plan, SampleError, Surfaces};
 use std::slice::from_ref;
 use test_support::{
     meshes::{Light, Part, World, quad, world},
-    pipeline::{MODELS, by_area, cloud, filed, grey, orthographic, sampled, settings},
+    pipeline::{MODELS, by_area, cloud, filed, gray, orthographic, sampled, settings},
     planted::{Halves, planted, stored},
 };
 
@@ -26,7 +26,7 @@ fn rendered(flux: Vec3, twins: bool, settings: &Settings) -> Rendered {
     let [one, other]: Halves = halves;
     let halves = if twins { [one.clone(), one] } else { [one, other] };
     let cloud = filed(&planted(drawn.meta(), &[halves]));
-    let (media, camera) = ([grey(0.0, 1e3, 0.0, 1.3)], orthographic(DVec3::Z, 0.1));
+    let (media, camera) = ([gray(0.0, 1e3, 0.0, 1.3)], orthographic(DVec3::Z, 0.1));
     let input =
         Input { scene: &world.scene, rays: &world.rays, clouds: from_ref(&cloud), media: &media, camera: &camera };
     render(&input, settings, |_| ())

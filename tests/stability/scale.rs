@@ -6,7 +6,7 @@ use gather::{Filter, Settings, estimator::Estimator};
 use glam::DVec3;
 use test_support::{
     meshes::{Light, Part, World, slab, world},
-    pipeline::{ESTIMATORS, MODELS, by_area, cloud, grey, medium, settings},
+    pipeline::{ESTIMATORS, MODELS, by_area, cloud, gray, medium, settings},
 };
 
 fn lit_slab(size: f64) -> World {
@@ -47,7 +47,7 @@ fn pictures_of_any_size_are_the_same() {
         let cloud = cloud(&world, &by_area(500, 1));
         let camera = aimed_at(DVec3::ZERO, DVec3::new(0.3, 0.2, 1.0), size);
         let camera = scene::Camera { position: camera.position * size, ..camera };
-        let medium = [grey(1.0 / size, 10.0 / size, 0.0, 1.3)];
+        let medium = [gray(1.0 / size, 10.0 / size, 0.0, 1.3)];
         let estimator = Estimator::Roulette(gather::estimator::Rule::Mixture);
         MODELS.map(|model| {
             let settings = Settings { paths_per_pixel: 4, filter: Filter::Box, estimator, ..settings(model, 8, 8) };

@@ -7,7 +7,7 @@ use glam::DVec3;
 use scene::Camera;
 use test_support::{
     meshes::World,
-    pipeline::{by_area, cloud, grey, orthographic},
+    pipeline::{by_area, cloud, gray, orthographic},
 };
 
 /// The sky that clear objects show, which is no light to sample: powers of two, so that means of equal values are
@@ -48,7 +48,7 @@ impl Clear {
 
     /// Renders with clear media of these indices.
     pub fn render(&self, etas: &[f64], camera: &Camera, settings: &Settings) -> Rendered {
-        let media: Vec<Medium> = etas.iter().map(|eta| grey(0.0, 0.0, 0.0, *eta)).collect();
+        let media: Vec<Medium> = etas.iter().map(|eta| gray(0.0, 0.0, 0.0, *eta)).collect();
         render(&self.world, &self.cloud, &media, camera, settings)
     }
 }

@@ -6,11 +6,11 @@ use crate::evaluate::{along_plane, assert_close, assert_is, bare, gather, onto_p
 use bssrdf::{Exitant, Medium, Model, Separation, fresnel};
 use glam::DVec3;
 use std::f64::consts::PI;
-use test_support::{pipeline::grey, random::Random};
+use test_support::{pipeline::gray, random::Random};
 
 /// α' = 0.9.
 fn medium() -> Medium {
-    grey(0.1, 0.9, 0.0, 1.3)
+    gray(0.1, 0.9, 0.0, 1.3)
 }
 
 /// A unit vector `angle` from −Z.
@@ -57,7 +57,7 @@ fn light_along_the_exit_surface() {
     }
 }
 
-/// `μ0 ≤ 0` is lit from behind, `μ0 > 0` from the front, and `d_r` jumps between them (method.md section 8).
+/// `μ0 ≤ 0` is lit from behind, `μ0 > 0` from the front, and `d_r` jumps between them (docs/method.md section 8).
 #[test]
 fn the_depth_of_the_source_jumps_where_the_light_turns_from_behind() {
     let separation = |mu0: f64| Separation {
@@ -74,7 +74,7 @@ fn the_depth_of_the_source_jumps_where_the_light_turns_from_behind() {
 }
 
 /// `x ∥ n_i`, as on the far side of a sheet: the direction of the light then gives the mirror normal, the limit for
-/// points beside the line on the side of the light (method.md 5.6).
+/// points beside the line on the side of the light (docs/method.md 5.6).
 #[test]
 fn offset_along_the_entry_normal() {
     for angle in [1e-9, 1e-4, 0.3, 0.7] {
@@ -111,7 +111,7 @@ fn everything_in_one_line() {
 }
 
 /// `x` nearly parallel to ω12, with n_i in the same line or not: `r² − (x·ω12)²` would lose its digits in float32 or
-/// become negative (method.md section 8).
+/// become negative (docs/method.md section 8).
 #[test]
 fn offset_along_the_refracted_light() {
     let mut random = Random(5);
@@ -143,10 +143,10 @@ fn far_away_with_absorption() {
     }
 }
 
-/// σ_a = 0: `S ~ r⁻³`, though the two sources of a dipole cancel to the last digits (method.md section 9).
+/// σ_a = 0: `S ~ r⁻³`, though the two sources of a dipole cancel to the last digits (docs/method.md section 9).
 #[test]
 fn far_away_without_absorption() {
-    let medium = grey(0.0, 1.0, 0.0, 1.3);
+    let medium = gray(0.0, 1.0, 0.0, 1.3);
     let first = bare(&medium, &along_plane(1e3));
     for distance in [1e4, 1e5, 1e6] {
         let values = bare(&medium, &along_plane(distance));
@@ -161,7 +161,7 @@ fn far_away_without_absorption() {
     }
 }
 
-/// Light that cannot enter, and a viewer behind the surface: `S = 0` (method.md 1.3).
+/// Light that cannot enter, and a viewer behind the surface: `S = 0` (docs/method.md 1.3).
 #[test]
 fn light_and_viewer_below_the_surface() {
     for direction in [DVec3::NEG_Z, DVec3::X, DVec3::new(1.0, 0.0, -1e-7)] {

@@ -1,5 +1,5 @@
-//! A thin sheet lit from behind, `n_o = −n_i`: the back-lit branch of the directional dipole, against the published form
-//! with its mirrored source as a vector, and through both phases.
+//! A thin sheet lit from behind, `n_o = −n_i`: the back-lit branch of the directional dipole, against the published
+//! form with its mirrored source as a vector, and through both phases.
 
 use crate::evaluate::{assert_close, assert_is, bare};
 use bssrdf::{Coefficients, Exitant, Incident, Medium, Separation, evaluate};
@@ -8,7 +8,7 @@ use glam::DVec3;
 use std::f64::consts::PI;
 use test_support::{
     meshes::{Light, Part, slab, world},
-    pipeline::{Lit, MODELS, Point, by_area, cloud, grey},
+    pipeline::{Lit, MODELS, Point, by_area, cloud, gray},
 };
 
 /// `C_φ φ + C_E n_o·(−D∇φ)` for the field `φ` of one source at the offset `at`, which emits along `along` at its
@@ -32,7 +32,7 @@ fn source(c: &Coefficients, medium: &Medium, [at, along, out]: [DVec3; 3], depth
 /// The guard: `z² = 1/(3σ_t)²` where `μ0 ≤ 0`, with the full extinction.
 #[test]
 fn back_lit_branch_has_the_published_value() {
-    let medium = grey(0.05, 1.2, 0.4, 1.4);
+    let medium = gray(0.05, 1.2, 0.4, 1.4);
     let c = medium.channels[0];
     let extrapolation = 2.131 * c.diffusion() / c.reduced_albedo().sqrt();
     let mirror = 2.0 * medium.interface.reflection * extrapolation;
@@ -62,7 +62,7 @@ fn back_lit_branch_has_the_published_value() {
 fn light_shines_through_a_sheet() {
     let sun = Light::Directional { towards: DVec3::new(0.0, 0.6, -0.8), irradiance: DVec3::ONE };
     let world = world(&[Part::translucent(slab(DVec3::new(1.0, 1.0, 5e-4), 2))], &[sun], DVec3::ZERO);
-    let medium = grey(50.0, 2000.0, 0.3, 1.3);
+    let medium = gray(50.0, 2000.0, 0.3, 1.3);
     let cloud = cloud(&world, &by_area(20_000, 3));
     let origin = DVec3::from_array(cloud.meta().origin_m);
     let point = Point { position: DVec3::new(0.11, 0.07, 5e-4), normal: DVec3::Z };

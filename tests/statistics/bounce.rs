@@ -46,7 +46,7 @@ fn an_endless_ceiling_gives_what_it_gets() {
     assert_irradiance("ceiling", &below(2000.0, &[]), 0.8 * DVec3::new(1.0, 2.0, 3.0));
 }
 
-/// A ceiling as wide as it is high above gives the form factor of a square seen from below its centre, 0.55412
+/// A ceiling as wide as it is high above gives the form factor of a square seen from below its center, 0.55412
 /// (`(4/π√2) atan(1/√2)`), beside direct light that passes it.
 #[test]
 fn a_finite_ceiling_beside_direct_light() {

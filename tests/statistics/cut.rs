@@ -81,8 +81,8 @@ fn assert_unbiased(what: &str, cloud: &Cloud, medium: &Medium, points: &[Point],
 /// Triangles of very uneven areas, chosen uniformly: the fluxes of samples differ by orders of magnitude, and with
 /// them the errors of closed nodes.
 ///
-/// Seen to catch: the last tile's lanes all counted and picked from; a last sample of each node that is never picked; nodes
-/// of little flux left out.
+/// Seen to catch: the last tile's lanes all counted and picked from; a last sample of each node that is never picked;
+/// nodes of little flux left out.
 #[test]
 fn under_uneven_fluxes() {
     let world = repository_scene("slivers");

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use std::slice::from_ref;
 use test_support::{
     EFFORT,
-    pipeline::{cloud, grey, orthographic},
+    pipeline::{cloud, gray, orthographic},
     z_test::{Estimate, assert_equal},
 };
 
@@ -41,7 +41,7 @@ fn brightness(scene: &Scene, paths_per_pixel: u32) -> Estimate {
 #[test]
 fn the_mean_is_that_of_paths_alone() {
     // The medium is so thin that the light below varies little within a pixel.
-    let scene = edge(grey(30.0, 300.0, 0.0, 1.3));
+    let scene = edge(gray(30.0, 300.0, 0.0, 1.3));
     let alone = brightness(&scene, 1);
     // Measured as a share of the variance of one path: 0.50, 0.22 and 0.029 without the control variate.
     for (paths, most) in [(2, 0.43), (3, 0.15), (8, 0.01)] {

@@ -14,7 +14,7 @@ use std::{
 use test_support::{
     EFFORT,
     meshes::{Part, World, sphere, world},
-    pipeline::{cloud, grey, orthographic, settings, stratified},
+    pipeline::{cloud, gray, orthographic, settings, stratified},
     z_test::{Estimate, assert_equal},
 };
 
@@ -33,7 +33,7 @@ fn ball(environment: Environment) -> World {
 /// The ball with an albedo of `sigma_s` over its sum with 20/m, seen under its light.
 fn render(environment: Environment, sigma_s: f64, seed: u64) -> Rendered {
     let world = ball(environment);
-    let (cloud, media) = (cloud(&world, &stratified(1 << 12, seed)), [grey(20.0, sigma_s, 0.0, 1.3)]);
+    let (cloud, media) = (cloud(&world, &stratified(1 << 12, seed)), [gray(20.0, sigma_s, 0.0, 1.3)]);
     let camera = orthographic(DVec3::new(1.0, 2.0, 3.0), 1.1e-2);
     let input =
         Input { scene: &world.scene, rays: &world.rays, clouds: from_ref(&cloud), media: &media, camera: &camera };
@@ -67,8 +67,8 @@ fn a_picture_of_one_color_is_a_constant_environment() {
 /// For a closed convex object the projected area `P` has the mean `A/4` over any hemisphere; towards the sun, the
 /// projected area of the polyhedron is summed over the sun's pixel.
 ///
-/// Seen to catch: the probability of a pixel without that of its tile; one solid angle for all pixels; `A/4` towards the
-/// sun (0.08 %); a rotation the other way (0.14 %).
+/// Seen to catch: the probability of a pixel without that of its tile; one solid angle for all pixels; `A/4` towards
+/// the sun (0.08 %); a rotation the other way (0.14 %).
 #[test]
 fn a_convex_body_gathers_what_its_shadow_would() {
     let size = (64, 32);
@@ -84,10 +84,10 @@ fn a_convex_body_gathers_what_its_shadow_would() {
     let shadow = |direction: DVec3| facets.iter().map(|facet| facet.dot(direction).max(0.0)).sum::<f64>();
     // The middle of the map is +X and its columns proceed to +Z; the map is turned about +Y.
     let cosine = |row: f64| (PI * row / 32.0).cos();
-    let place = |k: u32| (f64::from(k) + 0.5) / 16.0;
+    let offset = |k: u32| (f64::from(k) + 0.5) / 16.0;
     let toward = |x: u32, y: u32| {
-        let angle = TAU * ((column as f64 + place(x)) / 64.0 - 0.5) - f64::to_radians(degrees);
-        let height = cosine(row as f64) * (1.0 - place(y)) + cosine(row as f64 + 1.0) * place(y);
+        let angle = TAU * ((column as f64 + offset(x)) / 64.0 - 0.5) - f64::to_radians(degrees);
+        let height = cosine(row as f64) * (1.0 - offset(y)) + cosine(row as f64 + 1.0) * offset(y);
         let radius = (1.0 - height * height).sqrt();
         DVec3::new(radius * angle.cos(), height, radius * angle.sin())
     };

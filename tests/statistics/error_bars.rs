@@ -10,13 +10,13 @@ use rayon::prelude::*;
 use test_support::{
     EFFORT,
     meshes::{Part, World, slab, world},
-    pipeline::{Sampling, by_area, cloud, grey, orthographic, settings, stratified},
+    pipeline::{Sampling, by_area, cloud, gray, orthographic, settings, stratified},
     z_test::{Estimate, assert_mean},
 };
 
 /// Pairs of images; each image has a cloud and camera paths of its own.
 const PAIRS: u64 = 48 * EFFORT;
-/// So few samples that the cloud's part of the variance is about as large as that of the paths.
+/// The number of samples, so small that the cloud's part of the variance is about as large as that of the paths.
 const SAMPLES: u64 = 150;
 
 const CUT: Estimator = Estimator::Cut { accuracy: 0.1 };
@@ -77,7 +77,7 @@ fn assert_error_bars(what: &str, scene: &Scene, settings: &Settings, first: u64)
 }
 
 pub fn of_paths(estimator: Estimator, paths_per_pixel: u32) -> Settings {
-    // The directional dipole has outliers at silhouettes (method.md section 8), which take many images to average.
+    // The directional dipole has outliers at silhouettes (docs/method.md section 8), which take many images to average.
     let settings = settings(Model::StandardDipole, 10, 8);
     Settings { estimator, paths_per_pixel, filter: Filter::Box, ..settings }
 }
@@ -115,7 +115,7 @@ fn of_shards() {
 #[test]
 fn of_the_whole_sum() {
     // In so thin a medium, independent samples and a view without the silhouette show the part of the cloud.
-    let scene = Scene { half_height: 6e-4, sampling: by_area, ..edge_under_sky(grey(30.0, 300.0, 0.0, 1.3)) };
+    let scene = Scene { half_height: 6e-4, sampling: by_area, ..edge_under_sky(gray(30.0, 300.0, 0.0, 1.3)) };
     for (k, paths) in [2, 4].into_iter().enumerate() {
         let settings = of_paths(Estimator::Exhaustive, paths);
         assert_error_bars(&format!("whole sum, {paths} paths"), &scene, &settings, 60_000 + 1000 * k as u64);
@@ -128,14 +128,14 @@ fn of_the_whole_sum() {
 /// Seen to catch: halves treated as independent although each takes its factors from the other.
 #[test]
 fn of_edges() {
-    let scene = edge(grey(30.0, 300.0, 0.0, 1.3));
+    let scene = edge(gray(30.0, 300.0, 0.0, 1.3));
     for (k, paths) in [2, 4, 8].into_iter().enumerate() {
         let settings = of_paths(Estimator::Exhaustive, paths);
         assert_error_bars(&format!("edges, {paths} paths"), &scene, &settings, 80_000 + 1000 * k as u64);
     }
 }
 
-/// One path through the centre of each pixel of an object of index 1 has no noise of its own: what is left is that of
+/// One path through the center of each pixel of an object of index 1 has no noise of its own: what is left is that of
 /// the cloud and the gather, and it is stated.
 ///
 /// Seen to catch: the mean of both halves taken for each.

@@ -58,8 +58,8 @@ impl View {
         gather::render(&input, &settings, |_| ()).pixels
     }
 
-    /// Root mean square of the relative error over lit and over unlit points, as a multiple of the one asked for. Points
-    /// darker than a millionth of the brightest do not count.
+    /// Root mean square of the relative error over lit and over unlit points, as a multiple of the one asked for.
+    /// Points darker than a millionth of the brightest do not count.
     fn errors(&self, medium: &Medium) -> [f64; 2] {
         let [whole, cut] =
             [Estimator::Exhaustive, Estimator::Cut { accuracy: ACCURACY }].map(|e| self.image(medium, e));
@@ -86,7 +86,7 @@ fn looking(world: &World, material: u16, towards: DVec3) -> Camera {
     Camera { position, ..camera }
 }
 
-/// Pixels whose centre shows a lit point, and pixels whose centre shows an unlit one. Points seen at grazing angles,
+/// Pixels whose center shows a lit point, and pixels whose center shows an unlit one. Points seen at grazing angles,
 /// where the interface takes much of the light, are left out: the cut may be that much worse there.
 fn sides(world: &World, material: u16, camera: &Camera) -> [Vec<usize>; 2] {
     let (scene, rays) = (&world.scene, &world.rays);

@@ -2,8 +2,8 @@
 //! catch.
 //!
 //! Seeds are fixed: a test that passed once passes always. Were they drawn anew, a correct program would fail one of
-//! the decisions once in a thousand runs (`test_support::FALSE_ALARM_RATE`). The feature `slow` runs the same statistics
-//! with more samples.
+//! the decisions once in a thousand runs (`test_support::FALSE_ALARM_RATE`). The feature `slow` runs the same
+//! statistics with more samples.
 
 mod bounce;
 mod cut;

@@ -15,7 +15,7 @@ use std::ops::Range;
 use test_support::{
     EFFORT,
     meshes::{Light, Part, World, quad, rectangle, slab, world},
-    pipeline::{Sampling, by_area, cloud, grey, orthographic, sampled, settings, stratified},
+    pipeline::{Sampling, by_area, cloud, gray, orthographic, sampled, settings, stratified},
     z_test::{Estimate, assert_equal, assert_mean},
 };
 
@@ -26,7 +26,7 @@ pub const HALF_SIZE: DVec3 = DVec3::new(3e-3, 2e-3, 1e-3);
 
 /// Scatters within half a millimetre and absorbs within one: the far side of the slab is dark, not black.
 pub fn jelly() -> Medium {
-    grey(300.0, 2000.0, 0.0, 1.0)
+    gray(300.0, 2000.0, 0.0, 1.0)
 }
 
 pub fn sun(irradiance: DVec3) -> Light {

@@ -13,7 +13,7 @@ use test_support::{
     EFFORT,
     chi_square::assert_fits,
     meshes::{Light, Mesh, Part, World, rectangle, slab, world},
-    pipeline::{Sampling, by_area, cloud, grey, orthographic, stratified},
+    pipeline::{Sampling, by_area, cloud, gray, orthographic, stratified},
     z_test::{Estimate, assert_equal},
 };
 
@@ -93,7 +93,7 @@ fn light_does_not_bleed_between_touching_objects() {
     let [first, second] = [-2e-3, 2e-3].map(|x| at(slab(half, 4), DVec3::X * x));
     let sheet = Part::opaque(rectangle([-6e-3, 0.0], 6e-3, 5e-3, 1));
     let above = [Light::Directional { towards: DVec3::Z, irradiance: DVec3::ONE }];
-    let media = [jelly(), grey(100.0, 3000.0, 0.0, 1.0)];
+    let media = [jelly(), gray(100.0, 3000.0, 0.0, 1.0)];
     // From below the sheet, half a millimetre from the common face.
     let window = |x: f64| Camera { position: DVec3::new(x, 0.0, 3e-3), ..orthographic(DVec3::Z, 1e-4) };
     let parts = [Part::translucent(first.clone()), Part::translucent(second.clone()), sheet.clone()];

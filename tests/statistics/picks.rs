@@ -11,7 +11,7 @@ use test_support::{
     EFFORT,
     chi_square::assert_fits,
     lit::{scatterer, sum},
-    pipeline::grey,
+    pipeline::gray,
     planted::cloud_of,
     random::Random,
 };
@@ -37,7 +37,7 @@ struct Experiment {
 
 impl Experiment {
     fn new(seed: u64) -> Experiment {
-        let scatterer = scatterer(Model::StandardDipole, &grey(1.0, 10.0, 0.0, 1.3));
+        let scatterer = scatterer(Model::StandardDipole, &gray(1.0, 10.0, 0.0, 1.3));
         Experiment { scatterer, random: Random(seed) }
     }
 

@@ -13,7 +13,7 @@ fn tolerance(walk: f64, model: f64, walk_error: f64) -> f64 {
     0.005 + 4.5 * walk_error.hypot(5e-4) * model / (walk * walk)
 }
 
-/// Planted: a row moved by one albedo, and the columns of the indices exchanged, both fail.
+/// Seen to catch: a row moved by one albedo; the columns of the indices exchanged.
 #[test]
 fn the_table_of_reflectance_errors_is_what_random_walks_say() {
     let albedos: &[f64] = match EFFORT {

@@ -14,7 +14,7 @@ use glam::{DVec3, Vec3};
 use test_support::{
     EFFORT,
     meshes::{Light, Part, slab, world},
-    pipeline::{Lit, Point, RULES, by_area, cloud, grey},
+    pipeline::{Lit, Point, RULES, by_area, cloud, gray},
     planted::cloud_of,
     random::Random,
     significance,
@@ -29,7 +29,7 @@ fn equal_samples(count: usize) -> Cloud {
 
 /// How many of the samples of the first half are accepted with probability `p` each.
 fn accepted(cloud: &Cloud, p: f64, key: u64) -> u64 {
-    let model = &StandardLanes::new(&grey(1.0, 1.0, 0.0, 1.3));
+    let model = &StandardLanes::new(&gray(1.0, 1.0, 0.0, 1.3));
     let samples = &LitSamples::new(cloud, &cloud.meta().materials[0].halves[0], 1.3);
     let exit = &Exit::new(DVec3::ZERO, DVec3::Z, key);
     simd::dispatch(Roulette { model, samples, exit, rates: Rates::One(-p.ln()) }).evaluations
@@ -76,8 +76,8 @@ fn key_of_zero(high: u32) -> u64 {
     u64::from(high) << 32 | u64::from(low)
 }
 
-/// Below 2⁻³² the first 32 bits of ξ are zero, once in 2³² times; given that, acceptance has the probability 2³² p. Only
-/// such keys are tried here.
+/// Below 2⁻³² the first 32 bits of ξ are zero, once in 2³² times; given that, acceptance has the probability 2³² p.
+/// Only such keys are tried here.
 ///
 /// Seen to catch: acceptance decided by 32 bits alone (always accepted), or by the same 32 bits twice.
 #[test]
@@ -100,7 +100,7 @@ fn probabilities_below_the_first_bits_are_met() {
 
 /// Roulette over the exhaustive sum, on the same cloud at the same points, one number for each cloud; the mean is one
 /// for every rule, channel and model. The rule of the note is tested only in channels where its variance is finite,
-/// 2σ_tr,c > σ̄ (method.md 7.1).
+/// 2σ_tr,c > σ̄ (docs/method.md 7.1).
 ///
 /// Seen to catch: weights of 1 instead of 1/p; unused lanes of the last block counted with weight 1.
 #[test]

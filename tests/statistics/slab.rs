@@ -32,7 +32,7 @@ fn tabulated(model: &str, key: &str) -> DVec3 {
     DVec3::new(channel("R"), channel("G"), channel("B"))
 }
 
-/// A disc 16 diffusion lengths wide. Its triangles shrink towards the centre and are chosen uniformly, so that a few
+/// A disc 16 diffusion lengths wide. Its triangles shrink towards the center and are chosen uniformly, so that a few
 /// thousand samples resolve S at every distance.
 fn disc(lights: &[Light], environment: DVec3) -> World {
     world(&[Part::translucent(graded_disc(2e-5, 60e-3, 45))], lights, environment)
@@ -56,12 +56,12 @@ fn assert_radiance(what: &str, runs: &[DVec3], expected: DVec3) {
     }
 }
 
-/// `L_r` at the centre by the exhaustive sum over each cloud.
-fn radiance_at_centre(world: &World, model: Model, first_seed: u64) -> Vec<DVec3> {
-    let (medium, centre) = (skin(), Point { position: DVec3::ZERO, normal: DVec3::Z });
+/// `L_r` at the center by the exhaustive sum over each cloud.
+fn radiance_at_center(world: &World, model: Model, first_seed: u64) -> Vec<DVec3> {
+    let (medium, center) = (skin(), Point { position: DVec3::ZERO, normal: DVec3::Z });
     let run = |seed: u64| {
         let cloud = cloud(world, &sampling(20_000, seed));
-        Lit::new(&cloud, &medium, model).radiance(Estimator::Exhaustive, centre, 0)
+        Lit::new(&cloud, &medium, model).radiance(Estimator::Exhaustive, center, 0)
     };
     (first_seed..first_seed + SEEDS).into_par_iter().map(run).collect()
 }
@@ -76,7 +76,7 @@ fn plane_reflectance(model: Model, degrees: f64, integral: DVec3) {
     let (sine, cosine) = f64::to_radians(degrees).sin_cos();
     let sun = Light::Directional { towards: DVec3::new(sine, 0.0, cosine), irradiance: DVec3::splat(IRRADIANCE) };
     let first_seed = SEEDS * (2 * model as u64 + u64::from(degrees > 0.0));
-    let runs = radiance_at_centre(&disc(&[sun], DVec3::ZERO), model, first_seed);
+    let runs = radiance_at_center(&disc(&[sun], DVec3::ZERO), model, first_seed);
     let expected = fresnel::transmittance(cosine, skin().eta) * IRRADIANCE * cosine * integral;
     assert_radiance(&format!("{} {degrees}°", model.name()), &runs, expected);
 }
@@ -109,7 +109,7 @@ fn standard_dipole() {
 #[test]
 fn a_constant_sky_lights_the_plane() {
     const SKY: f64 = 0.5;
-    let runs = radiance_at_centre(&disc(&[], DVec3::splat(SKY)), Model::StandardDipole, 2000);
+    let runs = radiance_at_center(&disc(&[], DVec3::splat(SKY)), Model::StandardDipole, 2000);
     let enters = 2.0 * PI * integrate(0.0, 1.0, 20, |c| fresnel::transmittance(c, skin().eta) * c);
     assert_radiance("constant sky", &runs, SKY * enters * tabulated("standard", "I_0deg"));
 }

@@ -18,16 +18,16 @@ use test_support::{
 const SEEDS: u64 = 60_000 * EFFORT;
 
 /// Position of one sample of each seed's cloud; `index` chooses it.
-fn places(world: &World, rule: Choice, samples: u64, index: impl Fn(u64) -> u64 + Sync) -> Vec<SamplePoint> {
+fn points(world: &World, rule: Choice, samples: u64, index: impl Fn(u64) -> u64 + Sync) -> Vec<SamplePoint> {
     let mesh = &world.scene.mesh;
     let choice = TriangleChoice::new(mesh, rule, |_| true);
-    let place = |seed: u64| {
+    let point = |seed: u64| {
         let numbers = Numbers::new(Pattern::Stratified, seed, samples);
-        let (half, place) = numbers.points(&choice, index(seed)..index(seed) + 1).next().expect("one place");
+        let (half, point) = numbers.points(&choice, index(seed)..index(seed) + 1).next().expect("one point");
         assert_eq!(half as u64, index(seed) % 2);
-        place
+        point
     };
-    (0..SEEDS).into_par_iter().map(place).collect()
+    (0..SEEDS).into_par_iter().map(point).collect()
 }
 
 /// Another sample of the cloud for each seed: samples that divide the surface among them need not be uniform one by
@@ -54,7 +54,7 @@ fn samples_choose_triangles_as_the_rule_says() {
         for (rule, samples) in [Choice::Area, Choice::Uniform].into_iter().flat_map(|r| [1, 2, 7, 5000].map(|n| (r, n)))
         {
             let mut observed = vec![0; areas.len()];
-            places(&world, rule, samples, any(samples)).iter().for_each(|p| observed[p.triangle as usize] += 1);
+            points(&world, rule, samples, any(samples)).iter().for_each(|p| observed[p.triangle as usize] += 1);
             let share = |area: &f64| if rule == Choice::Area { area / total } else { 1.0 / areas.len() as f64 };
             let expected: Vec<f64> = areas.iter().map(|area| share(area) * SEEDS as f64).collect();
             assert_fits(&format!("{name}, {} rule, {samples} samples", rule.name()), &observed, &expected);
@@ -78,9 +78,9 @@ fn samples_stand_for_the_area_they_are_drawn_from() {
         let mut shares = vec![vec![0.0; seeds as usize]; mesh.triangles.len()];
         for seed in 0..seeds {
             let numbers = Numbers::new(Pattern::Stratified, seed, samples);
-            for (_, place) in numbers.points(&choice, 0..samples) {
-                let triangle = place.triangle as usize;
-                shares[triangle][seed as usize] += 1.0 / (samples as f64 * place.pdf_area * mesh.area(triangle));
+            for (_, point) in numbers.points(&choice, 0..samples) {
+                let triangle = point.triangle as usize;
+                shares[triangle][seed as usize] += 1.0 / (samples as f64 * point.pdf_area * mesh.area(triangle));
             }
         }
         // One decision covers all triangles; where nothing is random the sum is exact.
@@ -134,13 +134,13 @@ fn samples_cover_a_triangle_evenly() {
     for (turn, samples) in [(0, 1), (1, 4), (2, 5000)] {
         let positions = (0..3).map(|k| corners[(k + turn) % 3]).collect();
         let world = world(&[Part::translucent(Mesh { positions, triangles: vec![[0, 1, 2]] })], &[], DVec3::ONE);
-        let cell = |place: SamplePoint| {
-            let [_, b, c] = place.weights.map(|w| w * SIDE as f64);
+        let cell = |point: SamplePoint| {
+            let [_, b, c] = point.weights.map(|w| w * SIDE as f64);
             let (i, j) = (b as usize, c as usize);
             let upper = usize::from(b.fract() + c.fract() > 1.0);
             (i * (2 * SIDE - i) + 2 * j + upper).min(SIDE * SIDE - 1)
         };
-        let cells = places(&world, Choice::Area, samples, any(samples)).into_iter().map(cell);
+        let cells = points(&world, Choice::Area, samples, any(samples)).into_iter().map(cell);
         assert_even(&format!("any of {samples} samples"), SIDE * SIDE, cells);
     }
 }
@@ -153,17 +153,17 @@ fn samples_have_uniform_numbers_for_their_light() {
     const SIDE: usize = 12;
     let world = world(&[Part::translucent(slab(DVec3::ONE, 1))], &[], DVec3::ONE);
     for index in [0, 1, 37, 4999] {
-        let places = places(&world, Choice::Area, 5000, |_| index);
+        let points = points(&world, Choice::Area, 5000, |_| index);
         for (a, b) in [(0, 1), (1, 2), (2, 0)] {
             let cell = |p: &SamplePoint| [a, b].map(|d| (p.light[d] * SIDE as f64) as usize);
-            let cells = places.iter().map(cell).map(|[x, y]| SIDE * x + y);
+            let cells = points.iter().map(cell).map(|[x, y]| SIDE * x + y);
             assert_even(&format!("light {a} and {b} of sample {index}"), SIDE * SIDE, cells);
         }
     }
     for samples in [1, 100] {
         // All sides of the cube are equivalent.
-        let places = places(&world, Choice::Area, samples, any(samples));
-        let cells = places.iter().map(|p| SIDE * p.triangle as usize + (p.light[0] * SIDE as f64) as usize);
+        let points = points(&world, Choice::Area, samples, any(samples));
+        let cells = points.iter().map(|p| SIDE * p.triangle as usize + (p.light[0] * SIDE as f64) as usize);
         assert_even(&format!("triangle and light of any of {samples} samples"), SIDE * SIDE, cells);
     }
 }
@@ -176,7 +176,7 @@ fn the_halves_are_independent() {
     const SIDE: usize = 12;
     let world = world(&[Part::translucent(slab(DVec3::ONE, 1))], &[], DVec3::ONE);
     // Each half has one sample, which may lie anywhere.
-    let [even, odd] = [0, 1].map(|k| places(&world, Choice::Area, 2, |_| k));
+    let [even, odd] = [0, 1].map(|k| points(&world, Choice::Area, 2, |_| k));
     let pairs = || even.iter().zip(&odd);
     let cells = pairs().map(|(a, b)| SIDE * a.triangle as usize + b.triangle as usize);
     assert_even("triangles of both halves", SIDE * SIDE, cells);

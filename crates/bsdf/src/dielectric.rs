@@ -22,7 +22,7 @@ impl SmoothDielectric {
 }
 
 impl Bsdf for SmoothDielectric {
-    /// Fresnel's (docs/method.md 2.1).
+    /// Fresnel's power transmittance (docs/method.md 2.1).
     fn transmittance(&self, view: &View) -> f64 {
         fresnel::transmittance(view.normal.dot(view.direction), self.eta_ratio(view.side))
     }
@@ -39,7 +39,7 @@ impl Bsdf for SmoothDielectric {
         0.0
     }
 
-    /// The mirrored direction, or the refracted one (docs/method.md 2.3), which total reflection has not.
+    /// The mirrored direction, or the refracted one (docs/method.md 2.3); none under total reflection.
     fn sample(&self, view: &View, lobe: Lobe, _xi: impl FnMut() -> [f64; 2]) -> Option<Sample> {
         let direction = match lobe {
             Lobe::Reflection => fresnel::reflect(view.normal, view.direction),

@@ -7,8 +7,8 @@ use glam::DVec3;
 /// Power transmittance `T(c, η_r)` of an interface for light whose cosine in the incident medium is `cosine`;
 /// `eta_ratio` is the index of the transmitting medium over that of the incident one (docs/method.md 2.1).
 ///
-/// It is 0 for total reflection and for light from behind. One minus the mean of squared amplitude ratios, the usual form,
-/// would cancel near grazing.
+/// It is 0 for total reflection and for light from behind. One minus the mean of squared amplitude ratios, the usual
+/// form, would cancel near grazing.
 pub fn transmittance(cosine: f64, eta_ratio: f64) -> f64 {
     if cosine <= 0.0 {
         return 0.0;
@@ -88,10 +88,10 @@ pub fn thrice_second_moment(n: f64) -> f64 {
 const JOINT: f64 = 0.04;
 
 /// A fitted moment without the jump between its branches at `n = 1`, where the upper branch is off by 0.0043 (2C₁) and
-/// −0.0068 (3C₂), and the lower one by a twentieth of that. The models contain `C_φ(η)/C_φ(1/η)`, one of each branch, so the
-/// published radiance jumps by 0.41 % on both sides of `η = 1`. Here the lower branch leads linearly to the value of the
-/// upper one within 0.04; then the errors of both cancel to 0.04 %. Nothing changes at `η = 1` itself, nor outside
-/// 0.96 < η < 1.042.
+/// −0.0068 (3C₂), and the lower one by a twentieth of that. The models contain `C_φ(η)/C_φ(1/η)`, one of each branch,
+/// so the published radiance jumps by 0.41 % on both sides of `η = 1`. Here the lower branch leads linearly to the
+/// value of the upper one within 0.04; then the errors of both cancel to 0.04 %. Nothing changes at `η = 1` itself, nor
+/// outside 0.96 < η < 1.042.
 fn joined(moment: fn(f64) -> f64, n: f64) -> f64 {
     let along = (n - (1.0 - JOINT)) / JOINT;
     if n >= 1.0 || along <= 0.0 {

@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 /// A Lambertian surface. It transmits nothing.
 #[derive(Clone, Copy, Debug)]
 pub struct Lambertian {
-    /// Share of the light that is reflected, of each color channel.
+    /// Share of the light that is reflected, for each color channel.
     pub albedo: DVec3,
 }
 
@@ -20,7 +20,7 @@ impl Bsdf for Lambertian {
         false
     }
 
-    /// `ρ/π` on the viewer's side.
+    /// `ρ/π` for light from the viewer's side, 0 for light from behind.
     fn evaluate(&self, view: &View, towards_light: DVec3) -> DVec3 {
         if view.normal.dot(towards_light) > 0.0 { self.albedo / PI } else { DVec3::ZERO }
     }
@@ -49,7 +49,7 @@ mod tests {
     use super::*;
     use crate::Side;
 
-    /// Of each sample `f cos θ = weight · density`, and the mean cosine is 2/3.
+    /// Every sample fulfills `f cos θ = weight · density`, and the mean cosine is 2/3.
     ///
     /// Seen to catch: directions that are uniform over the hemisphere, a value without 1/π.
     #[test]

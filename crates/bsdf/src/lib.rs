@@ -1,8 +1,8 @@
 //! What happens to light at a surface: which share of it is reflected and which transmitted, and where it goes.
 //!
-//! [`Bsdf`] is the contract between a surface and whoever follows paths over it. [`SmoothDielectric`] and [`Lambertian`]
-//! implement it, and [`Surface`] is one of them, as the scene decides. What happens *below* the surface is a BSSRDF, of
-//! which this crate knows nothing. No I/O, no random numbers, no allocation.
+//! [`Bsdf`] is the contract between a surface and a path tracer. [`SmoothDielectric`] and [`Lambertian`] implement it,
+//! and [`Surface`] is one of them, as the scene decides. The BSSRDF describes what happens *below* the surface; this
+//! crate does not depend on it. The crate has no I/O and no random numbers, and allocates nothing.
 //!
 //! ```
 //! use bsdf::{Bsdf, DVec3, Lobe, Side, Surface, View};
@@ -46,9 +46,9 @@ pub struct View {
 /// The part of the light towards the viewer that comes from one side of the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lobe {
-    /// From the viewer's side.
+    /// The light comes from the viewer's side.
     Reflection,
-    /// From the other side.
+    /// The light comes from the other side.
     Transmission,
 }
 
@@ -57,37 +57,39 @@ pub enum Lobe {
 pub struct Sample {
     /// `ω_i`: unit direction towards the light, away from the surface.
     pub direction: DVec3,
-    /// `f |cos θ_i| / pdf` of the direction within its lobe, of each color channel, over the share of the lobe; no unit. The
-    /// choice of the lobe is the caller's, and its weight as well.
+    /// `f |cos θ_i| / pdf` for each color channel, divided by the share of the lobe; no unit. `pdf` is the density
+    /// within the lobe: the caller chooses the lobe and accounts for that choice.
     pub weight: DVec3,
 }
 
-/// How a surface scatters light, the same for a viewer that receives it.
+/// How a surface scatters light towards a viewer.
 ///
-/// All directions point away from the surface, and all shares are of the light towards the viewer. A path chooses a lobe
-/// with the probability of its share, [`Bsdf::transmittance`] or one minus that, or follows both with the shares as
-/// weights; then it asks [`Bsdf::sample`] for a direction.
+/// All directions point away from the surface, and all shares are those of the light towards the viewer. A path chooses
+/// a lobe with the probability of its share, [`Bsdf::transmittance`] or one minus that, or follows both with the shares
+/// as weights; then it asks [`Bsdf::sample`] for a direction.
 ///
-/// *Adjoint factors:* radiance changes by the square of the relative index wherever it crosses a dielectric. As light and
-/// viewer are both outside, the factors of a path cancel, and implementations leave them out (docs/method.md 6.9): flux
-/// that falls in and radiance that is seen have the same weights. Nor is there a correction for interpolated normals.
+/// *Adjoint factors:* radiance changes by the square of the relative index wherever it crosses a dielectric. As light
+/// and viewer are both outside, the factors of a path cancel, and implementations leave them out (docs/method.md 6.9):
+/// flux that falls in and radiance that is seen have the same weights. Nor is there a correction for interpolated
+/// normals.
 pub trait Bsdf {
-    /// `T(ω_o)`: the share of the transmission lobe, from 0 to 1; the transmittance `T21` if the view is from outside. The
-    /// light that a BSSRDF sends to the surface from below is seen with this weight.
+    /// `T(ω_o)`: the share of the transmission lobe, from 0 to 1; the transmittance `T21` if the view is from outside.
+    /// The light that a BSSRDF sends to the surface from below is seen with this weight.
     fn transmittance(&self, view: &View) -> f64;
 
-    /// True if all light goes in single directions, which [`Bsdf::sample`] alone finds.
+    /// True if each lobe is a delta distribution, whose one direction only [`Bsdf::sample`] returns.
     fn is_specular(&self) -> bool;
 
-    /// `f(ω_i, ω_o)` of light from `towards_light`, of each color channel, 1/sr; without the cosine. 0 of specular surfaces.
+    /// `f(ω_i, ω_o)` for light from `towards_light` and each color channel, without the cosine, 1/sr; 0 for specular
+    /// surfaces.
     fn evaluate(&self, view: &View, towards_light: DVec3) -> DVec3;
 
-    /// Density with which [`Bsdf::sample`] draws this direction, given the lobe on whose side it is, 1/sr. 0 of specular
-    /// surfaces.
+    /// Density with which [`Bsdf::sample`] draws this direction, given the lobe on whose side it lies, 1/sr; 0 for
+    /// specular surfaces.
     fn density(&self, view: &View, towards_light: DVec3) -> f64;
 
-    /// A direction of one lobe, by pairs of uniform numbers of [0, 1) of which it may ask for any number; none if the lobe
-    /// is empty.
+    /// Samples a direction of one lobe; none if the lobe is empty. Each call of `xi` returns two uniform numbers in
+    /// [0, 1).
     fn sample(&self, view: &View, lobe: Lobe, xi: impl FnMut() -> [f64; 2]) -> Option<Sample>;
 }
 
@@ -110,7 +112,7 @@ impl Surface {
     }
 }
 
-/// Asks the BSDF that a [`Surface`] is.
+/// Calls a method of the BSDF that a [`Surface`] holds.
 macro_rules! ask {
     ($surface:expr, $method:ident($($argument:expr),*)) => {
         match $surface {

@@ -1,11 +1,11 @@
-//! Evaluations per second and core of each model, and of the entry of light; one evaluation is one pair of points in three
-//! channels. Run with `cargo bench -p bssrdf`; an instruction set that the processor lacks runs plain.
+//! Evaluations per second and core of each model, and of the entry of light; one evaluation is one pair of points in
+//! three channels. Run with `cargo bench -p bssrdf`; an instruction set that the processor lacks runs plain.
 //!
 //! One evaluation takes 185 (standard dipole), 227 (better) and 468 (directional) floating point operations (additions,
 //! multiplications, divisions, roots) in the AVX-512 bodies. That number times the evaluations per second, over the
-//! operations per second of `peak`, is the share of the core's peak: 0.6 on a Xeon of 2024 at 3.7 GHz, with 340, 245 and 135
-//! million evaluations per second. Fused multiply-adds would double the peak and gain a tenth (directional) to a quarter
-//! (the others); they are not used, so that all processors give the same bits.
+//! operations per second of `peak`, is the share of the core's peak: 0.6 on a Xeon of 2024 at 3.7 GHz, with 340, 245
+//! and 135 million evaluations per second. Fused multiply-adds would double the peak and gain a tenth (directional) to
+//! a quarter (the others); they are not used, so that all processors give the same bits.
 
 use bssrdf::{
     DVec3, Medium, built_in, fresnel,

@@ -1,15 +1,15 @@
 //! The albedo of a medium from the color that it shows: the inverse of multiple scattering.
 
 /// `q = σ_tr/σ_t' = √(3(1 − α'))` of the half-space whose standard dipole reflects the share `color` of the light that
-/// enters it, by bisection of its total reflectance (docs/method.md 3.5), which falls as `q` grows. `α' = 1 − q²/3`, and
-/// `diffuse_fresnel` is `F_dr`.
+/// enters it, by bisection of its total reflectance (docs/method.md 3.5), which falls as `q` grows. `α' = 1 − q²/3`,
+/// and `diffuse_fresnel` is `F_dr`.
 ///
 /// Jensen and Buhler 2002, A Rapid Hierarchical Rendering Technique for Translucent Materials.
 pub(crate) fn transport_ratio(color: f64, diffuse_fresnel: f64) -> f64 {
     let reflection = (1.0 + diffuse_fresnel) / (1.0 - diffuse_fresnel);
     let reflectance = |q: f64| 0.5 * (1.0 - q * q / 3.0) * (1.0 + (-4.0 / 3.0 * reflection * q).exp()) * (-q).exp();
     let (mut low, mut high) = (0.0, 3f64.sqrt());
-    // As many halvings as a float64 has digits, and more for a color near 1.
+    // A float64 has 53 bits; colors near 1 need more halvings.
     for _ in 0..100 {
         let middle = 0.5 * (low + high);
         if reflectance(middle) > color { low = middle } else { high = middle }

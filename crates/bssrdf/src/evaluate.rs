@@ -19,7 +19,7 @@ pub struct Exitant {
     pub direction: DVec3,
 }
 
-/// What `S_bare` depends on: the two points after refraction.
+/// The arguments of `S_bare`: the two points after refraction.
 #[derive(Clone, Copy, Debug)]
 pub struct Separation {
     /// `x = x_o − x_i`, m.

@@ -1,12 +1,12 @@
 //! What happens to light below a surface: coefficients of media, and three models of the BSSRDF, in float64 and sixteen
 //! samples at a time in float32. What happens *at* a surface is in [`bsdf`].
 //!
-//! The crate has no I/O and no random numbers. Lengths are in m, coefficients in 1/m, `S` is in 1/(m² sr). Three values of
-//! the BSSRDF are kept apart (docs/method.md 1.1 to 1.3):
+//! The crate has no I/O and no random numbers. Lengths are in m, coefficients in 1/m, `S` is in 1/(m² sr). Three values
+//! of the BSSRDF are kept apart (docs/method.md 1.1 to 1.3):
 //!
 //! ```text
 //! S        = T12 · T21 · S_bare      the full BSSRDF
-//! S_gather = T12 · S_bare            what the gather sums after the roulette on R = 1 − T21
+//! S_gather = T12 · S_bare            the term of the sum, after the choice by R = 1 − T21
 //! ```
 //!
 //! The sum over samples uses `S_gather`, because the choice between reflection and refraction at the exitant point

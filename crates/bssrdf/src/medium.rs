@@ -33,8 +33,8 @@ impl Coefficients {
         (1.0 - self.asymmetry) * self.sigma_s
     }
 
-    /// False where nothing scatters, so that `S = 0` (docs/method.md section 8). The limit of once in 10⁶⁰ m keeps squares and
-    /// cubes of all lengths finite.
+    /// False where nothing scatters, so that `S = 0` (docs/method.md section 8). The limit of once in 10⁶⁰ m keeps
+    /// squares and cubes of all lengths finite.
     pub fn scatters(&self) -> bool {
         self.reduced_scattering() > 1e-60
     }

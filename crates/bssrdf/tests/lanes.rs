@@ -36,8 +36,8 @@ fn rounded(v: DVec3) -> DVec3 {
     v.as_vec3().as_dvec3()
 }
 
-/// Light that enters at the first normal and leaves at the second, `distance` m away: in the plane of the first normal, or
-/// in any direction.
+/// Light that enters at the first normal and leaves at the second, `distance` m away: in the plane of the first normal,
+/// or in any direction.
 fn separation(random: &mut Random, eta: f64, normals: [DVec3; 2], distance: f64, plane: bool) -> Separation {
     let [normal_in, normal_out] = normals;
     let light = random.direction();
@@ -90,8 +90,8 @@ impl<M: LaneModel> Kernel for Evaluate<'_, M> {
     }
 }
 
-/// The float64 value; none where rounding of `n_o` and `ω12` decides the depth of the source, which jumps at `μ₀ = 0`, and
-/// where `S` is below 10⁻¹² of its value at the sample itself, or underflows.
+/// The float64 value; none where rounding of `n_o` and `ω12` decides the depth of the source, which jumps at `μ₀ = 0`,
+/// and where `S` is below 10⁻¹² of its value at the sample itself, or underflows.
 fn reference(model: &dyn Bssrdf, separation: &Separation) -> Option<f64> {
     let value = model.bare(0, separation);
     let peak = model.bare(0, &Separation { offset: DVec3::ZERO, ..*separation });
@@ -235,8 +235,8 @@ fn all_vector_widths_let_the_same_light_enter() {
     }
 }
 
-/// Configurations that float32 leaves to float64: along the normal, at the sample itself, and so close that squares leave
-/// the range of float32.
+/// Configurations that float32 leaves to float64: along the normal, at the sample itself, and so close that squares
+/// leave the range of float32.
 #[test]
 fn hard_places_have_the_float64_value() {
     let mut random = Random(9);

@@ -1,7 +1,7 @@
 //! Where the system grants no memory, every program ends with one message and exit code 2 instead of an abort.
 //!
-//! [`crate::require_memory`] refuses large data before any work; this allocator covers everything else, of any size and in
-//! any library.
+//! [`crate::require_memory`] refuses large data before any work; this allocator covers everything else, of any size and
+//! in any library.
 
 use signal_hook::low_level;
 use std::{
@@ -59,8 +59,8 @@ fn granted(block: *mut u8) -> *mut u8 {
     block
 }
 
-/// From now on, the process also ends if a thread is not granted the stack on which it handles signals, where the standard
-/// library panics.
+/// From now on, the process also ends if a thread is not granted the stack on which it handles signals, where the
+/// standard library panics.
 pub fn end_without_signal_stacks() {
     let usual = panic::take_hook();
     panic::set_hook(Box::new(move |info| {
@@ -71,8 +71,8 @@ pub fn end_without_signal_stacks() {
     }));
 }
 
-/// Ends the process without asking for memory: the message is static, stderr has no buffer, and `low_level::exit` is the
-/// system's `_exit`. A temporary file stays, and the next writer of the same target removes it.
+/// Ends the process without asking for memory: the message is static, stderr has no buffer, and `low_level::exit` is
+/// the system's `_exit`. A temporary file stays, and the next writer of the same target removes it.
 #[cold]
 fn end() -> ! {
     static ENDING: AtomicBool = AtomicBool::new(false);

@@ -34,8 +34,8 @@ pub enum ProgressStyle {
 }
 
 impl Common {
-    /// Runs `work` on as many threads as were asked for, or as can be started. All parallel work is done inside, so that no
-    /// library starts threads of its own.
+    /// Runs `work` on as many threads as were asked for, or as can be started. All parallel work is done inside, so
+    /// that no library starts threads of its own.
     pub fn in_pool<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
         threads::in_pool(self.thread_count().get(), |line| self.warn(line), work)
     }

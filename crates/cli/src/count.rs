@@ -120,9 +120,9 @@ mod tests {
     fn printed_counts_are_parsed_again() {
         let numbers = (0..20_000).chain((0..60).map(|k| 3u64.pow(40) >> k)).chain([u64::MAX, 10u64.pow(19)]);
         for n in numbers {
-            let [near, enough] = [count(n), count_up(n as f64)].map(|text| parse_count(&text).expect("a count"));
+            let [near, above] = [count(n), count_up(n as f64)].map(|text| parse_count(&text).expect("a count"));
             assert!(near.abs_diff(n) <= n / 200, "{n}: {near}");
-            assert!(n > 1 << 60 || (enough >= n && enough <= n + n / 9), "{n}: {enough}");
+            assert!(n > 1 << 60 || (above >= n && above <= n + n / 9), "{n}: {above}");
         }
     }
 }

@@ -30,7 +30,8 @@ pub fn parse_environment(text: &str) -> Result<EnvironmentSource, String> {
 }
 
 impl EnvironmentSource {
-    /// Reads the environment, with its radiance multiplied by `scale` and turned about +Y; prints the warnings of the reader.
+    /// Reads the environment, with its radiance multiplied by `scale` and turned about +Y; prints the warnings of the
+    /// reader.
     pub fn read(&self, scale: f64, rotation_degrees: f64, common: &Common) -> Result<Environment, Failure> {
         let path = match self {
             EnvironmentSource::Constant(radiance) => return Ok((*radiance * scale).into()),

@@ -25,7 +25,7 @@ impl Failure {
         Failure { code: 2, message: message.into() }
     }
 
-    /// The same failure, in a part of the input that the message does not name.
+    /// Adds to the failure the part of the input in which it occurred.
     pub fn within(self, part: impl Display) -> Failure {
         Failure { message: format!("{part}: {}", self.message), ..self }
     }
@@ -55,8 +55,8 @@ fn is_ignored(signal: i32) -> bool {
 }
 
 /// Runs a program and ends the process with its exit code. On SIGHUP, SIGINT, SIGTERM and SIGXCPU (`ulimit -t`) the
-/// temporary files are removed and the exit code is 128 plus the number of the signal; under `nohup`, SIGHUP is ignored. A
-/// file that grows beyond `ulimit -f` is an output that cannot be written, like one on a full disk.
+/// temporary files are removed and the exit code is 128 plus the number of the signal; under `nohup`, SIGHUP is
+/// ignored. A file that grows beyond `ulimit -f` is an output that cannot be written, like one on a full disk.
 pub fn run(name: &str, program: impl FnOnce() -> Result<u8, Failure>) -> ! {
     truncated::end_with_a_message();
     allocator::end_without_signal_stacks();

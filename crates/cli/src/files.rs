@@ -38,8 +38,8 @@ struct Use {
 }
 
 impl Files {
-    /// Declares an input that the option or argument `what` names. Refuses pipes and devices, which might never begin or
-    /// end, and a file that is declared as an output. A missing file is left to its reader.
+    /// Declares an input that the option or argument `what` names. Refuses pipes and devices, which might never begin
+    /// or end, and a file that is declared as an output. A missing file is left to its reader.
     pub fn reads(&mut self, what: &str, path: &Path) -> Result<(), Failure> {
         let Ok(meta) = fs::metadata(path) else { return Ok(()) };
         if !meta.is_file() && !meta.is_dir() {

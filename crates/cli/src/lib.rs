@@ -1,8 +1,8 @@
-//! What the programs have in common: arguments, files that are read and written, exit codes, progress, signals.
+//! The parts that the programs share: arguments, files that are read and written, exit codes, progress, signals.
 //!
 //! A program parses its arguments, of which [`Common`] and [`SceneArgs`] are parts, and calls [`run`] with its work.
 //! [`Files`] declares what is read and written before the work; [`Common::in_pool`] does it on as many threads as asked
-//! for; [`Progress`] and [`Seconds`] tell how it goes. A [`Failure`] ends the program with a message and an exit code.
+//! for; [`Progress`] and [`Seconds`] report on it. A [`Failure`] ends the program with a message and an exit code.
 //!
 //! ```
 //! use cli::{count, one_of, parse_count};

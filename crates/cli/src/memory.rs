@@ -30,7 +30,8 @@ pub struct Need {
     pub mapped: u64,
 }
 
-/// Refuses, before any work is done, a need that cannot be met: that of `what`, where `way_out` says what the user can do.
+/// Refuses, before any work is done, a need that cannot be met: that of `what`, where `way_out` says what the user can
+/// do.
 pub fn require_memory(what: &str, need: Need, way_out: &str) -> Result<(), Failure> {
     let held = need.held.saturating_add(OVERHEAD_BYTES);
     let limits = [(held, available_memory_bytes()), (held.saturating_add(need.mapped), address_space())];
@@ -53,8 +54,8 @@ fn address_space() -> Option<u64> {
     Some(limit.saturating_sub(status("VmSize:")?))
 }
 
-/// The smallest remainder of the control groups that `memberships` names, the text of /proc/self/cgroup; they are mounted at
-/// `root`.
+/// The smallest remainder of the control groups that `memberships` names, the text of /proc/self/cgroup; they are
+/// mounted at `root`.
 fn group_headroom(memberships: &str, root: &Path) -> Option<u64> {
     let memory = |line: &str| {
         let mut parts = line.splitn(3, ':').skip(1);
@@ -77,8 +78,8 @@ type Files = [&'static str; 4];
 const VERSION_2: Files = ["memory.max", "memory.current", "inactive_file", "active_file"];
 const VERSION_1: Files = ["memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file", "total_active_file"];
 
-/// The smallest remainder of a group and of those that contain it, each of which may have a limit. Inside a container the
-/// path is that of the host, and only the group of the mount itself is visible.
+/// The smallest remainder of a group and of those that contain it, each of which may have a limit. Inside a container
+/// the path is that of the host, and only the group of the mount itself is visible.
 fn min_headroom(mount: &Path, group: PathBuf, files: Files) -> Option<u64> {
     let groups = group.ancestors().take_while(|folder| folder.starts_with(mount));
     groups.filter_map(|folder| headroom(folder, files)).min()

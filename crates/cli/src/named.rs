@@ -1,4 +1,4 @@
-//! Which of a scene's cameras or materials a word on a command line means.
+//! Finds the camera or material of a scene that a word on a command line means.
 
 /// A camera or material that a word may mean.
 pub struct Candidate<'a> {
@@ -60,8 +60,8 @@ fn listed<T>(items: impl IntoIterator<Item = T>, text: impl Fn(T) -> String) -> 
 mod tests {
     use super::*;
 
-    /// Seen to fail when names were looked up before indices: `1` then was the camera of that name, whatever else it may
-    /// mean.
+    /// Seen to fail when names were looked up before indices: `1` then was the camera of that name, whatever else it
+    /// may mean.
     #[test]
     fn a_word_means_one_candidate_or_none() {
         let candidate = |(index, names): (usize, [&'static str; 2])| Candidate {

@@ -11,8 +11,8 @@ use formats::cloud::{LightUnit, Normals};
 /// Arguments about the scene, as the user typed them.
 #[derive(Args, Clone, Debug)]
 pub struct SceneArgs {
-    /// Radiance of the environment, W/(m² sr): an equirectangular picture, its middle towards +X and its top towards +Y, or
-    /// a constant
+    /// Radiance of the environment, W/(m² sr): an equirectangular picture, its middle towards +X and its top towards
+    /// +Y, or a constant
     #[arg(long, value_name = "FILE.exr|FILE.hdr|R,G,B", value_parser = parse_environment)]
     pub environment: Option<EnvironmentSource>,
     /// Factor on the environment's radiance
@@ -25,8 +25,8 @@ pub struct SceneArgs {
     #[arg(long, value_name = "KIND", default_value = "shading", default_value_if("note", "true", "geometric"),
         value_parser = one_of(Normals::ALL, Normals::name))]
     pub normals: Normals,
-    /// Use the note's settings: uniform choice of triangles, independent samples, geometric normals, and the roulette with
-    /// its mean rule. Options given beside it win
+    /// Use the note's settings: uniform choice of triangles, independent samples, geometric normals, and the roulette
+    /// with its mean rule. Options given beside it win
     #[arg(long)]
     pub note: bool,
     /// Size of one unit of SCENE, m

@@ -59,8 +59,8 @@ impl SceneSettings {
         Ok(scene)
     }
 
-    /// Warns of what the scene's file asks for and the programs do not honor, of colors that the surfaces of translucent
-    /// materials ignore, and of defects of those surfaces; with `--strict`, refuses the defects.
+    /// Warns of what the scene's file asks for and the programs do not honor, of colors that the surfaces of
+    /// translucent materials ignore, and of defects of those surfaces; with `--strict`, refuses the defects.
     pub fn check_mesh(
         &self,
         scene: &mut Scene,

@@ -70,8 +70,8 @@ pub fn material_names<'a>(scene: &'a Scene, materials: &[u16]) -> Vec<Candidate<
     materials.iter().map(|material| candidate(usize::from(*material))).collect()
 }
 
-/// The materials of a scene, which `--translucent` and `--medium` may name: what each is taken for without these options,
-/// its triangles and area, and the medium that the file gives it.
+/// The materials of a scene, which `--translucent` and `--medium` may name: what each is taken for without these
+/// options, its triangles and area, and the medium that the file gives it.
 pub fn material_table(scene: &Scene) -> Result<String, Failure> {
     let mut table =
         Table::new(&["index", "name", "kind", "triangles", "area, m2", "medium of the file: sigma_a, sigma_s (1/m)"]);

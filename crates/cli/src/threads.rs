@@ -1,4 +1,5 @@
-//! The threads of a program: one pool, of as many threads as were asked for, or as there are cores, or as can be started.
+//! The threads of a program: one pool, of as many threads as were asked for, or as there are cores, or as can be
+//! started.
 
 use crate::Failure;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -12,8 +13,8 @@ use std::{
 /// The pool of the process, once it is needed, and the number of threads that was asked for.
 static POOL: Mutex<Option<(usize, &'static ThreadPool)>> = Mutex::new(None);
 
-/// The number of cores that this process may use. Environment variables do not change it, so that the command line alone
-/// decides.
+/// The number of cores that this process may use. Environment variables do not change it, so that the command line
+/// alone decides.
 pub(crate) fn cores() -> NonZeroUsize {
     thread::available_parallelism().unwrap_or(NonZeroUsize::MIN)
 }

@@ -1,9 +1,9 @@
 //! sRGB and tone curves: the numbers by which linear light becomes what a screen shows, and back.
 //!
-//! Linear red, green and blue have the primaries and the white of Rec. 709, which sRGB shares. [`srgb`] holds its transfer
-//! functions, [`xyz`] the matrices to and from CIE X, Y, Z, [`oklab`] a space of equal steps, and [`tone`] a curve that compresses
-//! bright light. Kernels that compute in lanes have the formulas in float32 and
-//! take the constants from here.
+//! Linear red, green and blue have the primaries and the white of Rec. 709, which sRGB shares. [`srgb`] holds its
+//! transfer functions, [`xyz`] the matrices to and from CIE X, Y, Z, [`oklab`] a space of equal steps, and [`tone`] a
+//! curve that compresses bright light. Kernels that compute in lanes have the formulas in float32 and take the
+//! constants from here.
 //!
 //! ```
 //! // A middle gray of 18 % has the code 118.

@@ -16,7 +16,8 @@ pub fn to_linear([lightness, a, b]: [f64; 3]) -> [f64; 3] {
 mod tests {
     use super::to_linear;
 
-    /// The lightness and the opponent channels of red are those of the CSS Color Module Level 4. Seen to catch: a sign in a matrix.
+    /// The lightness and the opponent channels of red are those of the CSS Color Module Level 4. Seen to catch: a sign
+    /// in a matrix.
     #[test]
     fn white_and_red() {
         for (lab, expected) in [([1.0, 0.0, 0.0], [1.0; 3]), ([0.627_96, 0.224_86, 0.125_85], [1.0, 0.0, 0.0])] {

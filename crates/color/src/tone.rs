@@ -3,9 +3,9 @@
 /// The coefficients `a` to `e` of [`aces`].
 pub const ACES: [f64; 5] = [2.51, 0.03, 2.43, 0.59, 0.14];
 
-/// `x (a x + b) / (x (c x + d) + e)`, at most 1: Krzysztof Narkowicz' fit of the ACES output transform ("ACES Filmic Tone
-/// Mapping Curve", 2016), with a toe, a straight part and a shoulder. Applied to each channel, it takes what is far too
-/// bright to white.
+/// `x (a x + b) / (x (c x + d) + e)`, at most 1: Krzysztof Narkowicz' fit of the ACES output transform ("ACES Filmic
+/// Tone Mapping Curve", 2016), with a toe, a straight part and a shoulder. Applied to each channel, it takes what is
+/// far too bright to white.
 pub fn aces(linear: f64) -> f64 {
     let [a, b, c, d, e] = ACES;
     // The curve exceeds 1 beyond 7.25; the squares of huge numbers could overflow.

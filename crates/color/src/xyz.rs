@@ -8,8 +8,8 @@ const fn tristimulus([x, y]: [f64; 2]) -> [f64; 3] {
     [x / y, 1.0, (1.0 - x - y) / y]
 }
 
-/// The matrix from linear red, green and blue to X, Y, Z relative to those of white, by CIE x and y of the primaries and of white.
-/// The brightnesses of the primaries follow from the condition that together they make white.
+/// The matrix from linear red, green and blue to X, Y, Z relative to those of white, by CIE x and y of the primaries
+/// and of white. The brightnesses of the primaries follow from the condition that together they make white.
 pub const fn from_rgb([red, green, blue]: [[f64; 2]; 3], white: [f64; 2]) -> Matrix {
     let (columns, white) = ([tristimulus(red), tristimulus(green), tristimulus(blue)], tristimulus(white));
     let mut matrix = [[0.0; 3]; 3];

@@ -1,12 +1,12 @@
 //! Files that are written whole or not at all: a temporary file beside the target is renamed over it.
 //!
-//! A link is followed, even to a file that does not exist yet: the file that it leads to is replaced, and the link stays. The
-//! new file has the permissions of the one that it replaces, and its owner where the system allows that. Devices (`/dev/null`)
-//! are written directly, because a rename would replace them. Named pipes and sockets are refused, because opening one can wait
-//! for ever.
+//! A link is followed, even to a file that does not exist yet: the file that it leads to is replaced, and the link
+//! stays. The new file has the permissions of the one that it replaces, and its owner where the system allows that.
+//! Devices (`/dev/null`) are written directly, because a rename would replace them. Named pipes and sockets are
+//! refused, because opening one can wait for ever.
 //!
-//! A writer holds a lock on its temporary file. A killed process holds none, on this machine or another, so that the next writer
-//! of the same target removes its temporary file; that of a live process stays.
+//! A writer holds a lock on its temporary file. A killed process holds none, on this machine or another, so that the
+//! next writer of the same target removes its temporary file; that of a live process stays.
 
 use crate::Error;
 use std::{
@@ -108,8 +108,8 @@ impl Drop for Output {
     }
 }
 
-/// Files of one run that belong together, as an image and its preview. They are renamed while no other group is whose first file
-/// lies in the same folder, so that after two simultaneous runs all files are those of one of them.
+/// Files of one run that belong together, as an image and its preview. They are renamed while no other group is whose
+/// first file lies in the same folder, so that after two simultaneous runs all files are those of one of them.
 #[derive(Debug, Default)]
 pub struct Group(Vec<Output>);
 
@@ -140,7 +140,8 @@ impl Group {
     }
 }
 
-/// Locks a folder while files are renamed. None where the system has no locks, or another process holds this one for long.
+/// Locks a folder while files are renamed. None where the system has no locks, or another process holds this one for
+/// long.
 fn lock_folder(folder: &Path) -> Option<File> {
     let file = File::open(folder).ok()?;
     let start = Instant::now();
@@ -305,8 +306,8 @@ fn temporary_name(target: &Path) -> io::Result<PathBuf> {
     Ok(target.with_file_name(hidden))
 }
 
-/// The stem of the names of a target's temporary files: its name, or a hash of a long one, so that the file system takes the
-/// temporary name.
+/// The stem of the names of a target's temporary files: its name, or a hash of a long one, so that the file system
+/// takes the temporary name.
 fn temporary_stem(name: &OsStr) -> OsString {
     let bytes = name.as_encoded_bytes();
     if bytes.len() <= LONG_NAME { name.to_owned() } else { format!("{:016x}", xxh3_64(bytes)).into() }

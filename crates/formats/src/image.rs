@@ -1,8 +1,8 @@
 //! OpenEXR files.
 //!
-//! Samples are float32 and scene-linear; a channel is one plane, with rows from top to bottom. Channels of a layer share a
-//! prefix (`subsurface.R`) and lie in one part, because more readers know layers than know several parts. Which layers and
-//! attributes a renderer writes is not known here.
+//! Samples are float32 and scene-linear; a channel is one plane, with rows from top to bottom. Channels of a layer
+//! share a prefix (`subsurface.R`) and lie in one part, because more readers know layers than know several parts. Which
+//! layers and attributes a renderer writes is not known here.
 
 use std::num::NonZeroUsize;
 use std::path::Path;
@@ -29,11 +29,11 @@ impl Image {
         encode::encode(self, threads)
     }
 
-    /// Reads a flat OpenEXR file: half, float or uint samples; scan lines or tiles, with the largest level of a mip map; one
-    /// part, or several with the same data window; uncompressed or by RLE, ZIP, PIZ or PXR24.
+    /// Reads a flat OpenEXR file: half, float or uint samples; scan lines or tiles, with the largest level of a mip
+    /// map; one part, or several with the same data window; uncompressed or by RLE, ZIP, PIZ or PXR24.
     ///
-    /// Channels of several parts get the name of their part as layer. Where parts disagree about an attribute, that of the
-    /// later part is added as `view of part 2`. A uint that float32 cannot represent is refused.
+    /// Channels of several parts get the name of their part as layer. Where parts disagree about an attribute, that of
+    /// the later part is added as `view of part 2`. A uint that float32 cannot represent is refused.
     pub fn decode(bytes: &[u8]) -> Result<Image, ImageError> {
         Image::decode_with(bytes, NonZeroUsize::MIN)
     }

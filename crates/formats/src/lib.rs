@@ -1,9 +1,9 @@
 //! The files that join the programs: point clouds, images and environment maps.
 //!
-//! [`cloud`] maps a point cloud into memory as it lies in its file. [`Image`] reads and writes OpenEXR, and [`Panorama`] reads
-//! OpenEXR and Radiance HDR as light from all around. [`octahedral`] stores a unit vector in four bytes. [`atomic`] writes a
-//! file whole or not at all. All numbers are little-endian. Readers trust no file: its bytes become a checked type, and a size
-//! that a file only claims allocates no memory.
+//! [`cloud`] maps a point cloud into memory as it lies in its file. [`Image`] reads and writes OpenEXR, and
+//! [`Panorama`] reads OpenEXR and Radiance HDR as light from all around. [`octahedral`] stores a unit vector in four
+//! bytes. [`atomic`] writes a file whole or not at all. All numbers are little-endian. Readers trust no file: its bytes
+//! become a checked type, and a size that a file only claims allocates no memory.
 //!
 //! ```
 //! use formats::{Channel, Image};

@@ -2,8 +2,8 @@
 
 use memmap2::MmapMut;
 
-/// Whether the system would grant `bytes` of memory now. The system itself is asked, because a program's allocator may end the
-/// process instead of returning an error.
+/// Whether the system would grant `bytes` of memory now. The system itself is asked, because a program's allocator may
+/// end the process instead of returning an error.
 pub(crate) fn has_room(bytes: u64) -> bool {
     usize::try_from(bytes).is_ok_and(|bytes| MmapMut::map_anon(bytes.max(1)).is_ok())
 }

@@ -1,6 +1,6 @@
-//! Unit vectors in four bytes: the octahedral map (Meyer, Süßmuth, Sußner, Stamminger, Greiner 2010, "On floating-point normal
-//! vectors"). The encoder takes the best of the four codes around the exact point (Cigolle, Donow, Evangelakos, Mara, McGuire,
-//! Meyer 2014, "A survey of efficient representations for independent unit vectors").
+//! Unit vectors in four bytes: the octahedral map (Meyer, Süßmuth, Sußner, Stamminger, Greiner 2010, "On floating-point
+//! normal vectors"). The encoder takes the best of the four codes around the exact point (Cigolle, Donow, Evangelakos,
+//! Mara, McGuire, Meyer 2014, "A survey of efficient representations for independent unit vectors").
 //!
 //! ```
 //! use formats::octahedral::{decode, encode};
@@ -41,12 +41,12 @@ pub fn decode(code: [i16; 2]) -> DVec3 {
     DVec3::new(x, y, z).normalize()
 }
 
-/// The directions of codes with x in the low half and y in the high one, component by component: vectors of integers whose
-/// magnitudes add up to 32767, so that their dot products are exact.
+/// The directions of codes with x in the low half and y in the high one, component by component: vectors of integers
+/// whose magnitudes add up to 32767, so that their dot products are exact.
 ///
-/// The corners of the square are the lower half of the octahedron: there both coordinates move towards zero by how far `z`
-/// is below it. −32768 reads as −32767. There are no branches, which would become masked stores that the next loop has to
-/// wait for.
+/// The corners of the square are the lower half of the octahedron: there both coordinates move towards zero by how far
+/// `z` is below it. −32768 reads as −32767. There are no branches, which would become masked stores that the next loop
+/// has to wait for.
 #[inline(always)]
 pub fn integer_directions<const N: usize>(codes: &[u32; N]) -> [[i32; N]; 3] {
     const STEPS: i32 = i16::MAX as i32;

@@ -20,12 +20,12 @@ const START: u64 = 1 << 20;
 impl Panorama {
     /// Reads a file.
     ///
-    /// The display window of an OpenEXR file is the picture: it is black where the data window has no pixels, and pixels
-    /// outside it are dropped. Colors with other `chromaticities`, or other `PRIMARIES` of an HDR file, are converted to
-    /// Rec. 709 and adapted to its white (Bradford); negative channels of colors outside its gamut become 0, with a warning.
-    /// `R`, `G` and `B` beside an alpha channel are taken over black. `whiteLuminance`, `pixelAspectRatio`, `PIXASPECT` and
-    /// `VIEW` are ignored. Exposures and color corrections of an HDR file are undone. Other projections and color models are
-    /// refused.
+    /// The display window of an OpenEXR file is the picture: it is black where the data window has no pixels, and
+    /// pixels outside it are dropped. Colors with other `chromaticities`, or other `PRIMARIES` of an HDR file, are
+    /// converted to Rec. 709 and adapted to its white (Bradford); negative channels of colors outside its gamut become
+    /// 0, with a warning. `R`, `G` and `B` beside an alpha channel are taken over black. `whiteLuminance`,
+    /// `pixelAspectRatio`, `PIXASPECT` and `VIEW` are ignored. Exposures and color corrections of an HDR file are
+    /// undone. Other projections and color models are refused.
     pub fn read(path: &Path) -> Result<Panorama, Error> {
         Panorama::size(path)?;
         let bytes = std::fs::read(path).map_err(|source| Error::read(path, source))?;

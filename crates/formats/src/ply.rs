@@ -3,8 +3,9 @@
 use crate::{Error, atomic::Output, cloud::Cloud};
 use std::{io::Write, path::Path};
 
-/// Writes position (m), normal, direction to the light and flux (W) of every stored sample; the caller commits the file.
-/// Positions are relative to [`crate::cloud::Meta::exchange_origin_m`], which a comment of the header states unless it is 0.
+/// Writes position (m), normal, direction to the light and flux (W) of every stored sample; the caller commits the
+/// file. Positions are relative to [`crate::cloud::Meta::exchange_origin_m`], which a comment of the header states
+/// unless it is 0.
 pub fn write_ply(path: &Path, cloud: &Cloud) -> Result<Output, Error> {
     let mut output = Output::create(path)?;
     let fail = |source| Error::write(path, source);

@@ -1,7 +1,7 @@
 //! Files that `exr/make.py` wrote with OpenEXR and its tools.
 //!
-//! Seen to catch: tiles without their offset; mip levels not left out; the largest uint compared as u32; rows from bottom to top
-//! for decreasing line order.
+//! Seen to catch: tiles without their offset; mip levels not left out; the largest uint compared as u32; rows from
+//! bottom to top for decreasing line order.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;

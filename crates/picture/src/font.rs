@@ -18,8 +18,8 @@ pub fn dots(text: &str, width: usize) -> impl Iterator<Item = (usize, usize)> {
     })
 }
 
-/// Rows of a glyph from top to bottom; the bit of 16 is the leftmost dot. There are lower-case letters only, and a box for unknown
-/// ones.
+/// Rows of a glyph from top to bottom; the bit of 16 is the leftmost dot. There are lower-case letters only, and a box
+/// for unknown ones.
 fn glyph(letter: char) -> [u8; 7] {
     let small = letter.to_ascii_lowercase();
     let known = GLYPHS.iter().find(|(name, _)| *name == small);

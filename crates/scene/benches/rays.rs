@@ -28,7 +28,7 @@ static SCENE: LazyLock<Scene> = LazyLock::new(|| {
 
 static RAYS: LazyLock<Rays<'static>> = LazyLock::new(|| Rays::new(&SCENE.mesh));
 
-/// Neighbours go nearly the same way.
+/// Neighbors go nearly the same way.
 static CAMERA: LazyLock<Vec<Ray>> = LazyLock::new(|| {
     let (low, high) = SCENE.mesh.bounds();
     let middle = (low + high) / 2.0;

@@ -1,4 +1,4 @@
-//! Identity of a scene: what clouds are known by.
+//! The identity of a scene, by which clouds recognize it.
 
 use crate::scene::Scene;
 use std::{collections::BTreeMap, sync::Arc};
@@ -11,7 +11,8 @@ impl Scene {
         *hasher.finalize().as_bytes()
     }
 
-    /// Identity of the geometry, of which material covers which triangle, and of its colors and holes, as a BLAKE3 digest.
+    /// Identity of the geometry, of which material covers which triangle, and of its colors and holes, as a BLAKE3
+    /// digest.
     pub fn geometry_digest(&self) -> [u8; 32] {
         let mut hasher = blake3::Hasher::new();
         let mut put = |bytes: &[u8]| {

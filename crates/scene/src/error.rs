@@ -1,9 +1,10 @@
-//! What can be wrong with a scene or a view.
+//! Errors of scenes and views.
 
 use crate::unhonoured::{quoted, rest};
 use std::path::PathBuf;
 
-/// A scene or view that cannot be used. The message names the file and the field and, where the file can be mended, how.
+/// A scene or view that cannot be used. The message names the file and the field and, where the file can be mended,
+/// how.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     #[error("{}: {source}", path.display())]

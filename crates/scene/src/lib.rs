@@ -1,11 +1,12 @@
-//! What is lit and seen: a triangle mesh, its lights and cameras, and rays through it.
+//! The scene: a triangle mesh, its lights and cameras, and rays through it.
 //!
-//! [`Scene::import`] reads a glTF file and checks it. [`Rays`] finds what a ray meets, and [`light`] chooses lights for a
-//! point of the surface and tells what arrives there. Random numbers are pure functions of their index ([`random`]), some
-//! of them well spread ([`sequence`]), and [`warp`] turns them into points and directions.
+//! [`Scene::import`] reads a glTF file and checks it. [`Rays`] finds what a ray meets, and [`light`] chooses lights for
+//! a point of the surface and tells what arrives there. Random numbers are pure functions of their index ([`random`]),
+//! some of them well spread ([`sequence`]), and [`warp`] turns them into points and directions.
 //!
-//! The crate knows neither a medium nor how an image is made. After import, lengths are in metres. Positions are float32
-//! relative to [`Scene::origin`], the center of the mesh in float64: an object far from the origin loses no digits.
+//! The crate does not depend on scattering in media or on the rendering of images. After import, lengths are in metres.
+//! Positions are float32 relative to [`Scene::origin`], the center of the mesh in float64: an object far from the
+//! origin loses no digits.
 //!
 //! A triangle in the sun:
 //!
@@ -24,12 +25,10 @@
 //! let hit = rays.closest(at.position + DVec3::Z, DVec3::NEG_Z, None).expect("the ray meets the triangle");
 //! assert!((hit.triangle, hit.distance) == (0, 1.0));
 //!
-//! let sun = DirectionalLight { direction: DVec3::new(0.0, 0.6, 0.8), irradiance: DVec3::splat(5.0) };
-//! let lights = LightTree::new([&sun as &dyn Light]);
-//! let choice = LightChoice::new(&lights, &ReceiverBounds::point(&at), 1);
-//! let mut shadow_rays = 0;
-//! let Lit::Light { irradiance, .. } = light_at(&choice, &rays, &at, [0.5; 3], &mut shadow_rays) else { panic!("lit") };
-//! assert!((irradiance - DVec3::splat(4.0)).length() < 1e-12);
+//! let sun = DirectionalLight { direction: DVec3::new(0.0, 0.6, 0.8), irradiance: DVec3::splat(5.0) }; let lights =
+//! LightTree::new([&sun as &dyn Light]); let choice = LightChoice::new(&lights, &ReceiverBounds::point(&at), 1); let
+//! mut shadow_rays = 0; let Lit::Light { irradiance, .. } = light_at(&choice, &rays, &at, [0.5; 3], &mut shadow_rays)
+//! else { panic!("lit") }; assert!((irradiance - DVec3::splat(4.0)).length() < 1e-12);
 //! ```
 
 mod cutouts;

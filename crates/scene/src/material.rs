@@ -1,9 +1,9 @@
-//! What a surface looks like.
+//! The appearance of surfaces.
 
 use crate::{texture::Texture, volume::Volume};
 use glam::{DVec3, DVec4};
 
-/// What a surface looks like, apart from the medium below it.
+/// The appearance of a surface, apart from the medium below it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     pub name: String,
@@ -16,7 +16,7 @@ pub struct Material {
     pub emission: DVec3,
     /// Whether the file marks the surface as the boundary of a volume.
     pub volume: bool,
-    /// What the file says of that volume, if it does.
+    /// The medium of that volume, if the file describes it.
     pub medium: Option<Volume>,
     /// Whether it emits to both sides.
     pub double_sided: bool,

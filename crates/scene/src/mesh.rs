@@ -141,7 +141,8 @@ pub(crate) fn area([a, b, c]: [DVec3; 3]) -> f64 {
     0.5 * (b - a).cross(c - a).length()
 }
 
-/// `v/‖v‖`; division by the largest component first avoids underflow where the cross product of a tiny triangle is squared.
+/// `v/‖v‖`; division by the largest component first avoids underflow where the cross product of a tiny triangle is
+/// squared.
 pub(crate) fn unit(v: DVec3) -> DVec3 {
     let largest = v.abs().max_element();
     (v / largest).normalize()

@@ -54,8 +54,8 @@ impl fmt::Display for MeshDefects {
 }
 
 impl Scene {
-    /// Examines the surfaces of the materials that `belong`, as [`Mesh::defects`] does, and counts triangles that were left
-    /// out on import.
+    /// Examines the surfaces of the materials that `belong`, as [`Mesh::defects`] does, and counts triangles that were
+    /// left out on import.
     pub fn defects(&self, belong: impl Fn(u16) -> bool) -> MeshDefects {
         let left_out = |counts: &BTreeMap<u16, u64>| -> u64 {
             counts.iter().filter(|(material, _)| belong(**material)).map(|(_, count)| count).sum()
@@ -75,7 +75,7 @@ impl Mesh {
         let own = self.triangles.iter().filter(|t| belongs(t.material));
         let mut triangles: Vec<[u32; 3]> = own.map(|t| t.vertices.map(|i| welded[i as usize])).collect();
         let count = triangles.len();
-        // Of triangles with the same corners, the first of the mesh is kept.
+        // The first of several triangles with the same corners is kept.
         triangles.sort_by_key(sorted);
         triangles.dedup_by_key(|t| sorted(t));
         let mut parts = Parts::new(&points, &triangles);
@@ -184,8 +184,9 @@ impl Parts {
         self.list[self.of_root[root as usize] as usize].closed = false;
     }
 
-    /// The number of closed parts that are wound inwards and are not cavities. A part is a cavity if its box lies in that of
-    /// a body wound outwards; only the largest bodies are tested, so that the time is linear in the number of parts.
+    /// The number of closed parts that are wound inwards and are not cavities. A part is a cavity if its box lies in
+    /// that of a body wound outwards; only the largest bodies are tested, so that the time is linear in the number of
+    /// parts.
     fn inward(&self) -> u64 {
         const BODIES: usize = 256;
         // A sheet of two sides encloses nothing: its volume is rounding error of either sign.

@@ -1,7 +1,7 @@
 //! Counter-based random numbers: a pure function of (seed, purpose, index, dimension).
 //!
-//! There is no state, so any thread may compute any number, and nothing depends on order. The first values are pinned in
-//! a test: changing them changes every cloud and image.
+//! There is no state, so any thread may compute any number, and nothing depends on order. The first values are pinned
+//! in a test: changing them changes every cloud and image.
 
 /// The purpose of a stream: streams of different purposes are independent.
 #[derive(Clone, Copy, Debug)]
@@ -12,7 +12,7 @@ pub enum Purpose {
     CameraPath,
     /// Acceptance and choice of samples in the sums of phase two.
     Gather,
-    /// Where paths cross their pixel.
+    /// Points at which paths cross their pixel.
     Pixel,
     /// Transmittance rays of edge pixels.
     Edge,
@@ -22,7 +22,7 @@ pub enum Purpose {
     Scramble,
     /// Light that opaque surfaces reflect to the samples of phase one.
     Bounce,
-    /// Which shard the paths of a pixel gather from.
+    /// The shards that the paths of a pixel gather from.
     ShardPick,
     /// The bits below those of one of these sequences.
     Remainder(u64),
@@ -45,7 +45,8 @@ impl Purpose {
     }
 }
 
-/// The seed of shard `index` of `count`: `seed` itself if there is only one shard, else another for each index and count.
+/// The seed of shard `index` of `count`: `seed` itself if there is only one shard, else another for each index and
+/// count.
 pub fn shard_seed(seed: u64, index: u32, count: u32) -> u64 {
     if count == 1 { seed } else { mix(mix(!seed) ^ (u64::from(index) << 32 | u64::from(count))) }
 }

@@ -16,7 +16,8 @@ use std::{
 
 /// An imported scene, checked: indices are in range, every number is finite, and every triangle has an area.
 pub struct Scene {
-    /// Every file that was read to make the scene, each once: its own, then buffers and pictures in the order of reading.
+    /// Every file that was read to make the scene, each once: its own, then buffers and pictures in the order of
+    /// reading.
     pub files: Vec<PathBuf>,
     pub mesh: Mesh,
     pub materials: Vec<Material>,
@@ -27,7 +28,7 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// World position of the mesh's center, m.
     pub origin: DVec3,
-    /// What was left out or looks wrong, one line each.
+    /// Warnings about parts that were left out or look wrong, one line each.
     pub warnings: Vec<String>,
     /// For each material, how many triangles were left out because they have no area.
     pub degenerate_triangles: BTreeMap<u16, u64>,
@@ -37,7 +38,7 @@ pub struct Scene {
     pub duplicate_triangles: BTreeMap<u16, u64>,
     /// Materials that a primitive of the scene names, though it may have no triangle left.
     pub(crate) claimed: BTreeSet<u16>,
-    /// What the file asks for and the image does not show.
+    /// Properties of the file that the image does not show.
     pub(crate) unhonoured: Vec<Unhonoured>,
 }
 
@@ -48,9 +49,9 @@ impl Scene {
         self.file_lights.iter().map(|light| &**light).chain(environment)
     }
 
-    /// Indices of the materials whose surfaces bound media by default: those that the file marks as volumes or, if it marks
-    /// none, all that do not emit, with `true` for the latter. Only materials that cover a triangle count. It is an error
-    /// if the file marks materials and none of them covers a triangle.
+    /// Indices of the materials whose surfaces bound media by default: those that the file marks as volumes or, if it
+    /// marks none, all that do not emit, with `true` for the latter. Only materials that cover a triangle count. It is
+    /// an error if the file marks materials and none of them covers a triangle.
     pub fn translucent(&self) -> Result<(Vec<u16>, bool), LostVolumes> {
         let mut used = vec![false; self.materials.len()];
         self.mesh.triangles.iter().for_each(|t| used[t.material as usize] = true);

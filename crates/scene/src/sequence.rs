@@ -1,8 +1,8 @@
 //! Well-spread numbers: Sobol's sequence in four dimensions under Owen's scrambling.
 //!
-//! Every prefix of the sequence is spread evenly, and each coordinate of each point is uniform over the scrambles: means
-//! are unbiased whatever the number of points. The scrambling is a hash that changes each bit by the bits above it only
-//! (Laine and Karras 2011, with Vegdahl's multipliers; Burley 2020), followed by a random digital shift.
+//! Every prefix of the sequence is spread evenly, and each coordinate of each point is uniform over the scrambles:
+//! means are unbiased whatever the number of points. The scrambling is a hash that changes each bit by the bits above
+//! it only (Laine and Karras 2011, with Vegdahl's multipliers; Burley 2020), followed by a random digital shift.
 
 use crate::random::{Item, Stream};
 
@@ -12,8 +12,8 @@ pub const DIMENSIONS: usize = 4;
 /// The number of points of a sequence.
 pub const LENGTH: u64 = 1 << 32;
 
-/// Columns of Sobol's matrices for dimensions 2 to 4, with their bits reversed (Joe and Kuo 2008); the first dimension is
-/// the index with its bits reversed.
+/// Columns of Sobol's matrices for dimensions 2 to 4, with their bits reversed (Joe and Kuo 2008); the first dimension
+/// is the index with its bits reversed.
 const COLUMNS: [[u32; 32]; DIMENSIONS - 1] =
     [columns(1, 0, [1, 0, 0]), columns(2, 1, [1, 3, 0]), columns(3, 1, [1, 3, 1])];
 
@@ -61,7 +61,8 @@ impl Sequence {
         Sequence { seeds: dimensions.map(|d| [word(d, 0), word(d, 1)]), shifts: dimensions.map(|d| word(d, 2)), rest }
     }
 
-    /// Point `index`, in [0, 1)⁴. The bits after the first 32, which distinguish no two points, are independent random bits.
+    /// Point `index`, in [0, 1)⁴. The bits after the first 32, which distinguish no two points, are independent random
+    /// bits.
     pub fn point(&self, index: u32) -> [f64; DIMENSIONS] {
         let rest = self.rest.item(u64::from(index));
         std::array::from_fn(|d| {
@@ -103,9 +104,9 @@ mod tests {
         Sequence::new(stream.item(0), stream)
     }
 
-    /// Of the first 2^m points, each interval of length 2^-m of each axis holds one, and so does each box of area 2^-m of
-    /// the first two axes: a (0, m, 2)-net, which scrambling keeps. Planted: a wrong initial number, a scramble that
-    /// mixes downwards, fail.
+    /// Of the first 2^m points, each interval of length 2^-m of each axis holds one, and so does each box of area 2^-m
+    /// of the first two axes: a (0, m, 2)-net, which scrambling keeps. Seen to catch: a wrong initial number, a
+    /// scramble that mixes downwards.
     #[test]
     fn powers_of_two_are_nets() {
         for (seed, m) in [(1, 4), (2, 8), (3, 10)] {

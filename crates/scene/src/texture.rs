@@ -57,7 +57,7 @@ impl Texture {
         if self.nearest {
             return self.texel(x.floor() as i64, y.floor() as i64);
         }
-        // The centre of a texel is half a texel from its edges.
+        // The center of a texel is half a texel from its edges.
         let [x, y] = [x - 0.5, y - 0.5];
         let [left, top] = [x.floor(), y.floor()];
         let row = |j: i64| {
@@ -85,7 +85,8 @@ mod tests {
         Texture { picture: Arc::new(Picture { width: 3, texels }), wrap: [wrap; 2], nearest }
     }
 
-    /// Seen to catch: `v` upwards; a mirror that does not repeat the edge texel; a remainder with the sign of the index.
+    /// Seen to catch: `v` upwards; a mirror that does not repeat the edge texel; a remainder with the sign of the
+    /// index.
     #[test]
     fn beyond_the_edges() {
         let rows = [

@@ -8,13 +8,14 @@ const MAX_NAME_BYTES: usize = 40;
 pub(crate) struct Unhonoured {
     /// Its name in the file, with that of the list that its holder is in.
     pub property: String,
-    /// What has it; none if it is a property of the file.
+    /// The holder of the property; none for the file itself.
     pub holder: Option<Holder>,
-    /// On opaque and on translucent surfaces: none if it is honoured there, else the numbers that stand in for it, if any.
+    /// On opaque and on translucent surfaces: none if it is honoured there, else the numbers that stand in for it, if
+    /// any.
     pub on: [Option<&'static [f64]>; 2],
 }
 
-/// What has a property.
+/// The holder of a property.
 #[derive(Clone, Debug)]
 pub(crate) enum Holder {
     Material(u16),
@@ -32,7 +33,7 @@ pub(crate) fn cut(text: &str, bytes: usize) -> String {
     if text.len() <= bytes { text.to_owned() } else { format!("{}…", &text[..text.floor_char_boundary(bytes)]) }
 }
 
-/// What a list of names ends with if `count` more were left out.
+/// The end of a list of names from which `count` were left out.
 pub(crate) fn rest(count: usize) -> String {
     if count == 0 { String::new() } else { format!(" and {count} more") }
 }

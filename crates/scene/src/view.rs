@@ -213,8 +213,8 @@ impl ViewFile {
     }
 }
 
-/// Checks each view and names the first that is invalid. An array is refused, though serde reads structures from lists of
-/// their fields. Fields that occur twice are found later, in the text.
+/// Checks each view and names the first that is invalid. An array is refused, though serde reads structures from lists
+/// of their fields. Fields that occur twice are found later, in the text.
 fn check_views(list: &[Value]) -> Result<(), String> {
     list.iter().enumerate().try_for_each(|(k, value)| match View::deserialize(value) {
         Err(e) => Err(format!("view {k}: {e}; {EXPECTED}")),
@@ -279,8 +279,8 @@ mod tests {
         let size = DVec2::new(200.0, 100.0);
         let (_, top_left) = camera.ray(DVec2::ZERO, size);
         assert!((top_left - DVec3::new(-2.0, 1.0, -1.0).normalize()).length() < 1e-15);
-        let (_, centre) = camera.ray(size / 2.0, size);
-        assert!((centre - DVec3::NEG_Z).length() < 1e-15);
+        let (_, center) = camera.ray(size / 2.0, size);
+        assert!((center - DVec3::NEG_Z).length() < 1e-15);
     }
 
     /// OpenEXR multiplies row vectors: p · M.

@@ -1,4 +1,4 @@
-//! Warnings of what a file asks for and the image does not show.
+//! Warnings about properties of a file that the image does not show.
 
 use crate::{
     scene::Scene,

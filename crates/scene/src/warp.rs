@@ -8,17 +8,17 @@
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Barycentric weights of a uniform point on a triangle (method.md 6.2): `x = (1−√ξ₀) v₀ + (1−ξ₁)√ξ₀ v₁ + ξ₁√ξ₀ v₂`. Its
-/// density per area is `1/A`.
+/// Barycentric weights of a uniform point on a triangle (docs/method.md 6.2):
+/// `x = (1−√ξ₀) v₀ + (1−ξ₁)√ξ₀ v₁ + ξ₁√ξ₀ v₂`. Its density per area is `1/A`.
 // note: [point]
 pub fn triangle(xi: [f64; 2]) -> [f64; 3] {
     let root = xi[0].sqrt();
     [1.0 - root, (1.0 - xi[1]) * root, xi[1] * root]
 }
 
-/// A point `[x, y]` of the unit square, which is cut from (1, 0) to (0, 1) into two triangles, and whether it lies in the
-/// second one. Points are uniform in each triangle, and each gets its share of them; `x` grows with the first number, and
-/// at each `x`, `y` grows with the second. With a share of 0 the second triangle is empty.
+/// A point `[x, y]` of the unit square, which is cut from (1, 0) to (0, 1) into two triangles, and whether it lies in
+/// the second one. Points are uniform in each triangle, and each gets its share of them; `x` grows with the first
+/// number, and at each `x`, `y` grows with the second. With a share of 0 the second triangle is empty.
 pub fn halved_square(xi: [f64; 2], shares: [f64; 2]) -> ([f64; 2], bool) {
     // The column at x holds 2 s₀ (1−x) + 2 s₁ x, so with q = (s₁−s₀)/(s₀+s₁) its integral q x² + (1−q) x is ξ₀.
     let total = shares[0] + shares[1];
@@ -41,7 +41,7 @@ pub fn cosine_hemisphere(normal: DVec3, xi: [f64; 2]) -> DVec3 {
     cosine_hemisphere_in([tangent, bitangent, normal], xi)
 }
 
-/// The same about the last of three orthonormal vectors.
+/// Cosine-distributed unit direction about the last of three orthonormal vectors.
 pub fn cosine_hemisphere_in([tangent, bitangent, normal]: [DVec3; 3], xi: [f64; 2]) -> DVec3 {
     let radius = xi[0].sqrt();
     let (sine, cosine) = (2.0 * PI * xi[1]).sin_cos();
@@ -58,7 +58,7 @@ pub fn cosine_hemisphere_pdf_solid_angle(cosine: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Planted: shares exchanged; a column cut in the middle.
+    /// Seen to catch: shares exchanged; a column cut in the middle.
     #[test]
     fn the_halves_of_the_square_are_covered_evenly_and_by_their_shares() {
         let n = 400;

@@ -1,11 +1,12 @@
 //! One body of code, compiled for several instruction sets, of which the program chooses one when it runs.
 //!
 //! All versions give the same bits: fused multiply-adds are not used, and lanes and sums have a fixed order. The plain
-//! version runs on other processors, and where a feature is missing. (With fused multiply-adds, the models would be a tenth
-//! to a quarter faster; a processor without the instruction would have to call a function for each.)
+//! version runs on other processors, and where a feature is missing. (With fused multiply-adds, the models would be a
+//! tenth to a quarter faster; a processor without the instruction would have to call a function for each.)
 //!
-//! Whatever a kernel calls must be inlined into it: a function that is not is compiled for the plain instruction set. So
-//! kernels have loops over lanes and no `map` of an array, whose closures are not inlined. `perf` shows what was not.
+//! Whatever a kernel calls must be inlined into it: a function that is not is compiled for the plain instruction set.
+//! So kernels have loops over lanes and no `map` of an array, whose closures are not inlined. `perf` shows what was
+//! not.
 //!
 //! ```
 //! struct Dot<'a>(&'a [f32; 16], &'a [f32; 16]);

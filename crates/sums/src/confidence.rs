@@ -1,7 +1,7 @@
 //! Confidence intervals of errors that were estimated from few independent values.
 //!
 //! An error that is estimated from few values may be small by chance, and a program that stops at the first small one
-//! favours that chance. Student's distribution says by how much the interval that contains the true value in 95 of 100
+//! favors that chance. Student's distribution says by how much the interval that contains the true value in 95 of 100
 //! cases must be wider.
 
 /// Pairs `(ν, t)`: Student's t with `ν` degrees of freedom lies outside `±t` in 5 of 100 cases.
@@ -22,9 +22,9 @@ const QUANTILES: [(f64, f64); 14] = [
     (f64::INFINITY, 1.959_964),
 ];
 
-/// The `t` such that Student's t with `freedom` degrees of freedom, of which there is at least one, lies outside `±t` in
-/// 5 of 100 cases. Between the entries of the table, `ln t` is interpolated linearly in `1/ν`, which is at most 2 % too
-/// large and never too small.
+/// The `t` such that Student's t with `freedom` degrees of freedom, of which there is at least one, lies outside `±t`
+/// in 5 of 100 cases. Between the entries of the table, `ln t` is interpolated linearly in `1/ν`, which is at most 2 %
+/// too large and never too small.
 pub fn student(freedom: f64) -> f64 {
     // NaN counts as one degree of freedom.
     let inverse = if freedom > 1.0 { 1.0 / freedom } else { 1.0 };
@@ -54,7 +54,7 @@ impl Estimate {
     }
 }
 
-/// A relative error in per cent, with two significant digits where two decimals would show 0.
+/// A relative error in percent, with two significant digits where two decimals would show 0.
 pub fn percent(error: f64) -> String {
     if error == 0.0 || error >= 1e-4 { format!("{:.2} %", 100.0 * error) } else { format!("{:.1e} %", 100.0 * error) }
 }

@@ -12,7 +12,7 @@ pub struct DrawnCounts {
 }
 
 impl DrawnCounts {
-    /// From the numbers of samples drawn for the two halves of each shard.
+    /// Takes the numbers of samples drawn for the two halves of each shard.
     pub fn new(shards: Vec<[u64; 2]>) -> DrawnCounts {
         DrawnCounts { halves: [0, 1].map(|half| shards.iter().map(|drawn| drawn[half]).sum()), shards }
     }
@@ -43,7 +43,7 @@ impl DrawnCounts {
             return ShardPick { shard: 0, weight: 1.0 };
         }
         let start = start();
-        // The samples of all shards are counted through; the path is sent to the shard that has this one.
+        // The samples of all shards are numbered consecutively; the path gathers from the shard that holds this number.
         let sample = |index: u32| ((start + f64::from(index)) / f64::from(paths) * self.halves[half] as f64) as u64;
         // The number after the last sample of each shard. A shard without a sample in this half is never picked.
         let ends = self.shards.iter().scan(0, |end, drawn| {
@@ -55,8 +55,8 @@ impl DrawnCounts {
             return ShardPick { shard: 0, weight: 1.0 };
         };
         let drawn = self.shards[shard][half];
-        // A shard that some path is certain to pick is weighted by its samples over the number of its paths. Any other is
-        // picked with a probability in proportion to its samples, which makes its mean right without a weight.
+        // A shard that some path is certain to pick is weighted by its samples over the number of its paths. Any other
+        // is picked with a probability in proportion to its samples, which makes its mean right without a weight.
         let certain = u128::from(drawn) * u128::from(paths) >= u128::from(self.halves[half]);
         let picks = first_at(&sample, paths, end) - first_at(&sample, paths, end - drawn);
         let share = drawn as f64 / self.halves[half] as f64;
@@ -90,8 +90,8 @@ mod tests {
         DrawnCounts::new(shards.iter().map(|n| [*n; 2]).collect())
     }
 
-    /// On paper: two shards with 2 and 3 of 5 samples. With five paths all weights are 1; with fewer, the weights of a
-    /// shard that is certain to be picked add up to its share.
+    /// Computed by hand: two shards with 2 and 3 of 5 samples. With five paths all weights are 1; with fewer, the
+    /// weights of a shard that is certain to be picked add up to its share.
     ///
     /// Seen to catch: no weights; weights for shards that are not certain to be picked.
     #[test]
@@ -101,14 +101,14 @@ mod tests {
             (0..paths).map(|index| drawn.pick_shard(1, index, paths, || start)).collect::<Vec<_>>()
         };
         for start in [0.0, 0.3, 0.999] {
-            // Neither of two paths need pick the first shard.
+            // It can happen that neither of two paths picks the first shard.
             let two = picks(2, start);
             let weight = |pick: &ShardPick| if pick.shard == 0 { 1.0 } else { 1.2 / count(&two, 1) };
             assert!(two.iter().all(|pick| (pick.weight - weight(pick)).abs() < 1e-15), "{two:?}");
             let five = picks(5, start);
             assert_eq!([count(&five, 0), count(&five, 1)], [2.0, 3.0], "{start}");
             assert!(five.iter().all(|pick| (pick.weight - 1.0).abs() < 1e-15));
-            // Three paths cannot be shared out as 2 : 3, so the weights must.
+            // Three paths cannot be divided as 2 : 3, so the weights make up for it.
             let three = picks(3, start);
             for (shard, samples) in [(0, 2.0), (1, 3.0)] {
                 let sum: f64 = three.iter().filter(|pick| pick.shard == shard).map(|pick| pick.weight).sum();

@@ -1,8 +1,8 @@
-//! The sum over the samples of a cloud at one exitant point: what phase two renders with, and what phase one chooses the
-//! number of its samples by.
+//! The sum over the samples of a cloud at one exitant point. Phase two renders with it; phase one uses it to choose the
+//! number of samples.
 //!
-//! A [`Scatterer`](estimator::Scatterer) is a medium under a BSSRDF model; a [`Summation`] joins it with the samples that
-//! light it; an [`Estimator`](estimator::Estimator) says which of them are evaluated.
+//! A [`Scatterer`](estimator::Scatterer) is a medium under a BSSRDF model; a [`Summation`] joins it with the samples
+//! that light it; an [`Estimator`](estimator::Estimator) says which of them are evaluated.
 //!
 //! ```
 //! use bssrdf::{Model, built_in};

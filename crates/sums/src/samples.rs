@@ -43,7 +43,7 @@ impl Exit {
         Exit { high: high.to_array(), low: low.to_array(), normal: normal.as_vec3().to_array(), key }
     }
 
-    /// The same point with the random numbers of one of several shards; the first shard keeps those of this point.
+    /// This point with random numbers for one of several shards; the first shard keeps the point's own.
     pub fn of_shard(&self, shard: usize) -> Exit {
         Exit { key: self.key.wrapping_add((shard as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15)), ..*self }
     }
@@ -72,8 +72,8 @@ impl<'a> LitSamples<'a> {
         LitSamples { tiles, nodes, len: len.min(tiles.len() * TILE), entry: EntryRefraction::new(eta), scale }
     }
 
-    /// The power of two that scales the total flux to about 1. Squares and sums of fluxes then neither overflow nor vanish
-    /// in float32, however strong or weak the light is, and a power of two rounds nothing.
+    /// The power of two that scales the total flux to about 1. Squares and sums of fluxes then neither overflow nor
+    /// vanish in float32, however strong or weak the light is, and a power of two rounds nothing.
     #[inline(always)]
     pub fn scale(&self) -> f32 {
         self.scale

@@ -35,7 +35,7 @@ pub struct Leaving {
 }
 
 impl<'a> Summation<'a> {
-    /// The samples are given as the two halves of each shard; `drawn` counts those of all materials.
+    /// Takes the two halves of each shard; `drawn` counts the samples of all materials.
     pub fn new(scatterer: Arc<Scatterer>, shards: Vec<[LitSamples<'a>; 2]>, drawn: DrawnCounts) -> Summation<'a> {
         Summation { scatterer, calibration: Calibration::default(), shards, drawn }
     }
@@ -52,7 +52,7 @@ impl<'a> Summation<'a> {
         self.shards.iter().flatten().all(LitSamples::is_empty)
     }
 
-    /// How many shards there are.
+    /// The number of shards.
     pub fn shards(&self) -> usize {
         self.shards.len()
     }
@@ -73,7 +73,7 @@ impl<'a> Summation<'a> {
         mean(self.sum_of_half(estimator, half, exit, scratch).radiance, self.drawn.half(half))
     }
 
-    /// `L_r` by all samples. `exit` is the exitant point, with random numbers for each half.
+    /// `L_r` from all samples. `exit` gives the exitant point with the random numbers of a half.
     pub fn whole(&self, estimator: Estimator, exit: impl Fn(usize) -> Exit, scratch: &mut Scratch) -> Leaving {
         let sums = [0, 1].map(|half| self.sum_of_half(estimator, half, &exit(half), scratch));
         let drawn = [0, 1].map(|half| self.drawn.half(half));
@@ -84,7 +84,7 @@ impl<'a> Summation<'a> {
         Leaving { radiance, halves, evaluations: both.evaluations, nodes: both.nodes }
     }
 
-    /// `L_r` by one half of the shard that was picked.
+    /// `L_r` from one half of the shard that was picked.
     pub fn by_shard(
         &self,
         estimator: Estimator,

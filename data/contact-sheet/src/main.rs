@@ -1,4 +1,5 @@
-//! `contact-sheet -o SHEET.png TITLE=FILE.png ...` puts pictures side by side on one sheet, reduced and with their titles.
+//! `contact-sheet -o SHEET.png TITLE=FILE.png ...` puts pictures side by side on one sheet, reduced and with their
+//! titles.
 
 mod sheet;
 

@@ -1,5 +1,4 @@
-//! A seated bear that waves, lit from behind: a thick body beside thin ears, so that light travels far in one place
-//! and shines through in another.
+//! A seated bear that waves, lit from behind: light travels far in its thick body and shines through its thin ears.
 
 use glam::{DVec3, Vec3};
 
@@ -111,7 +110,7 @@ pub fn field_mm(p: DVec3) -> f64 {
     smooth_max(all, -Shape::Below { height: SEAT_MM }.distance(p), 1.5)
 }
 
-/// From the figure's axes to those of its head, which leans about the neck.
+/// The transform from the figure's axes to those of its head, which leans about the neck.
 fn into_head(p: DVec3) -> DVec3 {
     let cos = 1.0 / (1.0 + HEAD_LEAN * HEAD_LEAN).sqrt();
     let sin = HEAD_LEAN * cos;

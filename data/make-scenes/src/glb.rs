@@ -35,8 +35,8 @@ pub fn encode(scene: &Scene) -> Vec<u8> {
         "bufferViews": buffer.views,
         "buffers": [{ "byteLength": buffer.bytes.len() }],
     });
-    // Whether serde_json keeps the order of insertion depends on the features that other crates enable. Sorted keys make
-    // the bytes independent of that.
+    // Whether serde_json keeps the order of insertion depends on the features that other crates enable. Sorted keys
+    // make the bytes independent of that.
     document.sort_all_objects();
     container(document.to_string().into_bytes(), buffer.bytes)
 }

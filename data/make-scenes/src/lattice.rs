@@ -17,7 +17,7 @@ pub struct BoxSurface {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// A crossing of three cuts, by their places in the lists.
+/// A crossing of three cuts, by their indices in the lists.
 type Crossing = [usize; 3];
 
 impl Lattice {

@@ -1,4 +1,5 @@
-//! Triangle meshes as the files hold them: float32 positions, shared vertices, wound counterclockwise seen from outside.
+//! Triangle meshes as the files hold them: float32 positions, shared vertices, wound counterclockwise seen from
+//! outside.
 
 use glam::{DVec3, Vec3};
 

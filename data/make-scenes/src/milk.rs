@@ -74,7 +74,7 @@ fn field_mm(p: DVec3) -> f64 {
     let crown = smooth_min(pool, wall, 4.0);
     let around = circle();
     SPIKES.iter().fold(crown, |field, spike| {
-        let out = around[spike.place];
+        let out = around[spike.index];
         let at = |radius: f64, height: f64| DVec3::new(radius * out.x, LEVEL_MM + height, radius * out.y);
         let top = at(12.6 + 0.45 * spike.height, 7.6 + spike.height);
         let arm = Shape::Limb { ends: [at(12.3, 7.2), top], radii: [1.3, 0.8] }.distance(p);
@@ -100,17 +100,17 @@ fn segment(p: DVec2, from: DVec2, to: DVec2, from_radius: f64, to_radius: f64) -
     p.distance(from.lerp(to, along)) - (from_radius + along * (to_radius - from_radius))
 }
 
-/// A jet of the crown: its place around the crown, its height above the wall, and the radius of its bead, mm.
+/// A jet of the crown: its index around the crown, its height above the wall, and the radius of its bead, mm.
 struct Spike {
-    place: usize,
+    index: usize,
     height: f64,
     bead: f64,
     /// Whether a drop has separated from it.
     sheds: bool,
 }
 
-const fn spike(place: usize, height: f64, bead: f64, sheds: bool) -> Spike {
-    Spike { place, height, bead, sheds }
+const fn spike(index: usize, height: f64, bead: f64, sheds: bool) -> Spike {
+    Spike { index, height, bead, sheds }
 }
 
 const SPIKES: &[Spike] = &[

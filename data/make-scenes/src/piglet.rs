@@ -17,7 +17,7 @@ const SEAT_MM: f64 = -58.0;
 const EAR_MM: [f64; 2] = [1.7, 2.4];
 /// Half its length and width, and of its middle how far it is from the root.
 const EAR_OUTLINE_MM: DVec3 = DVec3::new(18.5, 11.5, 12.5);
-/// From the ear's root to where it stands on the head, and its axes there: outwards along the ear, across, front.
+/// Offset of the ear's root on the head, and the ear's axes there: outwards along the ear, across, front.
 const EAR_ROOT_MM: DVec3 = DVec3::new(15.0, 13.0, -3.0);
 const EAR_AXES: [DVec3; 3] =
     [DVec3::new(0.64, 0.768, 0.0), DVec3::new(-0.6144, 0.512, 0.6), DVec3::new(0.4608, -0.384, 0.8)];

@@ -1,4 +1,4 @@
-//! What a scene file and its view files hold. Lengths in metres, Y up.
+//! The content of a scene file and its view files. Lengths are in metres, Y is up.
 
 use glam::{DMat3, DQuat, DVec3};
 

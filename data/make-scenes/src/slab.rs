@@ -1,5 +1,5 @@
-//! A slab so wide and deep that its middle reflects like a half-space, whose reflectance is known in closed form (Jensen
-//! et al. 2001).
+//! A slab so wide and deep that its middle reflects like a half-space, whose reflectance is known in closed form
+//! (Jensen et al. 2001).
 
 use glam::DVec3;
 

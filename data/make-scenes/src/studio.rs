@@ -6,7 +6,8 @@ use crate::mesh::Mesh;
 use crate::scene::{Part, Shot, Surface, View};
 use crate::turned;
 
-/// Gap between an object and the surface below it: of surfaces that coincide, rounding would decide which one a ray meets.
+/// Gap between an object and the surface below it: of surfaces that coincide, rounding would decide which one a ray
+/// meets.
 pub const GAP_M: f64 = 1e-4;
 const SIDE_PIXELS: u32 = 512;
 

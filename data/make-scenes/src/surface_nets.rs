@@ -22,17 +22,17 @@ pub struct Net {
 }
 
 impl Net {
-    /// The mesh in meters, with its lowest point at height 0.
+    /// The mesh in metres, with its lowest point at height 0.
     pub fn seated(self, metres_per_unit: f64) -> Mesh {
         let lowest = self.positions.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
         self.lowered(lowest, metres_per_unit)
     }
 
-    /// The mesh in meters, moved so that `height` becomes 0.
+    /// The mesh in metres, moved so that `height` becomes 0.
     pub fn lowered(self, height: f64, metres_per_unit: f64) -> Mesh {
-        let place = |&p: &DVec3| (metres_per_unit * (p - height * DVec3::Y)).as_vec3();
+        let position = |&p: &DVec3| (metres_per_unit * (p - height * DVec3::Y)).as_vec3();
         Mesh {
-            positions: self.positions.iter().map(place).collect(),
+            positions: self.positions.iter().map(position).collect(),
             normals: self.normals.iter().map(|n| n.as_vec3()).collect(),
             triangles: self.triangles,
         }
@@ -51,7 +51,7 @@ pub fn polygonise(field: &impl Fn(DVec3) -> f64, grid: &Grid) -> Net {
     grid.settle(&mut values);
     let (mut positions, vertex_of) = grid.place_vertices(&values);
     let quads = grid.quads(&values, &vertex_of);
-    // Of the finite differences: far below a cell, far above rounding.
+    // The step of the finite differences is far below a cell and far above rounding.
     let step = 1e-4 * grid.cell;
     for round in 0..=SMOOTHING_ROUNDS {
         if round > 0 {
@@ -91,8 +91,8 @@ impl Grid {
         Self::all(sizes).map(|point| field(self.position(point))).collect()
     }
 
-    /// Where inside and outside alternate around a face of a cell, four quads would meet in one edge: the nearest of the
-    /// corners to the surface is taken to its other side, until there is no such face.
+    /// Where inside and outside alternate around a face of a cell, four quads would meet in one edge: the nearest of
+    /// the corners to the surface is taken to its other side, until there is no such face.
     fn settle(&self, values: &mut [f64]) {
         for _ in 0..SETTLING_ROUNDS {
             let mut settled = true;
@@ -142,7 +142,7 @@ impl Grid {
         (positions, vertex_of)
     }
 
-    /// Where the surface crosses the grid edge that starts at `from`, if it does.
+    /// The point where the surface crosses the grid edge that starts at `from`, if it does.
     fn crossing(&self, values: &[f64], from: [usize; 3], axis: usize) -> Option<DVec3> {
         let mut to = from;
         to[axis] += 1;

@@ -9,8 +9,8 @@ const DOUBLINGS: usize = 4;
 /// Rings along each arc of the profile.
 const RINGS: usize = 3;
 
-/// Turns a profile of (radius, height), m, that goes from the axis to the axis with the outside on its right: upwards on
-/// the outer side. It is rounded off: a quadratic B-spline of which these are the control points.
+/// Turns a profile of (radius, height), m, that goes from the axis to the axis with the outside on its right: upwards
+/// on the outer side. It is rounded off: a quadratic B-spline of which these are the control points.
 pub fn turn(profile: &[[f64; 2]]) -> Mesh {
     let around = circle();
     let rings = spline(&profile.iter().copied().map(DVec2::from_array).collect::<Vec<_>>());

@@ -62,8 +62,8 @@ pub(crate) fn lock(arguments: &Arguments) -> Result<Option<Lock>, Failure> {
 
 /// Replaces the reference by the test image that was judged, if they differ, and returns what was done in words.
 ///
-/// Both files are complete before the first is renamed, and the log is renamed first: a superfluous line of the log can be
-/// seen, a reference that changed without one cannot.
+/// Both files are complete before the first is renamed, and the log is renamed first: a superfluous line of the log can
+/// be seen, a reference that changed without one cannot.
 pub(crate) fn accept(
     arguments: &Arguments,
     [old, new]: [&Source; 2],

@@ -11,8 +11,9 @@ use crate::gate_options::GateOptions;
 
 /// Compare two OpenEXR images.
 ///
-/// Prints the metrics of each layer, then one line with the verdict. Exit codes: 0 the images passed, 1 they differ by more than
-/// a gate allows or hold values that are not finite, 2 they could not be judged, 3 a difference for --diff-exr is beyond float32.
+/// Prints the metrics of each layer, then one line with the verdict. Exit codes: 0 the images passed, 1 they differ by
+/// more than a gate allows or hold values that are not finite, 2 they could not be judged, 3 a difference for
+/// --diff-exr is beyond float32.
 #[derive(Debug, Parser)]
 #[command(version)]
 pub(crate) struct Arguments {
@@ -27,8 +28,8 @@ pub(crate) struct Arguments {
     /// JSON file of gates, each with its reason, which hold in addition to those of the command line (docs/compare.md)
     #[arg(long, value_name = "FILE", value_parser = cli::file_name())]
     pub(crate) limits: Option<PathBuf>,
-    /// Layer that --heatmap draws and the gates of the command line judge, or `all` [default: beauty (the channels without a
-    /// layer that are the picture), for gates also its alpha]
+    /// Layer that --heatmap draws and the gates of the command line judge, or `all` [default: beauty (the channels
+    /// without a layer that are the picture), for gates also its alpha]
     #[arg(long, value_name = "NAME")]
     pub(crate) layer: Option<String>,
     /// Let NaN and infinity pass; gates on their channel still fail
@@ -49,8 +50,8 @@ pub(crate) struct Arguments {
     /// Write the absolute error of the layer as a picture with its scale
     #[arg(long, value_name = "FILE.png", value_parser = cli::file_name())]
     pub(crate) heatmap: Option<PathBuf>,
-    /// Write a page with both images, their difference and all numbers, which needs no other file. `compare --html-index FILE
-    /// REPORT.html...` lists such pages, the worst first
+    /// Write a page with both images, their difference and all numbers, which needs no other file.
+    /// `compare --html-index FILE REPORT.html...` lists such pages, the worst first
     #[arg(long, value_name = "FILE", value_parser = cli::file_name())]
     pub(crate) html: Option<PathBuf>,
     /// Error at the end of the heatmap's scale, in units of the channel
@@ -71,15 +72,15 @@ pub(crate) struct Arguments {
 /// The arguments that ask for folders instead of two images.
 #[derive(Args, Debug)]
 pub(crate) struct NoiseArguments {
-    /// Test folders of images, each from a cloud with a seed of its own (REFERENCE may hold what --summarise wrote), by t-tests
-    /// of a few means, because all pixels of an image share the error of its cloud (docs/check.md)
+    /// Test folders of images, each from a cloud with a seed of its own (REFERENCE may hold what --summarise wrote), by
+    /// t-tests of a few means, because all pixels of an image share the error of its cloud (docs/check.md)
     #[arg(long, conflicts_with_all = options_of_two_images())]
     pub(crate) replicates: bool,
     /// Number of folders that this run judges; the probability of a false alarm in any of them is 1e-3
     #[arg(long, value_name = "N", default_value = "1", requires = "replicates")]
     pub(crate) family: NonZeroU16,
-    /// Write a summary of the folder REFERENCE, which --replicates can read instead, and its mean image into the folder TEST,
-    /// which must hold no images
+    /// Write a summary of the folder REFERENCE, which --replicates can read instead, and its mean image into the folder
+    /// TEST, which must hold no images
     #[arg(long, conflicts_with_all = options_of_two_images(), conflicts_with_all = ["replicates", "json"])]
     pub(crate) summarise: bool,
 }

@@ -18,8 +18,9 @@ pub struct TooFar {
     pub difference: f64,
 }
 
-/// Test minus reference of every channel, rounded once, to float32. The names of the channels, the windows and the attributes
-/// that give the numbers their meaning are those of the reference. Where a sample is not finite, neither is the difference.
+/// Test minus reference of every channel, rounded once, to float32. The names of the channels, the windows and the
+/// attributes that give the numbers their meaning are those of the reference. Where a sample is not finite, neither is
+/// the difference.
 ///
 /// Both images must have the same size and channels, as [`crate::compare()`] checks.
 pub fn difference(reference: &Image, test: &Image) -> Result<Image, TooFar> {

@@ -18,8 +18,8 @@ pub fn student_quantile(upper: f64, freedom: f64) -> f64 {
     bisect(|t| student_upper(t, freedom) > upper)
 }
 
-/// The probability that the ratio of two estimates of the same variance is `ratio` or more. `numerator` and `denominator` are
-/// their degrees of freedom.
+/// The probability that the ratio of two estimates of the same variance is `ratio` or more. `numerator` and
+/// `denominator` are their degrees of freedom.
 pub fn fisher_upper(ratio: f64, numerator: f64, denominator: f64) -> f64 {
     incomplete_beta(0.5 * denominator, 0.5 * numerator, denominator / (denominator + numerator * ratio))
 }
@@ -29,8 +29,8 @@ pub fn fisher_quantile(upper: f64, numerator: f64, denominator: f64) -> f64 {
     bisect(|ratio| fisher_upper(ratio, numerator, denominator) > upper)
 }
 
-/// The number between 0 and 1e9 where `below` turns from true to false. Bisection by the geometric mean keeps all digits of
-/// small numbers.
+/// The number between 0 and 1e9 where `below` turns from true to false. Bisection by the geometric mean keeps all
+/// digits of small numbers.
 fn bisect(below: impl Fn(f64) -> bool) -> f64 {
     let (mut low, mut high) = (1e-9_f64, 1e9_f64);
     // A range of e^42, halved 100 times, is below the last digit of a float64.
@@ -102,8 +102,8 @@ mod tests {
         close(ln_gamma(5.0), 24f64.ln(), 1e-9);
     }
 
-    /// Student's t squared has Fisher's distribution with one degree of freedom of the numerator. With one degree of freedom, t
-    /// has Cauchy's distribution: the probability of |t| > x is 2 atan(1/x)/π.
+    /// Student's t squared has Fisher's distribution with one degree of freedom of the numerator. With one degree of
+    /// freedom, t has Cauchy's distribution: the probability of |t| > x is 2 atan(1/x)/π.
     #[test]
     fn the_distributions_agree_far_out() {
         for t in [3.0, 6.0, 12.0] {

@@ -16,8 +16,8 @@ pub(crate) struct Source {
     pub(crate) bytes: Vec<u8>,
 }
 
-/// Reads the reference and the test image at the same time, each with half of the threads, because much of the reading of a file
-/// is serial.
+/// Reads the reference and the test image at the same time, each with half of the threads, because much of the reading
+/// of a file is serial.
 pub(crate) fn read_both(arguments: &Arguments) -> Result<[Source; 2], Failure> {
     check_memory(arguments)?;
     let threads = arguments.common.thread_count();
@@ -59,7 +59,8 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, ImageError> {
     }
 }
 
-/// Refuses images that do not fit into the memory before they are read. A file with a damaged header is left to the reading.
+/// Refuses images that do not fit into the memory before they are read. A file with a damaged header is left to the
+/// reading.
 fn check_memory(arguments: &Arguments) -> Result<(), Failure> {
     let paths = [&arguments.reference, &arguments.test];
     let [Ok(reference), Ok(test)] = paths.map(|path| Image::dimensions(path)) else { return Ok(()) };

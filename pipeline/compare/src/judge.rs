@@ -1,4 +1,4 @@
-//! Which gates judge which layers, and what they find.
+//! Judges layers by gates.
 
 use crate::gate::{Gate, Judgement};
 use crate::layer::{ALPHA, Choice, Layer};
@@ -39,8 +39,8 @@ fn judges(gate: Gate, choice: &Choice, layer: &str) -> bool {
     gate.layer(choice).is_none_or(|name| layer == name) || whole_picture && ALPHA.contains(&layer)
 }
 
-/// The names of the layers that differ and that no gate judges. If there are no gates, they are those that the verdict does not
-/// speak of.
+/// The names of the layers that differ and that no gate judges. If there are no gates, they are those that the verdict
+/// does not speak of.
 pub(crate) fn unjudged_layers(layers: &[Layer<'_>], report: &Report, settings: &Settings) -> Vec<String> {
     let any_gate = settings.all_gates().next().is_some();
     let is_judged = |name: &String| match any_gate {
@@ -65,7 +65,8 @@ pub(crate) fn check_choice(layers: &[Layer<'_>], settings: &Settings) -> Result<
     }
 }
 
-/// The names of the layers that the verdict speaks of: the picture with its alpha, or all layers if there is no beauty layer.
+/// The names of the layers that the verdict speaks of: the picture with its alpha, or all layers if there is no beauty
+/// layer.
 pub(crate) fn judged_layers(layers: &[Layer<'_>], choice: &Choice) -> Vec<String> {
     let wanted = choice.layer().filter(|name| layers.iter().any(|layer| layer.name == *name));
     let is_alpha = |name: &String| *choice == Choice::Default && ALPHA.contains(&name.as_str());

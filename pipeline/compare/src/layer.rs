@@ -7,8 +7,9 @@ use crate::metric::Pair;
 /// The name of the layer of the picture itself.
 pub(crate) const BEAUTY: &str = "beauty";
 
-/// The channels without a layer that hold the coverage of each pixel, for all colors or for one. They belong to the picture, but
-/// are layers of their own, because the metrics of the picture would hide its faults if alpha were part of it.
+/// The channels without a layer that hold the coverage of each pixel, for all colors or for one. They belong to the
+/// picture, but are layers of their own, because the metrics of the picture would hide its faults if alpha were part of
+/// it.
 pub(crate) const ALPHA: [&str; 4] = ["A", "AR", "AG", "AB"];
 
 /// The order of the channels of a layer. Other channels follow by name.
@@ -17,10 +18,11 @@ const ORDER: [&str; 9] = ["R", "G", "B", "A", "X", "Y", "Z", "RY", "BY"];
 /// A layer of both images.
 #[derive(Clone, Debug)]
 pub struct Layer<'a> {
-    /// The part of the channels' names before the last dot. Channels without a dot are `beauty` if they are the picture, else
-    /// layers of their own name.
+    /// The part of the channels' names before the last dot. Channels without a dot are `beauty` if they are the
+    /// picture, else layers of their own name.
     pub name: String,
-    /// The names after the dot with their samples: first R, G, B, A, X, Y, Z, RY, BY in this order, then others by name.
+    /// The names after the dot with their samples: first R, G, B, A, X, Y, Z, RY, BY in this order, then others by
+    /// name.
     pub channels: Vec<(String, Pair<'a>)>,
 }
 
@@ -53,8 +55,8 @@ pub(crate) fn layers<'a>(reference: &'a Image, test: &'a Image) -> Vec<Layer<'a>
     layers
 }
 
-/// The channels without a layer that are the picture: red, green and blue with a luminance, else CIE X, Y and Z, else luminance
-/// with its chroma. X and Z without Y are something else, such as depth.
+/// The channels without a layer that are the picture: red, green and blue with a luminance, else CIE X, Y and Z, else
+/// luminance with its chroma. X and Z without Y are something else, such as depth.
 fn picture(image: &Image) -> &'static [&'static str] {
     let has = |name: &&str| image.channels.iter().any(|channel| channel.name == *name);
     match () {

@@ -1,9 +1,9 @@
 //! The difference of two images: metrics, and a verdict by gates.
 //!
-//! [`compare()`] checks that two images have the same structure and meaning, measures every channel, every layer and the
-//! picture that they show ([`metric`]), and judges them by the gates of the [`Settings`]. The [`Report`] can be printed as a
-//! table or written as JSON; [`difference()`], [`heatmap`] and [`html`] draw it. [`replicates`] compares two sets of images of
-//! independent clouds by statistical tests instead.
+//! [`compare()`] checks that two images have the same structure and meaning, measures every channel, every layer and
+//! the picture that they show ([`metric`]), and judges them by the gates of the [`Settings`]. The [`Report`] can be
+//! printed as a table or written as JSON; [`difference()`], [`heatmap`] and [`html`] draw it. [`replicates`] compares
+//! two sets of images of independent clouds by statistical tests instead.
 //!
 //! ```
 //! use compare::{Gate, Settings, compare};

@@ -31,7 +31,7 @@ pub enum LimitsError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the operating system said.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// It is not the JSON that docs/compare.md describes.
@@ -39,7 +39,7 @@ pub enum LimitsError {
     Invalid {
         /// The file.
         path: PathBuf,
-        /// What is wrong with which entry.
+        /// The entry and its fault.
         what: String,
     },
 }

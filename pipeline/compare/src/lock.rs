@@ -1,8 +1,8 @@
-//! The lock that lets one `--accept` replace a reference at a time. Without it, another one would log a change from a reference
-//! that was already replaced.
+//! The lock that lets one `--accept` replace a reference at a time. Without it, another one would log a change from a
+//! reference that was already replaced.
 //!
-//! The lock is on the file itself. An acceptance replaces the file, so that a process that had to wait has to check whether it
-//! locked the file that is there now. The lock ends with the process that holds it.
+//! The lock is on the file itself. An acceptance replaces the file, so that a process that had to wait has to check
+//! whether it locked the file that is there now. The lock ends with the process that holds it.
 
 use std::fs::{self, File, TryLockError};
 use std::os::unix::fs::MetadataExt;

@@ -1,5 +1,5 @@
-//! The attributes of a header that give the numbers of the channels their meaning: equal numbers with other primaries, or of
-//! pixels of another shape, are another picture.
+//! The attributes of a header that give the numbers of the channels their meaning: equal numbers with other primaries,
+//! or of pixels of another shape, are another picture.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 /// An attribute of the header, and the consequence if the images disagree about it.
 struct Rule {
     name: &'static str,
-    /// The meaning of its absence by the OpenEXR standard, in the words of [`words`], or `None` if the standard has none.
+    /// The meaning of its absence by the OpenEXR standard, in the words of [`words`], or `None` if the standard has
+    /// none.
     absent: Option<&'static str>,
     /// The largest difference of two numbers that count as equal.
     tolerance: f64,
@@ -29,8 +30,8 @@ const RENDER: &str = "write both with one setting of the renderer";
 const DISPLAY: &str = "displayWindow";
 const AS_DATA: &str = "the data window";
 
-/// The attributes that are compared, by name. Others describe how the file was made or is to be shown. The data window is
-/// compared in `structure.rs`.
+/// The attributes that are compared, by name. Others describe how the file was made or is to be shown. The data window
+/// is compared in `structure.rs`.
 #[rustfmt::skip]
 const RULES: [Rule; 13] = [
     Rule { name: "acesImageContainerFlag", absent: None, tolerance: EXACT, way_out: Some("convert one of them") },
@@ -64,7 +65,7 @@ pub struct Difference {
     pub reference: String,
     /// Its value, or the meaning of its absence.
     pub test: String,
-    /// What can be done.
+    /// The remedy.
     pub way_out: &'static str,
 }
 
@@ -101,7 +102,7 @@ impl Meaning {
         })
     }
 
-    /// What else a reader should know: attributes that differ but are not judged, and those that one header alone has.
+    /// Further remarks: attributes that differ but are not judged, and those that one header alone has.
     pub(crate) fn notes(&self, reference: &Meaning) -> Vec<String> {
         let only = |rule: &Rule, image| {
             Some(format!("{} is in the {image} only, so that another value would not be noticed", rule.name))

@@ -21,8 +21,8 @@ pub(crate) fn asked_for(arguments: &Arguments) -> Option<Result<u8, Failure>> {
 /// The bytes for each pixel besides those of an image, for sums of three channels and the pixels of a tile.
 const PIXEL_BYTES: u64 = 40;
 
-/// Refuses images that do not fit into the memory before they are read. Images are read one by one; a file with a damaged header
-/// is left to the reading.
+/// Refuses images that do not fit into the memory before they are read. Images are read one by one; a file with a
+/// damaged header is left to the reading.
 fn check_memory(images: &[PathBuf]) -> Result<(), Failure> {
     let sizes = images.iter().filter_map(|path| Some((path, Image::dimensions(path).ok()?)));
     let need = |size: &Dimensions| {

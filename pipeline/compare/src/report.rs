@@ -27,7 +27,7 @@ pub struct Report {
     pub height: usize,
     /// The number that is added to the squared reference in relMSE.
     pub relmse_epsilon: f64,
-    /// What both headers say of the inputs that the images were made from.
+    /// The attributes of both headers that identify the inputs of the images.
     pub inputs: Vec<Input>,
     /// The number of samples that are not finite, in all channels.
     pub nonfinite: NonFinite,
@@ -41,7 +41,7 @@ pub struct Report {
     pub judged: Vec<String>,
     /// The layers that differ and that no gate judges.
     pub unjudged: Vec<String>,
-    /// What else a reader should know of the headers, in words.
+    /// Further remarks about the headers, in words.
     pub notes: Vec<String>,
     /// Whether every gate passed.
     pub pass: bool,
@@ -148,8 +148,8 @@ impl Report {
         table
     }
 
-    /// One line: `PASS name relmse=... bias=...` with the values of the worst channel, or `FAIL gate value > limit`. Layers that
-    /// differ and that no gate judges are named at its end.
+    /// One line: `PASS name relmse=... bias=...` with the values of the worst channel, or `FAIL gate value > limit`.
+    /// Layers that differ and that no gate judges are named at its end.
     pub fn verdict(&self, name: &str) -> String {
         let failed: Vec<String> = self.gates.iter().filter(|gate| !gate.ok).map(failure).collect();
         if !failed.is_empty() {

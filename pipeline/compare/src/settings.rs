@@ -31,8 +31,8 @@ impl Settings {
         self.flip || self.all_gates().any(|(gate, ..)| gate.needs_flip())
     }
 
-    /// Whether gates on FLIP judge alone, which the program refuses: the mean of FLIP misses single bright pixels and a small bias
-    /// of the whole picture.
+    /// Whether gates on FLIP judge alone, which the program refuses: the mean of FLIP misses single bright pixels and a
+    /// small bias of the whole picture.
     pub fn judges_by_flip_alone(&self) -> bool {
         self.all_gates().next().is_some() && self.all_gates().all(|(gate, ..)| gate.needs_flip())
     }

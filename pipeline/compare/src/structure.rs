@@ -21,7 +21,7 @@ pub struct Input {
 }
 
 impl Input {
-    /// What a reader should know, unless both images have the same value or none.
+    /// A remark for the reader, unless both images have the same value or none.
     pub(crate) fn note(&self) -> Option<String> {
         let Input { name, reference, test } = self;
         let only = |image| Some(format!("{name} is in the {image} only, so that other inputs would not be noticed"));
@@ -97,7 +97,7 @@ impl Mismatch {
     }
 }
 
-/// What two images must have in common.
+/// The structure that two images must share.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Structure {
     /// Width and height in pixels.

@@ -1,4 +1,4 @@
-//! Renders with a given number of paths, or with as many as an error target takes.
+//! Renders with a given number of paths, or with as many paths as a target error needs.
 
 use cli::{Common, Progress, count, count_up};
 use formats::cloud::{Cloud, Pattern};
@@ -13,8 +13,8 @@ pub fn render_all(input: &Input, settings: &Settings, common: &Common) -> Render
     rendered
 }
 
-/// Doubles the paths until the error meets the target, or the cloud's own error exceeds it, or `settings.paths_per_pixel`
-/// are reached.
+/// Doubles the paths until the error meets the target, or the cloud's own error exceeds it, or
+/// `settings.paths_per_pixel` are reached.
 pub fn render_to(target: f64, input: &Input, settings: &Settings, common: &Common) -> Rendered {
     let max_paths = settings.paths_per_pixel;
     let mut paths = FIRST_PATHS.min(max_paths);
@@ -49,7 +49,7 @@ pub fn render_to(target: f64, input: &Input, settings: &Settings, common: &Commo
     passes.finish()
 }
 
-/// What the progress of a pass counts: pixels, each with these paths.
+/// The unit of a pass's progress: pixels, each with this range of paths.
 fn steps(first: u32, last: u32) -> String {
     format!("pixels, paths {} to {}", count(u64::from(first)), count(u64::from(last)))
 }
@@ -58,14 +58,14 @@ fn steps(first: u32, last: u32) -> String {
 struct Round<'a> {
     target: f64,
     input: &'a Input<'a>,
-    /// Paths of each pixel after this pass, and before it.
+    /// Paths per pixel after this pass and before it.
     paths: u32,
     done: u32,
     /// The error before this pass.
     before: f64,
 }
 
-/// What follows from a pass.
+/// The decision after a pass.
 enum Verdict {
     /// The target is met.
     Met,
@@ -89,15 +89,15 @@ impl Round<'_> {
                 ))
             };
         };
-        let few = errors.scattered * self.error_of_few();
-        if estimate.safe().max(few) <= self.target {
+        let lit_error = errors.scattered * self.lit_count_error();
+        if estimate.safe().max(lit_error) <= self.target {
             return Verdict::Met;
         }
-        if few > CLOUD_LIMITS * self.target {
-            let (lit, percent) = (self.lit(), 100.0 * few);
+        if lit_error > CLOUD_LIMITS * self.target {
+            let (lit, percent) = (self.lit(), 100.0 * lit_error);
             let why =
                 format!("the cloud alone may have an error of {percent:.2} %, as only {lit} of its samples are lit");
-            return Verdict::OutOfReach(format!("{why}: {}", self.advice(few)));
+            return Verdict::OutOfReach(format!("{why}: {}", self.advice(lit_error)));
         }
         self.judge_cloud(errors, &estimate, settings)
     }
@@ -105,15 +105,17 @@ impl Round<'_> {
     /// Whether the cloud's own error exceeds its share of the target.
     fn judge_cloud(&self, errors: &Errors, estimate: &Estimate, settings: &Settings) -> Verdict {
         let clouds = self.input.clouds.len();
-        // Until the paths of a pixel have gathered from all shards, part of the difference between its halves is transient.
+        // Until the paths of a pixel have used all shards, part of the difference between its halves comes from the
+        // choice of shards, and vanishes with more paths.
         if clouds > 1 && (self.done as usize) < 2 * clouds {
             return Verdict::More;
         }
-        // In an image of few pixels the two errors may differ by chance; the cloud's must exceed three standard deviations.
+        // In an image of few pixels the two errors may differ by chance; the cloud's must exceed three standard
+        // deviations.
         let [paths, total] = [errors.paths, errors.total].map(|error| error * error);
-        let significant = total > exceeded_rarely(errors.paths_freedom) * paths;
-        let lasting = lasting(errors.total, self.before, estimate.freedom, settings.estimator);
-        let error = if significant { errors.cloud.max(lasting) } else { lasting };
+        let significant = total > variance_quantile(errors.paths_freedom) * paths;
+        let irreducible = irreducible_error(errors.total, self.before, estimate.freedom, settings.estimator);
+        let error = if significant { errors.cloud.max(irreducible) } else { irreducible };
         if error > CLOUD_LIMITS * self.target {
             let percent = 100.0 * error;
             return Verdict::OutOfReach(format!(
@@ -139,9 +141,10 @@ impl Round<'_> {
         (0..shards::materials(self.input.clouds).len()).map(|slot| shards::count(self.input.clouds, slot)).sum()
     }
 
-    /// The relative error of the light that follows from the number of lit samples alone, which is as well spread as the
-    /// samples. If few are lit, the halves of the cloud may agree by chance. A dark cloud has no error.
-    fn error_of_few(&self) -> f64 {
+    /// The relative error of the light as estimated from the number of lit samples alone. They are as well spread as all
+    /// samples, so the error falls faster for stratified ones. It matters where few are lit, and the halves of the cloud
+    /// may agree by chance. It is 0 for a cloud without lit samples.
+    fn lit_count_error(&self) -> f64 {
         let stratified = |cloud: &Cloud| cloud.meta().options.pattern == Pattern::Stratified;
         let lit = self.lit().max(1) as f64;
         let independent = lit.powf(-0.5);
@@ -165,20 +168,20 @@ impl Round<'_> {
     }
 }
 
-/// The part of the error that more paths do not reduce, given that the error was `before` with half the paths and is `now`.
-/// The variance of paths falls as their number (that of well-spread paths falls faster); the error that the cut adds stays,
-/// because its target is that of a pixel. If nothing stays, the variance of `before` is twice that of `now`, and their
-/// difference has a relative standard deviation of four over the root of the degrees of freedom; three of these are taken
-/// for chance.
-fn lasting(now: f64, before: f64, freedom: f64, estimator: Estimator) -> f64 {
+/// The part of the error that more paths do not reduce, given that the error was `before` with half the paths and is
+/// `now`. The variance of paths falls as their number (that of well-spread paths falls faster); the error that the cut
+/// adds stays, because the cut's target is per pixel, whatever the number of paths. If nothing stays, the variance of
+/// `before` is twice that of `now`, and their difference has a relative standard deviation of four over the root of the
+/// degrees of freedom. Up to three standard deviations are attributed to chance.
+fn irreducible_error(now: f64, before: f64, freedom: f64, estimator: Estimator) -> f64 {
     let added = estimator.accuracy().unwrap_or(0.0);
     let chance = 3.0 * 4.0 / freedom.sqrt();
     ((2.0 - chance) * now * now - before * before - added * added).max(0.0).sqrt()
 }
 
-/// The multiple of the true variance that an estimate with so many degrees of freedom exceeds in 1 of 1000 cases (Wilson
-/// and Hilferty 1931).
-fn exceeded_rarely(freedom: f64) -> f64 {
+/// The multiple of the true variance that an estimate with so many degrees of freedom exceeds in 1 of 1000 cases
+/// (Wilson and Hilferty 1931).
+fn variance_quantile(freedom: f64) -> f64 {
     let a = 2.0 / (9.0 * freedom);
     (1.0 - a + 3.09 * a.sqrt()).powi(3)
 }
@@ -186,7 +189,7 @@ fn exceeded_rarely(freedom: f64) -> f64 {
 /// Paths of the first pass: two for each half of the cloud.
 const FIRST_PATHS: u32 = 4;
 
-/// The largest share of the target that the cloud's own error may take: half of its square.
+/// The cloud's own error may be at most this share of the target, so that its square is about half of the target's.
 const CLOUD_LIMITS: f64 = 0.7;
 
 /// Paths of each pixel after which rendering ends if no two paths of the image differ.

@@ -15,8 +15,9 @@ use std::path::PathBuf;
 #[derive(Parser)]
 #[command(version, override_usage = "gather [OPTIONS] CLOUD... SCENE --output IMAGE.exr")]
 pub struct Arguments {
-    /// Clouds of sample-surface: one, or shards and seeds of one scene, which are gathered as one whatever their order; and
-    /// last the scene that they were sampled from (with --list-cameras, --list-files or --list-materials, only the scene)
+    /// Clouds of sample-surface: one, or shards and seeds of one scene, which are gathered as one whatever their order;
+    /// and last the scene that they were sampled from (with --list-cameras, --list-files or --list-materials, only the
+    /// scene)
     #[arg(value_name = "CLOUD... SCENE", value_parser = file_name())]
     pub files: Vec<PathBuf>,
     /// OpenEXR image to write
@@ -27,8 +28,8 @@ pub struct Arguments {
     /// [default: the first]
     #[arg(long, value_name = "NAME|INDEX")]
     pub camera: Option<String>,
-    /// Camera in a file of its own; beats --camera. A list of cameras makes as many images: IMAGE.NAME.exr by the view's
-    /// name, or IMAGE.0000.exr by its index in the list; previews and statistics likewise
+    /// Camera in a file of its own; beats --camera. A list of cameras makes as many images: IMAGE.NAME.exr by the
+    /// view's name, or IMAGE.0000.exr by its index in the list; previews and statistics likewise
     #[arg(long, value_name = "FILE.json", value_parser = file_name())]
     pub view: Option<PathBuf>,
     /// Turn the camera about the vertical axis through the view's target, or through the middle of the translucent
@@ -41,8 +42,8 @@ pub struct Arguments {
     /// Height, pixels [default: by the camera's aspect]
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub height: Option<u32>,
-    /// Render only this part of the image: X columns from the left, Y rows from the top, W columns and H rows. Its values
-    /// are those of the whole image
+    /// Render only this part of the image: X columns from the left, Y rows from the top, W columns and H rows. Its
+    /// values are those of the whole image
     #[arg(long, value_name = "X,Y,W,H", value_parser = parse_crop, conflicts_with = "target_error")]
     pub crop: Option<Crop>,
     /// Medium, by built-in name or from a file, of one material, by name or index:N, or of all materials (repeatable)
@@ -71,7 +72,7 @@ pub struct Arguments {
     /// error of less than twice this
     #[arg(long, value_name = "X", value_parser = parse_relative_error)]
     pub target_error: Option<f64>,
-    /// Spread the paths over the pixel (box), or send all through its centre (point)
+    /// Spread the paths over the pixel (box), or send all through its center (point)
     #[arg(long, value_name = "FILTER", default_value = "box", value_parser = one_of(&Filter::ALL, Filter::name))]
     pub filter: Filter,
     /// Interface events that a path may have; paths that are cut off are counted

@@ -1,5 +1,5 @@
-//! Calibrates the cut for this camera and these media: its true error is measured at a few points of the image before the
-//! image is rendered, so that it meets the target.
+//! Calibrates the cut for this camera and these media: its true error is measured at a few points of the image before
+//! the image is rendered, so that it meets the target.
 
 use crate::{
     path_state::ThreadContext,
@@ -24,7 +24,7 @@ const RAYS: u32 = 8192;
 /// The points are grouped by the predicted sum; each group has a factor.
 const GROUPS: usize = 8;
 
-/// Sums at each point in a round, with random numbers of their own.
+/// Number of sums at each point in a round, each with its own random numbers.
 const REPLICATES: u64 = 2;
 const ROUNDS: u64 = 3;
 

@@ -1,11 +1,11 @@
-//! The cameras that images are rendered from: of a view file, or of the scene.
+//! The cameras that images are rendered from. They come from a view file or from the scene.
 
 use crate::settings::{CameraSource, Request};
 use cli::{Failure, Unclear, camera_names, the_one, word_for};
 use scene::{Camera, DVec3, Scene, View, ViewFile};
 use std::path::Path;
 
-/// A camera, and what goes with it.
+/// A camera with its name, its turntable's axis, and the size of its image.
 pub struct Viewpoint {
     /// Its name in a list of views, if it has one.
     pub name: Option<String>,
@@ -51,7 +51,7 @@ fn of_view_file(path: &Path, turns: bool) -> Result<Viewpoints, Failure> {
     }
 }
 
-/// The camera of the scene that a word means, or the first one.
+/// The camera of the scene that a word on the command line names, or the first camera.
 fn of_scene(word: Option<&str>, scene: &Scene, path: &Path, middle: DVec3) -> Result<Viewpoint, Failure> {
     let path = path.display();
     if scene.cameras.is_empty() {

@@ -1,4 +1,4 @@
-//! The clouds of a run: whether they belong together, to the scene, and are undamaged.
+//! The clouds of a run, checked: they belong together and to the scene, and are undamaged.
 
 use crate::settings::Request;
 use cli::{Failure, SceneSettings};
@@ -43,7 +43,8 @@ impl CloudFiles {
         self.clouds.iter().zip(&self.paths).try_for_each(|(cloud, path)| cloud.check_unchanged(path))
     }
 
-    /// Refuses clouds that were not sampled from this scene, read in this way, and says what differs.
+    /// Refuses clouds that were sampled from another scene or with other units or normals; the message says what
+    /// differs.
     pub fn check_fit(&self, scene: &Scene, request: &Request) -> Result<(), Failure> {
         let (how, options) = (&request.scene, &self.clouds[0].meta().options);
         if let Some(differs) = self.difference(scene, how) {
@@ -57,7 +58,7 @@ impl CloudFiles {
         Ok(())
     }
 
-    /// What differs between the first cloud, which stands for all, and the scene.
+    /// The first difference between the scene and the first cloud, which represents all clouds.
     fn difference(&self, scene: &Scene, how: &SceneSettings) -> Option<String> {
         let meta = self.clouds[0].meta();
         let options = &meta.options;

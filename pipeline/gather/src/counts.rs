@@ -6,7 +6,8 @@ pub struct Counts {
     pub paths: u64,
     /// Paths that met their first translucent surface from outside.
     pub from_outside: u64,
-    /// Paths that met their first translucent surface from within: the camera is inside a medium, or looks into an open mesh.
+    /// Paths that met their first translucent surface from within: the camera is inside a medium, or looks into an open
+    /// mesh.
     pub from_inside: u64,
     pub rays: u64,
     pub shadow_rays: u64,

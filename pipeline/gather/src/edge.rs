@@ -1,11 +1,11 @@
-//! A control variate for pixels at silhouettes, where the transmittance of the first interface varies more than the light
-//! below it. A single ray gives that transmittance.
+//! A control variate for pixels at silhouettes, where the transmittance of the first interface varies more than the
+//! light below it. A single ray gives that transmittance.
 //!
 //! A path's scattered light is `f = g s`, with the transmittance `g` of the first interface, 0 where the path meets
-//! something else, and the light `s` below it. Many rays give a precise mean `G` of `g`. With the means `f̄` and `ḡ` of the
-//! paths, `f̄ + c (G − ḡ)` has the expectation of `f` for any `c` that is independent of these paths. Each half of a pixel
-//! takes its `c` from the other half, and has rays of its own. A pixel may become slightly negative; clamping it would bias
-//! the mean.
+//! something else, and the light `s` below it. Many rays give a precise mean `G` of `g`. With the means `f̄` and `ḡ` of
+//! the paths, `f̄ + c (G − ḡ)` has the expectation of `f` for any `c` that is independent of these paths. Each half of
+//! a pixel takes its `c` from the other half, and has rays of its own. A pixel may become slightly negative; clamping
+//! it would bias the mean.
 
 use crate::path_light::{Layer, PathLight};
 use scene::DVec3;
@@ -13,7 +13,7 @@ use scene::DVec3;
 /// A pixel is at an edge if `g` differs by more than this between its corners.
 pub const MIN_SPREAD: f64 = 0.1;
 
-/// Rays of each path.
+/// Number of rays for each path.
 pub const RAYS: u32 = 16;
 
 /// Sums over the paths and rays of one edge pixel, by halves.
@@ -66,7 +66,8 @@ impl Edge {
         self.factor(half) * (own.through_rays / own.rays - own.through / own.paths)
     }
 
-    /// What subtracting `c g` from the light of each path of a half takes from its mean and from its mean square.
+    /// The amounts by which subtracting `c g` from the light of each path lowers the mean and the mean square of a
+    /// half.
     pub fn removed(&self, half: usize) -> (DVec3, DVec3) {
         let (own, factor) = (&self.0[half], self.factor(half));
         let (mean, square) = (factor * own.through, factor * (2.0 * own.products - factor * own.squares));
@@ -78,7 +79,7 @@ impl Edge {
 mod tests {
     use super::*;
 
-    /// Planted: the mean square without the square of `g`.
+    /// Seen to catch: the mean square without the square of `g`.
     #[test]
     fn with_constant_light_below_the_rays_alone_decide() {
         let below = DVec3::new(3.0, 2.0, 1.0);

@@ -15,9 +15,9 @@ use sums::confidence::Estimate;
 pub struct PixelSum {
     layers: Layers,
     count: f64,
-    /// Sums over even and odd paths, each as its half of the cloud estimates them.
+    /// Sums over the even and over the odd paths; each path counts as its own half of the cloud estimates it.
     halves: [DVec3; 2],
-    /// Sums of the squares of the same.
+    /// Sums of the squares of the same values.
     squares: [DVec3; 2],
     counts: [f64; 2],
 }
@@ -43,9 +43,9 @@ impl PixelSum {
         even - odd
     }
 
-    /// Two estimates of the pixel's variance: from the difference of the halves, which includes the error of the cloud, and
-    /// from the variance of the paths within each half. The second expects the paths' part of the first if paths are
-    /// independent, and more than that if they are stratified.
+    /// Two estimates of the pixel's variance: from the difference of the halves, which includes the error of the cloud,
+    /// and from the variance of the paths within each half. The second expects the paths' part of the first if paths
+    /// are independent, and more than that if they are stratified.
     fn variances(&self, edge: Option<&Edge>) -> [DVec3; 2] {
         let mean = |half: usize| self.halves[half] / self.counts[half];
         let difference = self.difference(edge);
@@ -70,8 +70,8 @@ impl PixelSum {
         layers
     }
 
-    /// The finished pixel. The halves have the same expectation, so a quarter of the squared difference estimates the variance
-    /// of their mean if they are independent; at edges their covariance is that of their corrections.
+    /// The finished pixel. The halves have the same expectation, so a quarter of the squared difference estimates the
+    /// variance of their mean if they are independent; at edges their covariance is that of their corrections.
     pub fn pixel(&self, edge: Option<&Edge>, guide: Guide) -> Pixel {
         Pixel { layers: self.layers(edge), variance: self.variances(edge)[0], guide }
     }
@@ -121,9 +121,9 @@ impl Errors {
         (power > 0.0).then_some(Errors { total, paths, cloud, cloud_freedom, paths_freedom, half, scattered })
     }
 
-    /// The error that is compared with a target. With few degrees of freedom the halves may agree by chance; then the error
-    /// is at least that of stratified paths, whose variance falls with their number to the power 3/2 where edges cross a
-    /// pixel. None if all paths agree, which gives no estimate.
+    /// The error that is compared with a target. With few degrees of freedom the halves may agree by chance; then the
+    /// error is at least that of stratified paths, whose variance falls with their number to the power 3/2 where edges
+    /// cross a pixel. None if all paths agree, which gives no estimate.
     pub fn estimate(&self) -> Option<Estimate> {
         let (paths, cloud) = (self.paths.min(self.total), self.cloud);
         let parts = [(paths * paths, self.paths_freedom), (cloud * cloud, self.cloud_freedom)];
@@ -144,8 +144,8 @@ const MAX_VARIANCE: DVec3 = DVec3::splat(f32::MAX as f64);
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Pixel {
     layers: Layers,
-    /// Estimate of the variance of the mean; at edges it may be negative. As a square it exceeds float32 long before the
-    /// pixel does; the file then contains the largest float32.
+    /// Estimate of the variance of the mean; at edges it may be negative. As a square it exceeds float32 long before
+    /// the pixel does; the file then contains the largest float32.
     variance: DVec3,
     guide: Guide,
 }
@@ -163,7 +163,7 @@ impl Pixel {
     /// The numbers of the file, in the order of [`channel_names`]; the position is relative to `origin`, m.
     fn values(&self, origin: DVec3) -> [f32; 28] {
         let mut values = [0.0; 28];
-        // Where no surface was met it is 0, whatever the origin.
+        // The position is 0 where no surface was met, whatever the origin.
         let position = if self.guide.normal == DVec3::ZERO { DVec3::ZERO } else { self.guide.position - origin };
         let vectors = [
             &[self.beauty()],
@@ -193,8 +193,8 @@ fn channel_names() -> Vec<String> {
     names
 }
 
-/// The pixels of a part of an image of this size, at its place there, without attributes. Positions are relative to
-/// `origin`, m.
+/// The pixels of a part of an image of this size as a data window within the whole, without attributes. Positions are
+/// relative to `origin`, m.
 pub fn part(pixels: &[Pixel], part: Crop, size: [usize; 2], origin: DVec3) -> Image {
     let whole = Window { position: [0, 0], size };
     let display = (part.pixels() < size[0] * size[1]).then_some(whole);
@@ -206,7 +206,7 @@ pub fn image(pixels: &[Pixel], width: usize, height: usize) -> Image {
     about(pixels, width, height, DVec3::ZERO)
 }
 
-/// The same with positions relative to `origin`, m.
+/// The pixels as an image without attributes, with positions relative to `origin`, m.
 fn about(pixels: &[Pixel], width: usize, height: usize, origin: DVec3) -> Image {
     let mut channels: Vec<Channel> =
         channel_names().into_iter().map(|name| Channel { name, samples: Vec::with_capacity(pixels.len()) }).collect();
@@ -229,8 +229,8 @@ pub fn relative_error(pixels: &[Pixel]) -> Option<f64> {
     (power > 0.0).then(|| (variance.max(0.0) / power).sqrt())
 }
 
-/// The sources of error that [`relative_error`] and the variance of an image include, by the number of samples drawn for
-/// the second half of the cloud.
+/// The sources of error that [`relative_error`] and the variance of an image include, by the number of samples drawn
+/// for the second half of the cloud.
 pub fn covers(paths_per_pixel: u32, second_half: u64) -> &'static str {
     match (paths_per_pixel, second_half) {
         (1, 0) => "nothing: one path a pixel, one sample",

@@ -1,11 +1,12 @@
 //! The degrees of freedom of an image's error: how many independent values it is estimated from.
 //!
-//! The paths of different pixels are independent, but all pixels use the same cloud. The difference between its two halves
-//! may be one value that every pixel shows, or as many values as there are pixels. The correlation of the differences
-//! tells which: the image is divided into cells, and `ρ(r)` is the mean product of the differences of cells at distance
-//! `r`, over the mean product of their lengths. It is near 1 or -1 where the differences are one value, and near zero where
-//! they are many. With cells of lengths `s`, `tr C = Σ s²` and `tr C² = Σ Σ ρ² s² s'²` give the degrees of freedom
-//! `ν = (tr C)²/tr C²` of the sum of squares (Satterthwaite 1946). Noise in `ρ` makes `ν` too small, never too large.
+//! The paths of different pixels are independent, but all pixels use the same cloud. The difference between its two
+//! halves may be one value that every pixel shows, or as many values as there are pixels. The correlation of the
+//! differences tells which: the image is divided into cells, and `ρ(r)` is the mean product of the differences of cells
+//! at distance `r`, over the mean product of their lengths. It is near 1 or -1 where the differences are one value, and
+//! near zero where they are many. With cells of lengths `s`, `tr C = Σ s²` and `tr C² = Σ Σ ρ² s² s'²` give the degrees
+//! of freedom `ν = (tr C)²/tr C²` of the sum of squares (Satterthwaite 1946). Noise in `ρ` makes `ν` too small, never
+//! too large.
 
 use scene::DVec3;
 

@@ -1,4 +1,4 @@
-//! What an image is rendered from, how, and what comes of it.
+//! The input, the settings and the result of rendering an image.
 
 use crate::{counts::Counts, crop::Crop, estimator::Estimator, film::Pixel};
 use bssrdf::{Medium, Model};
@@ -8,16 +8,16 @@ use scene::{Camera, NormalKind, Rays, Scene};
 /// How paths are spread over a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Filter {
-    /// Evenly over all of it.
+    /// Paths are spread evenly over the whole pixel.
     Box,
-    /// All paths go through its centre.
+    /// All paths go through the pixel's center.
     Point,
 }
 
 impl Filter {
     pub const ALL: [Filter; 2] = [Filter::Box, Filter::Point];
 
-    /// The name users type.
+    /// The word that users type.
     pub fn name(self) -> &'static str {
         match self {
             Filter::Box => "box",
@@ -26,7 +26,7 @@ impl Filter {
     }
 }
 
-/// What to render.
+/// The input of an image.
 pub struct Input<'a> {
     pub scene: &'a Scene,
     pub rays: &'a Rays<'a>,
@@ -37,13 +37,13 @@ pub struct Input<'a> {
     pub camera: &'a Camera,
 }
 
-/// How to render.
+/// The settings of an image.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// Size of the whole image, pixels.
     pub width: usize,
     pub height: usize,
-    /// The part of the image that is rendered, if not all of it. Its pixels have the bits of those of the whole image.
+    /// The part of the image that is rendered, if not all of it. Its pixels have the same bits as in the whole image.
     pub crop: Option<Crop>,
     pub paths_per_pixel: u32,
     pub filter: Filter,

@@ -18,8 +18,8 @@ use std::{
 /// Pixels that an image can have.
 const MAX_PIXELS: u64 = 1 << 28;
 
-/// Memory that a pixel takes, bytes: sums, their copies while a pass is joined, the pixel and its channels, if all pixels
-/// are edges.
+/// Memory that a pixel takes, bytes: sums, their copies while a pass is joined, the pixel and its channels, if all
+/// pixels are edges.
 const BYTES_PER_PIXEL: u64 = 1280;
 
 /// One image.
@@ -137,7 +137,7 @@ fn check_memory(settings: &Settings) -> Result<(), Failure> {
     cli::require_memory("this image", Need { held, mapped: 0 }, "make it smaller")
 }
 
-/// Says once if images have other proportions than their cameras ask for.
+/// Warns once if the aspect ratio of any image differs from the one that its camera asks for.
 fn warn_of_aspects(jobs: &[ImageJob], common: &Common) {
     let aspects = |job: &ImageJob| Some((job.camera.aspect?, job.settings.width as f64 / job.settings.height as f64));
     let misfit = |(wanted, own): &(f64, f64)| (wanted / own - 1.0).abs() > 0.01;

@@ -1,4 +1,4 @@
-//! What images are made from: the clouds, their scene, and the media.
+//! The inputs of all images of a run: the clouds, their scene, and the media.
 
 use crate::{
     cloud_files::CloudFiles,
@@ -12,7 +12,7 @@ use gather::shards;
 use scene::{DVec3, MeshDefects, Rays, Scene};
 use std::path::PathBuf;
 
-/// What images are made from, except for the camera.
+/// The inputs of all images, except for their cameras.
 pub struct Inputs {
     pub cloud_files: CloudFiles,
     pub scene: Scene,
@@ -23,7 +23,7 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// Reads all inputs, but the samples of the clouds; refuses those that do not fit each other. The files that the
+    /// Reads all inputs except the samples of the clouds; refuses inputs that do not fit each other. The files that the
     /// scene's file names are declared as they become known.
     pub fn read(request: &Request, files: &mut Files) -> Result<Inputs, Failure> {
         let cloud_files = CloudFiles::open(&request.clouds)?;
@@ -65,7 +65,7 @@ impl Inputs {
     }
 }
 
-/// Reads SCENE; says so if it was left out after several clouds.
+/// Reads SCENE. If the last argument is another cloud instead, the message says that SCENE is missing.
 fn import(request: &Request) -> Result<Scene, Failure> {
     let path = &request.scene.path;
     request.scene.import(&request.common).map_err(|failure| match Cloud::open(path) {

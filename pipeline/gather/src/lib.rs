@@ -1,9 +1,9 @@
 //! Phase two: a cloud, media and a camera to an image.
 //!
 //! [`render`] follows camera paths through the interfaces of translucent objects to exitant points, where it sums the
-//! cloud; [`Passes`] adds paths in passes, until an error target is met. No light is sampled for a translucent surface: its
-//! light is that of the cloud. Pixels are rendered in parallel and each sum in a fixed order, so that the image is the same
-//! for any number of threads.
+//! cloud; [`Passes`] adds paths in passes, until an error target is met. No light is sampled for a translucent surface:
+//! its light is that of the cloud. Pixels are rendered in parallel and each sum in a fixed order, so that the image is
+//! the same for any number of threads.
 //!
 //! The example renders four pixels of a scene without a cloud, so that all of its surfaces are opaque.
 //!

@@ -1,4 +1,4 @@
-//! Which medium fills which material.
+//! Assigns a medium to each sampled material.
 
 use bssrdf::Medium;
 use cli::{Candidate, ReadMediumError, Unclear, read_medium, scene_medium, the_one, word_for};
@@ -61,7 +61,7 @@ pub fn assign(
     chosen.collect()
 }
 
-/// The sampled materials as a word may mean them.
+/// The sampled materials as candidates for a word on the command line.
 fn material_names(sampled: &[SampledMaterial]) -> Vec<Candidate<'_>> {
     let detail = |m: &SampledMaterial| format!(", {:.4e} m2", m.area_m2);
     sampled.iter().map(|m| Candidate { index: m.index.into(), names: vec![&m.name], detail: detail(m) }).collect()
@@ -75,7 +75,7 @@ fn unclear_material(name: &str, unclear: Unclear) -> AssignError {
     }
 }
 
-/// Splits `MATERIAL=MEDIUM`. The name of a material may contain an equals sign; the longest known name is meant.
+/// Splits `MATERIAL=MEDIUM`. The name of a material may contain an equals sign; the longest name that exists is taken.
 fn split<'a>(argument: &'a str, names: &[Candidate]) -> Option<(&'a str, &'a str)> {
     let at = |(k, _): (usize, &str)| Some((argument.get(..k)?, argument.get(k + 1..)?));
     let known = |name: &str| !matches!(the_one(name, names, false), Err(Unclear::Unknown { .. }));

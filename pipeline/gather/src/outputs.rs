@@ -6,7 +6,8 @@ use formats::atomic::{Group, Output};
 use gather::{film, preview};
 use std::io::Write;
 
-/// Refuses outputs that cannot be written, that would replace an input, or that are the same file, before any work is done.
+/// Refuses outputs that cannot be written, that would replace an input, or that are the same file, before any work is
+/// done.
 pub fn declare(files: &mut Files, outputs: &Outputs, jobs: &[ImageJob]) -> Result<(), Failure> {
     let image = [("--output", &outputs.image)].into_iter();
     let preview = outputs.preview.iter().map(|path| ("--preview", path));
@@ -17,7 +18,7 @@ pub fn declare(files: &mut Files, outputs: &Outputs, jobs: &[ImageJob]) -> Resul
     Ok(())
 }
 
-/// Writes the files of an image, all or none. Of an image with values that are not finite, only its statistics are written.
+/// Writes the files of an image, all or none. If a value of the image is not finite, only its statistics are written.
 pub fn write(facts: &Facts, output: Output, mut seconds: Seconds) -> Result<(), Failure> {
     let mut group = Group::default();
     seconds.time("write", || match facts.rendered.non_finite_count {

@@ -22,10 +22,10 @@ use scene::{
 use std::{ops::Range, sync::Arc};
 use sums::{Summation, drawn::DrawnCounts, estimator::Scatterer};
 
-/// Each task renders a square tile of so many pixels on a side.
+/// Side of the square tile that a task renders, pixels.
 const TILE: usize = 8;
 
-/// A ray that passes a surface undeflected goes on this share of the scene's diagonal beyond it.
+/// A ray that crosses a surface undeflected continues at this distance beyond it, as a share of the scene's diagonal.
 const CLEARANCE: f64 = 1e-9;
 
 /// An image to which paths are added in passes.
@@ -83,9 +83,9 @@ impl<'a> Passes<'a> {
         passes
     }
 
-    /// Finds edge pixels by the transmittance at the corners of all pixels. There are none with one path per pixel, which
-    /// has no second half to estimate the factor of the control variate from, nor with rays through pixel centres, which
-    /// are all the same.
+    /// Finds edge pixels by the transmittance at the corners of all pixels. There are none with one path per pixel,
+    /// which has no second half to estimate the factor of the control variate from, nor with rays through pixel
+    /// centers, which are all the same.
     fn find_edges(&mut self) {
         if self.settings.paths_per_pixel == 1 || self.settings.filter == Filter::Point {
             return;
@@ -175,7 +175,8 @@ impl<'a> Passes<'a> {
         self.sums[index].pixel(self.edges[index].as_deref(), self.renderer.guide(origin, direction))
     }
 
-    /// Adds so many paths to each pixel; `progress` is called with numbers of pixels that are done.
+    /// Adds `paths` to each pixel; `progress` is called with the number of pixels that were completed since its last
+    /// call.
     pub fn pass(&mut self, paths: u32, progress: impl Fn(u64) + Sync) {
         let range = self.paths..self.paths.saturating_add(paths);
         self.renderer.paths_per_pixel = self.settings.paths_per_pixel.max(range.end);
@@ -208,7 +209,8 @@ impl<'a> Passes<'a> {
     }
 }
 
-/// Renders an image of `settings.paths_per_pixel` paths; `progress` is called with numbers of pixels that are done.
+/// Renders an image of `settings.paths_per_pixel` paths; `progress` is called with the number
+/// of pixels that were completed since its last call.
 pub fn render(input: &Input, settings: &Settings, progress: impl Fn(u64) + Sync) -> Rendered {
     let mut passes = Passes::new(input, settings);
     passes.pass(settings.paths_per_pixel, progress);

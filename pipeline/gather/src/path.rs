@@ -29,7 +29,7 @@ impl Renderer<'_> {
             layer: None,
             events: 0,
             half,
-            turn: self.turn(index),
+            shard_pick: self.pick_shard(index),
             random: self.paths.item(item),
             dimension: 0,
             key: self.gathers.item(item),
@@ -44,10 +44,10 @@ impl Renderer<'_> {
         light
     }
 
-    /// The shard that a path gathers from, chosen among the paths of its half that are added in the same pass.
-    fn turn(&self, index: PathIndex) -> ShardPick {
+    /// Picks the shard that a path gathers from. Shards alternate over the paths of one half and one pass.
+    fn pick_shard(&self, index: PathIndex) -> ShardPick {
         let half = index.path % 2;
-        // How many paths of this half come before `path`.
+        // The number of paths of this half before `path`.
         let first = |path: u32| (path + 1 - half) / 2;
         let (start, end) = (first(self.pass.start), first(self.pass.end));
         let random = || self.shard_picks.item(index.pixel).uniform(u64::from(2 * start + half));
@@ -101,8 +101,8 @@ impl Renderer<'_> {
         match (object, side) {
             (None, _) => self.meet_opaque(state, &point, side, &hit, light, &mut context.counts),
             (Some(_), Side::Outside) if state.inside.is_some() => {
-                // The path is inside an object already and goes straight on. It starts a little beyond the surface, because
-                // two triangles at the same point of the ray would send it back and forth.
+                // The path is inside another object already and goes straight on. It starts a little beyond the
+                // surface, because two triangles at the same point of the ray would send it back and forth.
                 context.counts.nested += 1;
                 state.origin = point.position + state.direction * self.clearance;
                 state.from = None;
@@ -114,7 +114,8 @@ impl Renderer<'_> {
     }
 
     /// Distance at which a ray inside a medium is scattered or absorbed, m, drawn by the extinction of one of the three
-    /// channels (docs/method.md 6.9). So the ray reaches a surface with the mean of their transmittances as its probability.
+    /// channels (docs/method.md 6.9). The ray therefore reaches a surface with a probability that is the mean of
+    /// the three transmittances.
     fn free_path(&self, state: &mut PathState) -> f64 {
         let Some(object) = state.inside.and_then(|m| self.objects[m as usize].as_ref()) else {
             return f64::INFINITY;
@@ -124,21 +125,21 @@ impl Renderer<'_> {
         if sigma > 0.0 { -(1.0 - state.uniform()).ln() / sigma } else { f64::INFINITY }
     }
 
-    /// A ray that meets no further surface sees the environment.
+    /// Adds the environment for a ray that meets no further surface.
     fn escape(&self, state: &PathState, light: &mut PathLight, counts: &mut Counts) {
         let mut seen = self.lights.distant_radiance(state.origin, state.direction);
         if let Some(object) = state.inside.and_then(|m| self.objects[m as usize].as_ref()) {
             counts.escaped_inside += 1;
             // Only channels without extinction see through an infinite medium. The ray escaped because one of them was
-            // drawn for its free path, which has the probability of a third for each.
+            // drawn for its free path; each channel is drawn with a probability of one third.
             let clear = object.unscattered.map(|sigma| f64::from(u8::from(sigma == 0.0)));
             seen *= DVec3::from_array(clear) * (3.0 / clear.iter().sum::<f64>().max(1.0));
         }
         light.add(state, Layer::Emission, seen);
     }
 
-    /// Multiplies the throughput by the transmittance `e^{−σ̃_t s}` of a medium (docs/method.md 6.9) over the probability
-    /// that the ray came so far: no channel grows by more than a factor of 3. False if the path ends.
+    /// Multiplies the throughput by the transmittance `e^{−σ̃_t s}` of a medium (docs/method.md 6.9) over the
+    /// probability that the ray came so far: no channel grows by more than a factor of 3. False if the path ends.
     fn attenuate(&self, state: &mut PathState, material: u16, side: Side, distance: f64) -> bool {
         // Without a known medium, a back face is met if the camera is inside or the mesh is open. Then no free path was
         // drawn for this ray.
@@ -157,7 +158,8 @@ impl Renderer<'_> {
         survival > 0.0
     }
 
-    /// An opaque surface that may emit. A specular one sends the path on; any other is lit directly and ends the path.
+    /// Adds the light of an opaque surface, which may emit. A specular surface sends the path on; any other is lit
+    /// directly and ends the path.
     fn meet_opaque(
         &self,
         state: &mut PathState,
@@ -184,8 +186,8 @@ impl Renderer<'_> {
         false
     }
 
-    /// Reflection with probability `R`, otherwise refraction, which shows emitted and scattered light and goes on inside.
-    /// The first interface of a path does both: a choice there would be most of the noise of an image.
+    /// Reflection with probability `R`, otherwise refraction, which shows emitted and scattered light and goes on
+    /// inside. The first interface of a path does both: a choice there would be most of the noise of an image.
     fn meet_from_outside(
         &self,
         state: &mut PathState,
@@ -221,8 +223,8 @@ impl Renderer<'_> {
         meeting.scatter(state, Lobe::Transmission, Layer::Transmission, &mut context.counts)
     }
 
-    /// Reflection inside with probability `R_in` (docs/method.md 6.9), otherwise refraction out into the scene. Nothing is
-    /// gathered from inside.
+    /// Reflection inside with probability `R_in` (docs/method.md 6.9), otherwise refraction out into the scene. Nothing
+    /// is gathered from inside.
     fn meet_from_inside(
         &self,
         state: &mut PathState,
@@ -282,7 +284,8 @@ struct Meeting<'a> {
 }
 
 impl Meeting<'_> {
-    /// The view is about the interpolated normal, unless that turns away from `direction` where the triangle does not.
+    /// The view uses the interpolated normal, unless that normal faces away from `direction` and the triangle's own
+    /// does not.
     fn new<'a>(
         point: &'a SurfacePoint,
         bsdf: Surface,
@@ -300,8 +303,9 @@ impl Meeting<'_> {
         self.bsdf.transmittance(&self.view)
     }
 
-    /// Sends the path on in a direction of one lobe, and files its light under `event`. The direction is sampled about the
-    /// geometric normal if the interpolated one puts it on the wrong side of the triangle. False if there is none.
+    /// Sends the path on in a direction of one lobe, and assigns its light to the layer `event`. The direction is
+    /// sampled about the geometric normal if the interpolated one puts it on the wrong side of the triangle. False if
+    /// there is none.
     fn scatter(&self, state: &mut PathState, lobe: Lobe, event: Layer, counts: &mut Counts) -> bool {
         let geometric = self.point.geometric_normal;
         let mut sample = |view: &View| self.bsdf.sample(view, lobe, || [state.uniform(), state.uniform()]);

@@ -20,7 +20,7 @@ pub struct PathIndex {
 #[derive(Clone, Debug, Default)]
 pub struct ThreadContext {
     pub counts: Counts,
-    /// Of each material.
+    /// The buffers of the cut, for each material.
     scratch: Vec<Scratch>,
 }
 
@@ -51,7 +51,7 @@ pub struct PathState {
     /// The half of the cloud that it gathers from, if paths alternate between the halves.
     pub half: usize,
     /// The shard that it gathers from, if paths alternate between the shards.
-    pub turn: ShardPick,
+    pub shard_pick: ShardPick,
     /// Random numbers of the path, and the dimension of the next one.
     pub random: Item,
     pub dimension: u64,
@@ -81,7 +81,7 @@ impl PathLight {
         self.add_halves(state, layer, radiance, [radiance; 2]);
     }
 
-    /// The same for light of which each half of the cloud has an estimate of its own.
+    /// Adds light that each half of the cloud estimates separately.
     pub fn add_halves(&mut self, state: &PathState, layer: Layer, radiance: DVec3, halves: [DVec3; 2]) {
         self.layers[state.layer.unwrap_or(layer) as usize] += state.throughput * radiance;
         self.halves.iter_mut().zip(halves).for_each(|(sum, half)| *sum += state.throughput * half);

@@ -4,7 +4,8 @@ use crate::film::Pixel;
 use color::{srgb, tone};
 use scene::DVec3;
 
-/// Factor of the tone curve's argument, with which a middle gray of 0.18 stays 0.18 and the curve reaches 1 at about 10.
+/// Factor of the tone curve's argument, with which a middle gray of 0.18 stays 0.18 and the curve reaches 1 at about
+/// 10.
 const MIDDLE: f64 = 0.7232;
 
 /// Encodes the pixels as a PNG file, brightened by `stops` powers of two. Their values are taken as linear sRGB.
@@ -38,8 +39,8 @@ mod tests {
         assert_eq!(shown(DVec3::splat(f64::MAX)), [255; 3]);
     }
 
-    /// A warm light that becomes too bright stays warm and pales on its way to white: no channel overtakes another, and the
-    /// color never turns to a clipped yellow. Seen to catch: clipping alone.
+    /// A warm light that becomes too bright stays warm and pales on its way to white: no channel overtakes another, and
+    /// the color never turns to a clipped yellow. Seen to catch: clipping alone.
     #[test]
     fn highlights_keep_their_hue_and_pale() {
         let mut spread_before = 255;

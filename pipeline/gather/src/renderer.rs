@@ -13,7 +13,7 @@ pub struct Renderer<'a> {
     pub rays: &'a Rays<'a>,
     pub lights: LightTree<'a>,
     pub camera: &'a Camera,
-    /// Of each material; none for opaque ones.
+    /// The translucent object of each material; none for opaque materials.
     pub objects: Vec<Option<TranslucentObject<'a>>>,
     pub normals: NormalKind,
     pub estimator: Estimator,

@@ -1,4 +1,4 @@
-//! What an image and its statistics say of how they were made.
+//! The metadata of an image: the attributes of its header, and its statistics.
 
 use crate::{image_jobs::ImageJob, inputs::Inputs, settings::Request};
 use bssrdf::Medium;
@@ -137,7 +137,7 @@ impl Facts<'_> {
         format!("{value:#}\n").into_bytes()
     }
 
-    /// What variance and estimated error cover.
+    /// The sources of error that the variance and the estimated error include.
     pub fn covers(&self) -> &'static str {
         film::covers(self.settings.paths_per_pixel, shards::DrawnCounts::of(self.inputs.clouds()).half(1))
     }

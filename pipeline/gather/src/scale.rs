@@ -1,20 +1,20 @@
-//! Lengths of each medium beside those of its object, and warnings of those that do not go together.
+//! Compares the lengths of each medium with those of its object, and warns where they do not fit each other.
 
 use crate::{inputs::Inputs, settings::Request};
 use bssrdf::Medium;
 use cli::count_up;
 use gather::shards;
 
-/// Samples that are farther apart than this many reduced mean free paths are seen as grain.
+/// Samples that are farther apart than this many reduced mean free paths show as grain.
 const SPARSE: f64 = 3.0;
 
-/// Rounding of positions beyond this share of a reduced mean free path is seen.
+/// Rounding of positions by more than this share of a reduced mean free path is visible.
 const ROUGH: f64 = 0.01;
 
 /// A reduced mean free path below this share of the object's size looks opaque.
 const OPAQUE: f64 = 1e-5;
 
-/// The surface of a material, m.
+/// Measures of the surface of a material, m.
 struct Object<'a> {
     material: &'a str,
     /// Diagonal of the box around it.
@@ -27,7 +27,7 @@ struct Object<'a> {
     rounding: f64,
 }
 
-/// Prints the lengths of each medium and its object, and warns of what is odd about them.
+/// Prints the lengths of each medium and its object, and warns where they do not fit each other.
 pub fn show(request: &Request, inputs: &Inputs) {
     let (common, clouds) = (&request.common, inputs.clouds());
     for (slot, (material, medium)) in shards::materials(clouds).iter().zip(&inputs.media).enumerate() {

@@ -1,4 +1,4 @@
-//! What the program is asked to do: the arguments, checked, before any file is read.
+//! The task of the program: the arguments, checked, before any file is read.
 
 use crate::arguments::Arguments;
 use bssrdf::Model;
@@ -6,7 +6,7 @@ use cli::{Common, Failure, SceneSettings};
 use gather::{Crop, Filter, estimator::Estimator};
 use std::path::PathBuf;
 
-/// What the program is asked to do.
+/// The task of the program.
 pub enum Task {
     ListMedia,
     ListScene(SceneLists),
@@ -15,7 +15,7 @@ pub enum Task {
     Render(Box<Request>),
 }
 
-/// Lists of what a scene holds.
+/// Lists of a scene's cameras and materials.
 pub struct SceneLists {
     pub scene: SceneSettings,
     pub cameras: bool,
@@ -23,7 +23,7 @@ pub struct SceneLists {
     pub common: Common,
 }
 
-/// What the names of images depend on.
+/// The arguments that determine the names of images.
 pub struct ImageNames {
     pub output: PathBuf,
     pub view: Option<PathBuf>,
@@ -37,7 +37,7 @@ pub struct Request {
     pub camera: CameraSource,
     /// Steps of a turntable.
     pub orbit: Option<u32>,
-    /// Width and height that were asked for, pixels; what is missing follows from the camera.
+    /// Requested width and height, pixels; a missing one follows from the camera.
     pub size: [Option<u32>; 2],
     pub crop: Option<Crop>,
     /// `[MATERIAL=]NAME|FILE.json`; a material without one has the medium that the scene gives it.
@@ -53,10 +53,10 @@ pub struct Request {
     pub common: Common,
 }
 
-/// Where cameras come from.
+/// The source of the cameras.
 pub enum CameraSource {
     View(PathBuf),
-    /// A camera of the scene, by a word for it, or its first camera.
+    /// The camera of the scene with this name or index, or the first one.
     Scene(Option<String>),
 }
 
@@ -64,7 +64,7 @@ pub enum CameraSource {
 pub struct Outputs {
     pub image: PathBuf,
     pub preview: Option<PathBuf>,
-    /// Of the preview, in powers of two.
+    /// Exposure of the preview, in powers of two.
     pub exposure: f64,
     pub stats: Option<PathBuf>,
     /// Whether the files may hold times, which differ from run to run.

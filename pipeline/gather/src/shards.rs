@@ -1,9 +1,9 @@
 //! Several clouds of one scene, gathered as one: shards, each sampled by a process of its own.
 //!
-//! `(1/K) Σ S Φ` over the `K` samples drawn for a shard has the same mean for all shards. The whole sum and the roulette
-//! add the sums of all shards and divide by the number of samples drawn for all of them, which weights each shard by its
-//! samples. With `--estimator cut`, each path uses one shard, round-robin, in proportion to its samples. The first halves
-//! of all shards together are one half, and so are the second halves; the two stay independent.
+//! `(1/K) Σ S Φ` over the `K` samples drawn for a shard has the same mean for all shards. The whole sum and the
+//! roulette add the sums of all shards and divide by the number of samples drawn for all of them, which weights each
+//! shard by its samples. With `--estimator cut`, each path uses one shard, round-robin, in proportion to its samples.
+//! The first halves of all shards together are one half, and so are the second halves; the two stay independent.
 
 pub use sums::drawn::{DrawnCounts, ShardPick};
 
@@ -23,7 +23,8 @@ pub enum JoinError {
     Same { one: PathBuf, two: PathBuf, shard: String, seed: u64 },
 }
 
-/// Sorts open clouds into an order that does not depend on that of the files; refuses those that do not belong together.
+/// Sorts open clouds into an order that does not depend on that of the files; refuses those that do not belong
+/// together.
 pub fn join(mut files: Vec<(PathBuf, Cloud)>) -> Result<(Vec<PathBuf>, Vec<Cloud>), JoinError> {
     files.sort_by_key(|(_, cloud)| key(cloud.meta()));
     for pair in files.windows(2) {
@@ -45,8 +46,8 @@ fn key(meta: &Meta) -> (u64, u32, u32) {
     (meta.options.seed, meta.options.shard.count, meta.options.shard.index)
 }
 
-/// A difference that gives the samples of two clouds different means. How the samples are spread, and over which triangles,
-/// makes none.
+/// The first difference that gives the samples of two clouds different means. The pattern of the samples and the choice
+/// of triangles may differ: they do not change the mean.
 fn difference(one: &Meta, two: &Meta) -> Option<&'static str> {
     let names = |meta: &Meta| meta.materials.iter().map(|m| (m.index, m.name.clone())).collect::<Vec<_>>();
     let (a, b) = (&one.options, &two.options);

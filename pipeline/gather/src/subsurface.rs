@@ -30,7 +30,7 @@ impl Renderer<'_> {
         let estimator = self.estimator_for(state.throughput.max_element());
         let scratch = context.scratch(point.material as usize);
         let leaving = if self.gathers_by_shard() {
-            object.summation.by_shard(estimator, state.half, state.turn, exit, scratch)
+            object.summation.by_shard(estimator, state.half, state.shard_pick, exit, scratch)
         } else {
             object.summation.whole(estimator, exit, scratch)
         };
@@ -45,8 +45,8 @@ impl Renderer<'_> {
         self.estimator.is_hierarchical() && self.paths_per_pixel > 1
     }
 
-    /// The estimator of one sum, a `share` of which arrives at the camera. The errors of the sums of a pixel are
-    /// independent, so each may exceed the pixel's by the root of their number.
+    /// The estimator of one sum, of whose light a `share` arrives at the camera. The errors of a pixel's sums are
+    /// independent, so the relative error of each may be as many times the pixel's as the root of their number.
     pub fn estimator_for(&self, share: f64) -> Estimator {
         let sums =
             if self.gathers_by_shard() { f64::from(self.paths_per_pixel) } else { 2.0 * self.drawn.shards() as f64 };

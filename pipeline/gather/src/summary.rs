@@ -1,18 +1,18 @@
-//! What the program says of an image that it rendered.
+//! The messages of the program about a rendered image.
 
 use crate::report::Facts;
 use cli::{Failure, count};
 use gather::{Settings, counts::Counts, film};
 
-/// More than this share of the paths to translucent surfaces meets them from within only if the camera does; fewer are rays
-/// that slip between triangles.
+/// If more than this share of the paths meet translucent surfaces from within, the camera is inside a medium or looks
+/// into an open mesh; a smaller share are rays that slip between triangles.
 const STRAY: f64 = 0.01;
 
-/// Says how good the image is, and warns of what is odd about it; fails if a value in it is not finite.
+/// Prints the error of the image and warns of unusual views; fails if a value of the image is not finite.
 pub fn show(facts: &Facts) -> Result<(), Failure> {
     check_finite(facts)?;
     let (common, counts) = (&facts.request.common, &facts.rendered.counts);
-    // Where no two paths differ, nothing is known of light that none of them met.
+    // If no two paths differ, the error is unknown: there may be light that none of them met.
     let error = film::relative_error(&facts.rendered.pixels).filter(|error| *error > 0.0);
     let error = error.map_or("unknown".into(), sums::confidence::percent);
     common.say(format_args!(

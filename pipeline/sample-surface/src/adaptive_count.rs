@@ -1,11 +1,12 @@
-//! Finds the number of samples with which the error of the light that leaves the surface meets a target. Nowhere else does
-//! phase one know a medium, and only the number of samples depends on it.
+//! Finds the number of samples with which the error of the light that leaves the surface meets a target. This is the
+//! only part of phase one that depends on a medium, and only the number of samples depends on it.
 //!
-//! The difference of a cloud's two halves estimates its error. That estimate follows a chi-square distribution, and to
-//! draw samples until it is small would be to stop when it is small by chance. So trial clouds tell first how many degrees
-//! of freedom it has ([`crate::trials`]). With many, the halves are trusted within the bounds of Student's distribution.
-//! With few, as where all light comes through one small hole, larger trials are drawn until the error of their mean, which
-//! 16 independent halves estimate well, meets the target; one cloud of as many samples as all trials has no larger error.
+//! The difference of a cloud's two halves estimates its error. That estimate follows a chi-square distribution: a
+//! search that stopped at the first small estimate would often stop by chance. Trial clouds therefore show first how
+//! many degrees of freedom the estimate has ([`crate::trials`]). With many, the halves are trusted within the bounds of
+//! Student's distribution. With few, as where all light comes through one small hole, larger trials are drawn until the
+//! error of their mean, which 16 independent halves estimate well, meets the target; one cloud of as many samples as
+//! all trials has no larger error.
 
 use crate::{
     error::SampleError,
@@ -20,14 +21,14 @@ use sums::confidence::Estimate;
 /// The result of a round of the search.
 #[derive(Clone, Copy, Debug)]
 pub enum Round {
-    /// Of trial clouds.
+    /// The result of trial clouds.
     Trials(Trials),
-    /// Of a cloud of so many samples, whose error its halves estimate.
+    /// The number of samples of a cloud, and its error as estimated from its halves.
     Cloud(u64, Estimate),
 }
 
 /// A cloud that meets the target.
-pub struct Enough {
+pub struct SufficientCloud {
     pub sampled: Sampled,
     /// The error of its light; none if no sample carries light.
     pub estimate: Option<Estimate>,
@@ -42,31 +43,31 @@ const FIRST: u64 = 1 << 16;
 /// The error of well-spread samples is taken to fall as their number to the power 3/4; this is the inverse.
 const POWER: f64 = 4.0 / 3.0;
 
-/// The fewest lit samples in all trials: the scatter of fewer says little.
+/// The fewest lit samples in all trials: the scatter of fewer is no reliable estimate.
 const MIN_LIT: u64 = 32;
 
-/// A scene is taken to be dark if none of so many samples is lit.
+/// A scene is considered dark if none of this many samples is lit.
 const SEARCH: u64 = 1 << 24;
 
 /// The fewest degrees of freedom with which one difference of two halves is trusted.
 const MANY: f64 = 8.0;
 
-/// The degrees of freedom of a cloud are measured again if it has more than so many times the samples of all trials.
+/// The degrees of freedom are measured again for a cloud with more than this many times the samples of all trials.
 const STALE: u64 = 8;
 
-/// The largest growth from one cloud to the next, and from one round of trials to the next: larger trials may turn out to
-/// have more degrees of freedom.
+/// The largest growth from one cloud to the next, and from one round of trials to the next: larger trials may turn out
+/// to have more degrees of freedom.
 const CLOUDS_GROW: f64 = 64.0;
 const TRIALS_GROW: f64 = 8.0;
 
-/// The error of one cloud, which is two well-spread halves, relative to that of the mean of trials with as many samples in
-/// all.
+/// The error of one cloud, which is two well-spread halves, relative to that of the mean of trials with as many samples
+/// in all.
 const GAIN: f64 = 0.5;
 
 /// A cloud whose error exceeds the bound from trials by this factor has found light that the trials had not.
 const SURPRISE: f64 = 1.5;
 
-/// Draws clouds of more and more samples until one meets the target; `tell` is called with each round.
+/// Draws clouds of more and more samples until one meets the target; `tell` is called after each round.
 pub fn sample_enough(
     scene: &Scene,
     rays: &Rays,
@@ -74,15 +75,15 @@ pub fn sample_enough(
     plan: &Plan,
     goal: &Goal,
     tell: impl Fn(&Round) + Sync,
-) -> Result<Enough, SampleError> {
+) -> Result<SufficientCloud, SampleError> {
     let search = Search { scene, rays, settings, plan, goal, tell: &tell };
     let mut trials = search.trials(FIRST.min(goal.max_samples))?;
     loop {
         let samples = trials.all();
         let error = match trials.mean {
-            None => return Ok(Enough { sampled: search.cloud(samples)?, estimate: None }),
+            None => return Ok(SufficientCloud { sampled: search.cloud(samples)?, estimate: None }),
             Some(mean) if trials.freedom < MANY && mean.safe() <= goal.error => {
-                return Ok(Enough { sampled: search.cloud(samples)?, estimate: Some(mean) });
+                return Ok(SufficientCloud { sampled: search.cloud(samples)?, estimate: Some(mean) });
             }
             Some(mean) => mean.safe(),
         };
@@ -90,7 +91,7 @@ pub fn sample_enough(
             search.trials(search.more(samples, error, TRIALS_GROW)?)?
         } else {
             match search.by_halves(trials)? {
-                Found::Enough(enough) => return Ok(*enough),
+                Found::Sufficient(cloud) => return Ok(*cloud),
                 Found::Few(trials) => trials,
             }
         };
@@ -99,7 +100,7 @@ pub fn sample_enough(
 
 /// The outcome of clouds whose error their halves estimate.
 enum Found {
-    Enough(Box<Enough>),
+    Sufficient(Box<SufficientCloud>),
     /// Larger trials turned out to have few degrees of freedom.
     Few(Trials),
 }
@@ -126,7 +127,7 @@ impl Search<'_> {
         if next > max_samples { Err(SampleError::TooMany { samples, error, next, max_samples }) } else { Ok(next) }
     }
 
-    /// Trials of at least so many samples in all, of which enough are lit, or none if the scene is dark.
+    /// Draws trials with at least `samples` in total, enough of them lit unless the scene is dark.
     fn trials(&self, mut samples: u64) -> Result<Trials, SampleError> {
         let Search { scene, rays, settings, plan, goal, .. } = *self;
         loop {
@@ -166,7 +167,7 @@ impl Search<'_> {
             }
             (self.tell)(&Round::Cloud(samples, estimate));
             if enough(&estimate) {
-                return Ok(Found::Enough(Box::new(Enough { sampled, estimate: Some(estimate) })));
+                return Ok(Found::Sufficient(Box::new(SufficientCloud { sampled, estimate: Some(estimate) })));
             }
             samples = self.more(samples, estimate.safe(), CLOUDS_GROW)?;
         }

@@ -20,31 +20,31 @@ pub struct Arguments {
     /// Samples drawn over all translucent surfaces: 250k, 1M, 1e6
     #[arg(short = 'n', long, value_name = "K", default_value = "1M", value_parser = parse_samples)]
     pub samples: u64,
-    /// Draw one shard of a cloud, with random numbers of its own: shard I of N, counted from 0. `gather` takes all shards
-    /// together; --samples is the number of this shard, and need not be that of the others
+    /// Draw one shard of a cloud, with random numbers of its own: shard I of N, counted from 0. `gather` takes all
+    /// shards together; --samples is the number of this shard, and need not be that of the others
     #[arg(long, value_name = "I/N", default_value = "0/1", value_parser = parse_shard)]
     pub shard: Shard,
     /// Draw as many samples as this medium needs to reach --target-error, judged by the directional dipole
     #[arg(long, value_name = "NAME|FILE.json", requires = "target_error", conflicts_with = "samples")]
     pub for_medium: Option<String>,
-    /// Relative standard error of the light that leaves the surface in the medium of --for-medium: 95 of 100 clouds have
-    /// an error of less than twice this
+    /// Relative standard error of the light that leaves the surface in the medium of --for-medium: 95 of 100 clouds
+    /// have an error of less than twice this
     #[arg(long, value_name = "X", requires = "for_medium", value_parser = parse_relative_error)]
     pub target_error: Option<f64>,
-    /// Material whose surfaces are sampled, by its name or index:N of --list-materials (repeatable) [default: those that the
-    /// file marks as volumes; if it marks none, all that do not emit]
+    /// Material whose surfaces are sampled, by its name or index:N of --list-materials (repeatable) [default: those
+    /// that the file marks as volumes; if it marks none, all that do not emit]
     #[arg(long, value_name = "NAME")]
     pub translucent: Vec<String>,
     /// Probability of a triangle: in proportion to its area, or uniform over all triangles as in the note
     #[arg(long, default_value = "area", default_value_if("note", "true", "uniform"),
         value_parser = one_of(Choice::ALL, Choice::name))]
     pub choice: Choice,
-    /// Share of the samples that is drawn on the surfaces of one material (repeatable); the other materials share the rest
-    /// by --choice
+    /// Share of the samples that is drawn on the surfaces of one material (repeatable); the other materials share the
+    /// rest by --choice
     #[arg(long, value_name = "MATERIAL=F", value_parser = parse_share)]
     pub share: Vec<(String, f64)>,
-    /// How samples are spread: evenly, as a lattice along ribbons of triangles and with a scrambled sequence for the light,
-    /// or independently as in the note
+    /// How samples are spread: evenly, as a lattice along ribbons of triangles and with a scrambled sequence for the
+    /// light, or independently as in the note
     #[arg(long, default_value = "stratified", default_value_if("note", "true", "independent"),
         value_parser = one_of(Pattern::ALL, Pattern::name))]
     pub pattern: Pattern,

@@ -11,7 +11,7 @@ use scene::{Mesh, random::BELOW_ONE, warp};
 /// A triangle that was chosen.
 pub struct Chosen {
     pub triangle: u32,
-    /// Density `pdf(x)` of a uniform point on it per area of the whole surface, 1/m² (method.md 6.3):
+    /// Density `pdf(x)` of a uniform point on it per area of the whole surface, 1/m² (docs/method.md 6.3):
     /// `1/(N A_j)` for the note's rule, `1/A` by area.
     // note: [pdf]
     pub pdf_area: f64,
@@ -23,7 +23,8 @@ pub struct TriangleChoice {
     links: Vec<Link>,
     /// Area of each triangle, m².
     areas: Vec<f64>,
-    /// For each triangle, the factor of its weight that gives its material the wanted share; empty if no material has one.
+    /// For each triangle, the factor of its weight that gives its material the wanted share; empty if no material has
+    /// one.
     factors: Vec<f64>,
     /// Sum of [`Self::weight`] of each triangle and all before it.
     weights_so_far: Vec<f64>,
@@ -35,8 +36,8 @@ impl TriangleChoice {
         TriangleChoice::with_shares(mesh, rule, wanted, &[])
     }
 
-    /// The same, but the triangles of each material in `shares` are chosen with that probability in total, and those of the
-    /// other materials with what is left.
+    /// The same, but the triangles of each material in `shares` are chosen with that probability in total, and those of
+    /// the other materials with what is left.
     pub fn with_shares(mesh: &Mesh, rule: Choice, wanted: impl Fn(u16) -> bool, shares: &[(u16, f64)]) -> Self {
         let mut triangles: Vec<u32> =
             (0..mesh.triangles.len()).filter(|k| wanted(mesh.triangles[*k].material)).map(|k| k as u32).collect();
@@ -110,8 +111,8 @@ impl TriangleChoice {
     }
 
     /// The point at `along` of the length of the ribbons and at `across` of their width, both in [0, 1): triangle and
-    /// barycentric weights. Uniform numbers make uniform points on triangles that the rule chose; points that are close in
-    /// both numbers are close on the surface.
+    /// barycentric weights. Uniform numbers make uniform points on triangles that the rule chose; points that are close
+    /// in both numbers are close on the surface.
     pub fn on_ribbon(&self, along: f64, across: f64) -> (Chosen, [f64; 3]) {
         let (index, target) = self.find(along);
         let first = index - usize::from(self.links[index].part == Part::Second);

@@ -1,4 +1,4 @@
-//! The cloud: drawn and written, or kept where it is up to date.
+//! Draws and writes the cloud, or keeps the existing file if it is up to date.
 
 use crate::{inputs::Inputs, search::search, settings::Request, surfaces::failure};
 use cli::{Failure, Progress, Seconds};
@@ -13,7 +13,7 @@ use std::{fs::OpenOptions, path::Path, time::SystemTime};
 /// The cloud that was asked for.
 pub struct Made {
     pub cloud: Cloud,
-    /// It was there already.
+    /// True if an up-to-date file was there already.
     pub kept: bool,
 }
 

@@ -1,13 +1,13 @@
 //! The spatial order of the samples, and the tree that is stored with them.
 //!
-//! The samples of a group are split recursively across the longest side of their bounding box, at a power of two of tiles,
-//! down to single samples. The order, and with it every node, depends on the samples alone and not on threads.
+//! The samples of a group are split recursively across the longest side of their bounding box, at a power of two of
+//! tiles, down to single samples. The order, and with it every node, depends on the samples alone and not on threads.
 
 use formats::cloud::{Node, Record, TILE, Tile, first_leaf, node_count, tile};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-/// Up to so many samples are ordered by one task.
+/// The largest number of samples that one task orders.
 const ALONE: usize = 1 << 13;
 
 /// A sample's position, and its index in the list of records.
@@ -71,8 +71,8 @@ fn nodes(tiles: &[Tile], samples: usize) -> Vec<Node> {
 #[derive(Clone, Copy)]
 struct Moments {
     count: f64,
-    centre: DVec3,
-    /// Sum of squared distances from the centre, m².
+    center: DVec3,
+    /// Sum of squared distances from the center, m².
     scatter: f64,
     /// Mean flux, summed over channels, W.
     flux: f64,
@@ -92,7 +92,7 @@ impl Moments {
             let s = tile[lane].sample();
             Moments {
                 count: 1.0,
-                centre: s.position.as_dvec3(),
+                center: s.position.as_dvec3(),
                 scatter: 0.0,
                 flux: s.flux.as_dvec3().element_sum(),
                 flux_scatter: 0.0,
@@ -112,8 +112,8 @@ impl Moments {
         let pair = self.count * share;
         Moments {
             count,
-            centre: self.centre + (other.centre - self.centre) * share,
-            scatter: self.scatter + other.scatter + pair * self.centre.distance_squared(other.centre),
+            center: self.center + (other.center - self.center) * share,
+            scatter: self.scatter + other.scatter + pair * self.center.distance_squared(other.center),
             flux: self.flux + (other.flux - self.flux) * share,
             flux_scatter: self.flux_scatter + other.flux_scatter + pair * (self.flux - other.flux).powi(2),
             direction: self.direction + other.direction,
@@ -124,17 +124,17 @@ impl Moments {
     }
 
     fn node(&self) -> Node {
-        let centre = self.centre.as_vec3();
-        let reach = (self.high - centre).max(centre - self.low);
+        let center = self.center.as_vec3();
+        let max_offset = (self.high - center).max(center - self.low);
         // The mean square deviation of unit vectors with mean m is 1 − |m|².
-        let turn = |sum: DVec3| (1.0 - (sum / self.count).length_squared()).max(0.0);
+        let variance = |sum: DVec3| (1.0 - (sum / self.count).length_squared()).max(0.0);
         Node {
-            centre: centre.to_array(),
+            center: center.to_array(),
             spread: (self.scatter / self.count).sqrt() as f32,
-            radius: reach.length(),
+            radius: max_offset.length(),
             flux: (self.flux * self.count).min(f64::from(f32::MAX)) as f32,
             flux_deviation: ((self.flux_scatter / self.count).sqrt() / self.flux) as f32,
-            turn: (turn(self.direction) + turn(self.normal)).sqrt() as f32,
+            direction_deviation: (variance(self.direction) + variance(self.normal)).sqrt() as f32,
         }
     }
 }
@@ -154,7 +154,7 @@ mod tests {
         (0..count).map(point).collect()
     }
 
-    /// Seen to catch: a wrong child, a lost tile, a radius around the centre of the box.
+    /// Seen to catch: a wrong child, a lost tile, a radius around the center of the box.
     #[test]
     fn nodes_are_what_their_samples_say() {
         for count in [1, 15, 16, 17, 100, 1000, 4097] {
@@ -172,15 +172,15 @@ mod tests {
                 }
                 let samples: Vec<Sample> = range.map(|k| tiles[k / 16][k % 16].sample()).collect();
                 let n = samples.len() as f32;
-                let centre = samples.iter().map(|s| s.position).sum::<Vec3>() / n;
-                let spread = (samples.iter().map(|s| s.position.distance_squared(centre)).sum::<f32>() / n).sqrt();
+                let center = samples.iter().map(|s| s.position).sum::<Vec3>() / n;
+                let spread = (samples.iter().map(|s| s.position.distance_squared(center)).sum::<f32>() / n).sqrt();
                 let flux = samples.iter().map(|s| s.flux.element_sum()).sum::<f32>();
-                assert!((Vec3::from_array(node.centre) - centre).length() < 1e-4);
+                assert!((Vec3::from_array(node.center) - center).length() < 1e-4);
                 assert!((node.spread - spread).abs() < 1e-4 && (node.flux / flux - 1.0).abs() < 1e-4);
                 assert!(
-                    samples.iter().all(|s| s.position.distance(Vec3::from_array(node.centre)) <= node.radius + 1e-6)
+                    samples.iter().all(|s| s.position.distance(Vec3::from_array(node.center)) <= node.radius + 1e-6)
                 );
-                assert!(node.turn.abs() < 1e-3);
+                assert!(node.direction_deviation.abs() < 1e-3);
             }
         }
     }

@@ -44,9 +44,9 @@ fn index(cell: [u32; 3]) -> u64 {
 mod tests {
     use super::*;
 
-    /// Planted: a missing swap leaves jumps.
+    /// Seen to catch: a missing swap, which leaves jumps.
     #[test]
-    fn neighbours_on_the_curve_are_neighbours_in_space() {
+    fn neighbors_on_the_curve_are_neighbors_in_space() {
         // The curve's first 2^9 cells fill the corner cube of 8 cells a side.
         let mut cells: Vec<[u32; 3]> = (0..512).map(|k| [k & 7, k >> 3 & 7, k >> 6]).collect();
         cells.sort_by_key(|c| index(*c));

@@ -1,4 +1,4 @@
-//! What a cloud is made from: the files that are read, and what follows from them.
+//! The inputs of a cloud: the files that are read, and the data derived from them.
 
 use crate::{
     arguments::SAMPLES_LIMIT,
@@ -30,7 +30,7 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// Reads what a cloud is made from. Refuses what cannot be done before any sample is drawn.
+    /// Reads the inputs of a cloud. Refuses impossible requests before any sample is drawn.
     pub fn read(request: &Request) -> Result<Inputs, Failure> {
         let common = &request.common;
         let mut files = declare(request)?;
@@ -71,7 +71,7 @@ fn declare(request: &Request) -> Result<Files, Failure> {
     Ok(files)
 }
 
-/// Refuses what cannot fit into memory before any work is done: the samples, and the scene's file once it is unpacked.
+/// Refuses, before any work is done, samples and scene files that would not fit into memory.
 fn check_memory(request: &Request) -> Result<(), Failure> {
     let samples = request.samples;
     let file = std::fs::metadata(&request.scene.path).map_or(0, |meta| meta.len());

@@ -1,7 +1,7 @@
 //! Phase one: a scene's lit surface as a point cloud.
 //!
-//! [`Plan`] decides which surfaces are sampled and what the cloud's identity is; [`sample()`] draws the samples: a triangle
-//! ([`TriangleChoice`]), a point on it, a direction towards the light, and the flux that arrives ([`draw`]).
+//! [`Plan`] decides which surfaces are sampled and what the cloud's identity is; [`sample()`] draws the samples: a
+//! triangle ([`TriangleChoice`]), a point on it, a direction towards the light, and the flux that arrives ([`draw`]).
 //! [`hierarchy`] orders them and builds the tree over them. The samples depend on no camera and no medium, so that one
 //! cloud serves all of them; only [`sample_enough`] knows a medium, and uses it to choose the number of samples.
 //!
@@ -51,7 +51,7 @@ mod ribbon;
 mod sample;
 mod trials;
 
-pub use adaptive_count::{Enough, Round, sample_enough};
+pub use adaptive_count::{Round, SufficientCloud, sample_enough};
 pub use bounce::Bounce;
 pub use choice::{Choice, Chosen, TriangleChoice};
 pub use error::SampleError;

@@ -26,7 +26,7 @@ fn main() {
     });
 }
 
-/// Makes the cloud that is asked for, or keeps the one that is there, and writes what goes with it.
+/// Makes the requested cloud, or keeps an up-to-date one, and writes its statistics and PLY file.
 fn sample(request: &Request) -> Result<(), Failure> {
     let mut seconds = Seconds::start();
     let inputs = seconds.time("import", || Inputs::read(request))?;

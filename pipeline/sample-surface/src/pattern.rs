@@ -27,7 +27,7 @@ pub struct SamplePoint {
     pub pdf_area: f64,
     /// Uniform numbers for the light.
     pub light: [f64; 3],
-    /// More of them, for light that another surface reflects.
+    /// Further uniform numbers, for light that another surface reflects.
     pub bounce: Item,
 }
 
@@ -39,14 +39,14 @@ pub struct Numbers {
     halves: [Half; 2],
 }
 
-/// What the stratified samples of one half have in common.
+/// The parameters that all stratified samples of one half share.
 struct Half {
     light: Sequence,
     /// Number of samples.
     count: f64,
     /// Offset of the first sample along the ribbons, as a share of the distance between samples.
     along: f64,
-    /// Its offset across, in 2^-64 of the width.
+    /// Offset of the first sample across the ribbon, in 2^-64 of the width.
     across: u64,
 }
 
@@ -92,8 +92,9 @@ fn independent(choice: &TriangleChoice, random: Item, bounce: Item) -> SamplePoi
 const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
 
 impl Half {
-    /// Sample `index` of the half. The samples are equidistant along the ribbons, and each is offset across by the golden
-    /// ratio from the one before: a lattice without gaps or clusters, whatever its density and the ribbon's width.
+    /// Sample `index` of the half. The samples are equidistant along the ribbons, and each is offset across by the
+    /// golden ratio from the one before: a lattice without gaps or clusters, whatever its density and the ribbon's
+    /// width.
     fn point(&self, choice: &TriangleChoice, index: u64, bounce: Item) -> SamplePoint {
         let along = ((index as f64 + self.along) / self.count).min(BELOW_ONE);
         let across = unit(self.across.wrapping_add(index.wrapping_mul(GOLDEN)));

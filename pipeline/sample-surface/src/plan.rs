@@ -1,11 +1,11 @@
-//! What is sampled and how, and the identity of the cloud that comes of it.
+//! The surfaces and settings of a cloud, and the identity of the cloud that results.
 
 use crate::{choice::TriangleChoice, error::SampleError};
 use bssrdf::Medium;
 use formats::cloud::{Options, version};
 use scene::{MeshDefects, NormalKind, Scene, random};
 
-/// How to sample.
+/// The settings of sampling.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// `K`: samples to draw over all sampled surfaces.
@@ -32,13 +32,13 @@ impl Settings {
 pub struct Surfaces {
     /// Indices of the sampled materials, ascending.
     pub materials: Vec<u16>,
-    /// Materials of these with the share of the samples that each takes; the others share the rest by the rule of choice.
+    /// Materials of these with the share of the samples that each takes; the others share the rest by the rule of
+    /// choice.
     pub shares: Vec<(u16, f64)>,
 }
 
 impl Surfaces {
-    /// The surfaces that are translucent by the scene's file; true with them if it marks none, so that all that do not
-    /// emit are taken.
+    /// The translucent surfaces of the scene's file, and whether it marks none, so that all that do not emit are taken.
     pub fn translucent(scene: &Scene) -> Result<(Surfaces, bool), SampleError> {
         let (materials, unmarked) = scene.translucent()?;
         if materials.is_empty() {
@@ -59,7 +59,7 @@ impl Surfaces {
     }
 }
 
-/// A scene with the surfaces to sample, and the identity of the cloud that will come of it.
+/// The surfaces to sample, and the identity of the cloud that results.
 pub struct Plan {
     pub surfaces: Surfaces,
     pub geometry: [u8; 32],
@@ -88,8 +88,8 @@ impl Plan {
         Ok(Plan { surfaces, geometry, defects, content: *hasher.finalize().as_bytes() })
     }
 
-    /// The same plan, with an identity that also depends on the medium and the relative error in it that decide the number
-    /// of samples.
+    /// The same plan, with an identity that also depends on the medium and the relative error in it that decide the
+    /// number of samples.
     pub fn for_target(self, medium: &Medium, error: f64) -> Plan {
         // `trials` tells these clouds from older ones, whose number of samples was decided otherwise.
         let what = format!("trials {:?} {:?} {error}", medium.channels, medium.eta);

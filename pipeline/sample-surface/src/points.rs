@@ -51,8 +51,8 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// `L_r` at all points as one half of a cloud estimates it: three channels of each point, times the root of the area
-    /// that the point represents. `stream` selects the random numbers of the sums.
+    /// `L_r` at all points as one half of a cloud estimates it: three channels of each point, times the root of the
+    /// area that the point represents. `stream` selects the random numbers of the sums.
     pub fn light(&self, sampled: &Sampled, half: usize, stream: u64) -> Vec<f64> {
         let materials = &sampled.meta.materials;
         let summations: Vec<Summation> = materials.iter().map(|material| self.summation(sampled, material)).collect();
@@ -78,8 +78,8 @@ impl<'a> Points<'a> {
     }
 }
 
-/// The relative standard error of the light that leaves the surface, by the difference of the cloud's halves; none if no
-/// light leaves it.
+/// The relative standard error of the light that leaves the surface, by the difference of the cloud's halves; none if
+/// no light leaves it.
 pub(crate) fn relative_error(points: &Points, sampled: &Sampled) -> Option<f64> {
     let [one, two] = [0, 1].map(|half| points.light(sampled, half, 0));
     let pairs = || one.iter().zip(&two);

@@ -27,7 +27,7 @@ pub struct Sampled {
     pub meta: Meta,
 }
 
-/// What one task drew.
+/// The result of one task.
 #[derive(Default)]
 struct Portion {
     /// Two lists for each sampled material: its even and its odd samples.
@@ -41,7 +41,8 @@ struct Portion {
     flux: DVec3,
 }
 
-/// Draws the samples and orders them, in parallel; `progress` is told how many were drawn. The cloud is the same for any
+/// Draws the samples and orders them, in parallel; `progress` is called with the number of samples that were
+/// drawn. The cloud is the same for any
 /// number of threads.
 pub fn sample(
     scene: &Scene,

@@ -1,4 +1,4 @@
-//! What the program says of a cloud: statistics and a summary.
+//! The report on a cloud: statistics and a summary.
 
 use crate::{draw::Made, inputs::Inputs};
 use cli::{Common, Seconds, count};
@@ -31,7 +31,7 @@ pub fn statistics(made: &Made, inputs: &Inputs, seconds: &Seconds, common: &Comm
     format!("{value:#}\n").into_bytes()
 }
 
-/// Says how many samples carry light, and how much; warns if none does.
+/// Prints how many samples carry light, and how much; warns if none does.
 pub fn summarize(cloud: &Cloud, common: &Common) {
     let meta = cloud.meta();
     let drawn = meta.samples_drawn as f64;

@@ -1,11 +1,11 @@
-//! Ribbons of triangles: pairs of neighbours make quadrilaterals, and each quadrilateral continues the one before across
+//! Ribbons of triangles: pairs of neighbors make quadrilaterals, and each quadrilateral continues the one before across
 //! their common edge. A lattice that runs along a ribbon is broken at its two sides only, not at every edge.
 
 use rayon::prelude::*;
 use scene::{Mesh, Vec3, random::mix};
 
-/// The part that a triangle has in a cell of a ribbon. A cell is a quadrilateral `a b d c`, mapped to the unit square with
-/// `a = (0, 0)`, `b = (1, 0)`, `c = (0, 1)`, `d = (1, 1)` and cut from `b` to `c`; or the first half of one.
+/// The part that a triangle has in a cell of a ribbon. A cell is a quadrilateral `a b d c`, mapped to the unit square
+/// with `a = (0, 0)`, `b = (1, 0)`, `c = (0, 1)`, `d = (1, 1)` and cut from `b` to `c`; or the first half of one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// `a b c`, without a second half.
@@ -46,7 +46,7 @@ struct Across {
 /// Puts the triangles of a list on ribbons, each of which starts with the first triangle that is left.
 pub fn ribbons(mesh: &Mesh, triangles: &[u32]) -> Vec<Link> {
     let links = Vec::with_capacity(triangles.len());
-    let across = neighbours(mesh, triangles);
+    let across = neighbors(mesh, triangles);
     let mut weaver = Weaver { mesh, triangles, across, used: vec![false; triangles.len()], links };
     for index in 0..triangles.len() {
         if !weaver.used[index] {
@@ -82,8 +82,8 @@ impl Weaver<'_> {
         }
     }
 
-    /// The first cell of a ribbon. It is cut along the longest edge with a free triangle across, and oriented so that the
-    /// ribbon can continue.
+    /// The first cell of a ribbon. It is cut along the longest edge with a free triangle across, and oriented so that
+    /// the ribbon can continue.
     fn start(&self, index: usize) -> Start {
         let a = [1, 2].into_iter().fold(0, |best, a| if self.cuts_better(index, a, best) { a } else { best });
         let (p, q) = ((a + 1) % 3, (a + 2) % 3);
@@ -161,7 +161,7 @@ fn corner_position(mesh: &Mesh, triangle: u32, corner: u8) -> Vec3 {
 }
 
 /// The triangle across each edge: the only other triangle with the same end points, if it is of the same material.
-fn neighbours(mesh: &Mesh, triangles: &[u32]) -> Vec<[Across; 3]> {
+fn neighbors(mesh: &Mesh, triangles: &[u32]) -> Vec<[Across; 3]> {
     let ends = |edge: u32| {
         let (triangle, apex) = (triangles[(edge / 3) as usize], (edge % 3) as u8);
         [1, 2].map(|k| corner_position(mesh, triangle, (apex + k) % 3))

@@ -11,7 +11,7 @@ use scene::{
     light::{LightChoice, Lit, ReceiverBounds, light_at},
 };
 
-/// What became of a drawn sample.
+/// The outcome of one drawn sample.
 pub enum SampleOutcome {
     /// A lit sample, and the material it lies on.
     Lit { sample: Sample, material: u16 },
@@ -27,10 +27,10 @@ pub enum SampleOutcome {
     NotFinite,
 }
 
-/// The number of nodes in the list of lights that several samples share: so many, and so many more for each sample.
+/// The number of nodes in the list of lights that several samples share: a fixed number, and more for each sample.
 const SHARED_NODES: [usize; 2] = [32, 4];
 
-/// Lights sample points that lie close together, each with the half that it belongs to, directly or by `bounce`.
+/// Lights sample points that lie close together, each given with its half, directly or by one reflection (`bounce`).
 /// `shadow_rays` counts the rays traced.
 pub fn draw(
     surface: &LitSurface,
@@ -71,7 +71,7 @@ fn drawn(
             Lit::Light { direction, irradiance } => (direction, irradiance / (1.0 - share)),
         },
     };
-    // note: [flux] Φ = E/pdf(x); the estimator divides by K (method.md 6.5).
+    // note: [flux] Φ = E/pdf(x); the estimator divides by K (docs/method.md 6.5).
     // A color of -0 would make a flux of -0: adding 0 removes the sign.
     let flux = (irradiance / sample.pdf_area).as_vec3() + Vec3::ZERO;
     if !flux.is_finite() {

@@ -1,8 +1,8 @@
-//! Draws as many samples as a medium needs, and says how the search for their number goes.
+//! Draws as many samples as a medium needs, and reports the progress of the search for their number.
 
 use crate::{inputs::Inputs, settings::Request};
 use cli::count;
-use sample_surface::{Enough, Goal, Round, SampleError, Sampled, TRIALS, sample_enough};
+use sample_surface::{Goal, Round, SampleError, Sampled, SufficientCloud, TRIALS, sample_enough};
 use scene::Rays;
 use sums::confidence::{Estimate, percent};
 
@@ -10,7 +10,8 @@ use sums::confidence::{Estimate, percent};
 pub fn search(request: &Request, inputs: &Inputs, rays: &Rays, goal: &Goal) -> Result<Sampled, SampleError> {
     let (common, medium) = (&request.common, &goal.medium.name);
     let tell = |round: &Round| common.say(describe(round, medium));
-    let Enough { sampled, estimate } = sample_enough(&inputs.scene, rays, &inputs.settings, &inputs.plan, goal, tell)?;
+    let SufficientCloud { sampled, estimate } =
+        sample_enough(&inputs.scene, rays, &inputs.settings, &inputs.plan, goal, tell)?;
     match estimate {
         Some(estimate) => common.say(met(&sampled, &estimate, medium)),
         None => common.warn(dark(&sampled, medium)),
@@ -23,7 +24,7 @@ fn error(estimate: &Estimate) -> String {
     format!("relative error {}, below {} with 95 % confidence", percent(estimate.error), percent(estimate.within()))
 }
 
-/// What a round of the search for enough samples has shown.
+/// The result of a round of the search, as a message.
 fn describe(round: &Round, medium: &str) -> String {
     match round {
         Round::Trials(trials) => {

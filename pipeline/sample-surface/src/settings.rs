@@ -1,4 +1,4 @@
-//! What the program is asked to do: the arguments, checked, before any file is read.
+//! The task of the program: the arguments, checked, before any file is read.
 
 use crate::arguments::Arguments;
 use cli::{Common, Failure, SceneSettings};
@@ -7,13 +7,13 @@ use sample_surface::Settings;
 use scene::light::Environment;
 use std::path::PathBuf;
 
-/// What the program is asked to do.
+/// The task of the program.
 pub enum Task {
     ListMaterials { scene: SceneSettings, common: Common },
     Sample(Box<Request>),
 }
 
-/// A cloud that is asked for.
+/// A requested cloud.
 pub struct Request {
     pub scene: SceneSettings,
     pub output: PathBuf,

@@ -1,4 +1,4 @@
-//! Which surfaces the arguments mean.
+//! Finds the surfaces that the arguments name.
 
 use crate::settings::Request;
 use cli::{Candidate, Failure, Unclear, material_names, the_one};

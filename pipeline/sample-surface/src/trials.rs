@@ -1,11 +1,11 @@
-//! Trial clouds: small independent clouds, which tell what one difference of two halves cannot: how many independent values
-//! the error of a cloud consists of, from one that is the same everywhere on the surface to many.
+//! Trial clouds: small independent clouds, which tell what one difference of two halves cannot: how many independent
+//! values the error of a cloud consists of, from one that is the same everywhere on the surface to many.
 //!
-//! The light that leaves the points of the surface by one half of a trial is a vector; `d` is the difference of the vectors
-//! of both halves, and `C` its covariance. If `d` is normal, `|d|²` scatters as a chi-square distribution with
-//! `ν = (tr C)²/tr C²` degrees of freedom (Satterthwaite 1946). Here `tr C` is the mean of `|d|²`, and `tr C²` the mean of
-//! `(d · d')²` over pairs of trials. Rare light makes `|d|²` scatter more; so the scatter gives a second estimate of `ν`,
-//! and the smaller one counts.
+//! The light that leaves the points of the surface by one half of a trial is a vector; `d` is the difference of the
+//! vectors of both halves, and `C` its covariance. If `d` is normal, `|d|²` scatters as a chi-square distribution with
+//! `ν = (tr C)²/tr C²` degrees of freedom (Satterthwaite 1946). Here `tr C` is the mean of `|d|²`, and `tr C²` the mean
+//! of `(d · d')²` over pairs of trials. Rare light makes `|d|²` scatter more; so the scatter gives a second estimate of
+//! `ν`, and the smaller one counts.
 
 use crate::{
     error::SampleError,
@@ -41,7 +41,7 @@ pub struct Trials {
 }
 
 impl Trials {
-    /// Draws trials of so many samples each, all with random numbers of their own.
+    /// Draws trials of `samples` each, all with their own random numbers.
     pub fn draw(
         (scene, rays): (&Scene, &Rays),
         settings: &Settings,
@@ -72,8 +72,8 @@ impl Trials {
         TRIALS * self.samples
     }
 
-    /// An upper bound of the relative error of a cloud of more samples: the error of independent samples, which falls as
-    /// the root of their number. It is 0 if no light leaves the surface.
+    /// An upper bound of the relative error of a cloud of more samples: the error of independent samples, which falls
+    /// as the root of their number. It is 0 if no light leaves the surface.
     pub fn error_bound(&self, samples: u64) -> f64 {
         let root = (self.all() as f64 / samples as f64).sqrt();
         self.mean.map_or(0.0, |mean| mean.error * root)
@@ -128,8 +128,8 @@ mod tests {
 
     /// 256 values have independent errors, or four errors that 64 share each, or one error that all share.
     ///
-    /// Seen to catch: differences multiplied by themselves instead of one another; the number of values in place of their
-    /// correlation.
+    /// Seen to catch: differences multiplied by themselves instead of one another; the number of values in place of
+    /// their correlation.
     #[test]
     fn shared_values_are_one_degree_of_freedom() {
         for (together, low, high) in [(1, 60.0, 600.0), (64, 1.5, 9.0), (256, 1.0, 2.0)] {

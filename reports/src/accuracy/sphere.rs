@@ -48,10 +48,10 @@ impl Setting {
         (depth > 0.0).then(|| q.x * self.camera.right - q.y * self.camera.up + depth.sqrt() * self.to_viewer())
     }
 
-    /// The unit normal at the centre of a pixel.
+    /// The unit normal at the center of a pixel.
     pub fn pixel_normal(&self, index: usize) -> Option<DVec3> {
-        let centre = DVec2::new((index % SIDE) as f64 + 0.5, (index / SIDE) as f64 + 0.5);
-        self.normal(centre * (2.0 / SIDE as f64) - DVec2::ONE)
+        let center = DVec2::new((index % SIDE) as f64 + 0.5, (index / SIDE) as f64 + 0.5);
+        self.normal(center * (2.0 / SIDE as f64) - DVec2::ONE)
     }
 
     /// The exit point turned about the light, to the two azimuths (by the mirror symmetry) at which its direction is

@@ -131,7 +131,7 @@ fn report(subject: &Subject, all: &[Series]) -> String {
         all.iter().find(|s| s.medium == medium).map_or("–".into(), |s| s.resolved.map(three).join(", "))
     };
     format!(
-        "{}: relative RMSE over independent clouds, the same paths through the pixels' centres, sums as good as \
+        "{}: relative RMSE over independent clouds, the same paths through the pixels' centers, sums as good as \
          exact. The mean free path is resolved where one sample's share of the surface is smaller than its square: K \
          above {} (marble: red, green, blue) and {} (skim milk); slopes are fitted from there.\n\n{}",
         subject.name,

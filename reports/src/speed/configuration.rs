@@ -129,7 +129,7 @@ pub struct Subjects {
     /// The scenes that other renderers were measured on.
     pub sphere_of_peers: Option<Subject>,
     pub bunny_of_peers: Option<Subject>,
-    /// What is missing, in sentences.
+    /// The scenes that are missing, in sentences.
     pub remarks: Vec<String>,
 }
 

@@ -58,7 +58,7 @@ fn method(harness: &Harness, remarks: &[String]) -> String {
     )
 }
 
-/// What the figures above do not say themselves.
+/// Explanations of the figures above.
 const WHY: &str = "\
 Lines of the plots are a model's, fitted to few paths a pixel; dots are runs. With ten paths and more the cut's own share \
 (`--accuracy`, one per cent of a pixel whatever the paths) remains, so runs err more than the model says: the tables of \

@@ -56,7 +56,7 @@ pub struct Harness {
     /// The configurations that these programs support.
     pub configurations: Vec<Configuration>,
     pub records: Vec<Record>,
-    /// What could not be measured, in sentences.
+    /// The measurements that could not be made, in sentences.
     pub remarks: Vec<String>,
     sample_surface: Program,
     gather: Program,

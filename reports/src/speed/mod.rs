@@ -1,7 +1,7 @@
 //! Time against error of the two programs: `speed.md`, its plots and `speed.csv`.
 
 mod accuracy;
-mod behaviour;
+mod behavior;
 mod clouds;
 mod configuration;
 mod document;

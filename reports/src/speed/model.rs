@@ -87,7 +87,7 @@ impl PathCost {
 
 /// The behavior of one configuration on one scene with one medium, at one image size.
 #[derive(Clone, Copy, Debug)]
-pub struct Behaviour {
+pub struct Behavior {
     pub pixels: f64,
     /// Relative RMSE of the cloud as a function of `K`.
     pub cloud: PowerLaw,
@@ -118,7 +118,7 @@ pub struct Spending {
 /// The largest number of paths a pixel that `gather` accepts.
 const MAX_PATHS: f64 = 1_048_576.0;
 
-impl Behaviour {
+impl Behavior {
     /// Seconds and error of a cloud of `samples` under `spp` paths a pixel.
     pub fn spending(&self, samples: f64, spp: f64) -> Spending {
         let once = self.sampling.at(samples) + self.overhead.at(samples);
@@ -154,8 +154,8 @@ mod tests {
         (a - b).abs() <= 1e-6 * b.abs()
     }
 
-    fn behaviour() -> Behaviour {
-        Behaviour {
+    fn behavior() -> Behavior {
+        Behavior {
             pixels: 1000.0,
             cloud: PowerLaw { factor: 10.0, exponent: -0.5 },
             paths: Line { constant: 0.04, slope: 100.0 },
@@ -188,10 +188,10 @@ mod tests {
 
     #[test]
     fn time_and_error_of_one_point() {
-        let s = behaviour().spending(1e6, 4.0);
+        let s = behavior().spending(1e6, 4.0);
         assert!(near(s.seconds, 0.1 + 0.5 + 1000.0 * 4.0 * 1e-3));
         assert!(near(s.error.powi(2), 1e-4 + 0.0401 / 4.0));
-        let s = Behaviour { falls: 1.5, ..behaviour() }.spending(1e6, 4.0);
+        let s = Behavior { falls: 1.5, ..behavior() }.spending(1e6, 4.0);
         assert!(near(s.error.powi(2), 1e-4 + 0.0401 / 8.0));
     }
 
@@ -199,7 +199,7 @@ mod tests {
     /// = e²/2`, where it is `4 c² v / e⁴`.
     #[test]
     fn the_optimum_shares_the_error_evenly() {
-        let mut b = behaviour();
+        let mut b = behavior();
         (b.paths, b.sampling, b.overhead) = (Line { constant: 0.04, slope: 0.0 }, Line::default(), Line::default());
         for error in [0.02, 0.01] {
             let best = b.cheapest(error).unwrap();
@@ -214,7 +214,7 @@ mod tests {
 
     #[test]
     fn out_of_reach_is_none() {
-        let mut b = behaviour();
+        let mut b = behavior();
         b.cloud = PowerLaw { factor: 0.1, exponent: 0.0 };
         assert_eq!(b.cheapest(0.05), None);
         b.cloud = PowerLaw { factor: 10.0, exponent: -0.5 };

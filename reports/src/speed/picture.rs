@@ -9,7 +9,7 @@ use std::path::Path;
 pub struct Picture {
     /// Red, green and blue of each pixel, W/(m² sr).
     pub values: Vec<f64>,
-    /// True where the ray through the pixel's centre meets something.
+    /// True where the ray through the pixel's center meets something.
     pub object: Vec<bool>,
 }
 

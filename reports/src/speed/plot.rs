@@ -1,4 +1,4 @@
-//! Log-log plots as SVG. The background is transparent and the greys are medium, so that they are legible on light
+//! Log-log plots as SVG. The background is transparent and the grays are medium, so that they are legible on light
 //! and dark pages.
 
 use std::fmt::Write;
@@ -24,7 +24,7 @@ const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 440.0;
 /// Left, top, right and bottom of the area that the curves fill.
 const AREA: [f64; 4] = [70.0, 40.0, 560.0, 385.0];
-/// Color of text and axes: its contrast is above 4 both on white and on the dark grey of code hosts.
+/// Color of text and axes: its contrast is above 4 both on white and on the dark gray of code hosts.
 const INK: &str = "#7b8087";
 /// Colors that are distinct for most color-blind eyes, and neither very dark nor very light.
 const COLORS: [&str; 8] = ["#8c8c8c", "#d98b00", "#2f9bd6", "#00a077", "#b9a400", "#d5557f", "#8d6bd1", "#d9582b"];
@@ -112,9 +112,9 @@ fn axes(svg: &mut String, x: &Axis, y: &Axis) {
 fn draw(svg: &mut String, curve: &Curve, index: usize, [x, y]: [&Axis; 2]) {
     let color = COLORS[index % COLORS.len()];
     let dash = ["", "7 3", "2 3"][index % 3];
-    let place = |p: &(f64, f64)| (x.at(p.0), y.at(p.1));
+    let position = |p: &(f64, f64)| (x.at(p.0), y.at(p.1));
     let stroke = format!("stroke=\"{color}\" stroke-width=\"2\" stroke-dasharray=\"{dash}\" fill=\"none\"");
-    let points: Vec<String> = curve.line.iter().map(place).map(|(a, b)| format!("{a:.1},{b:.1}")).collect();
+    let points: Vec<String> = curve.line.iter().map(position).map(|(a, b)| format!("{a:.1},{b:.1}")).collect();
     let row = AREA[1] + 10.0 + 20.0 * index as f64;
     let from = AREA[2] + 12.0;
     let mut out = |line: String| writeln!(svg, "{line}").expect("a string takes all");
@@ -123,7 +123,7 @@ fn draw(svg: &mut String, curve: &Curve, index: usize, [x, y]: [&Axis; 2]) {
         out(format!("<path d=\"M{from} {row}h24\" {stroke}/>"));
     }
     let dot = |(a, b): (f64, f64)| format!("<circle cx=\"{a:.1}\" cy=\"{b:.1}\" r=\"4\" fill=\"{color}\"/>");
-    curve.dots.iter().map(place).for_each(|p| out(dot(p)));
+    curve.dots.iter().map(position).for_each(|p| out(dot(p)));
     if !curve.dots.is_empty() {
         out(dot((from + 12.0, row)));
     }

@@ -4,12 +4,12 @@ use crate::{
     error::Error,
     markdown::{count, percent, table, three, time},
     speed::{
-        behaviour::{Case, CloudFacts, behaviour, cloud_facts, falls},
+        behavior::{Case, CloudFacts, behavior, cloud_facts, falls},
         configuration::{Configuration, MARBLE, Medium, SKIM_MILK, Subject},
         findings::{Findings, Target},
         harness::Harness,
         measure,
-        model::{Behaviour, Spending},
+        model::{Behavior, Spending},
         plot::{Curve, Plot},
         reference::{Quality, reference},
         shot::Shot,
@@ -29,7 +29,7 @@ struct Run {
 /// A configuration in the race.
 struct Runner {
     configuration: Configuration,
-    behaviour: Behaviour,
+    behavior: Behavior,
     runs: Vec<Run>,
 }
 
@@ -53,8 +53,8 @@ pub fn race(harness: &mut Harness, subject: &Subject, medium: Medium) -> Result<
     for configuration in harness.configurations.clone() {
         let Some(cloud) = clouds.iter().find(|c| c.kind == configuration.cloud) else { continue };
         harness.say(&format!("{} {}: paths of `{}`", subject.name, medium.name, configuration.name));
-        let behaviour = behaviour(harness, &case, configuration, cloud)?;
-        let mut runner = Runner { configuration, behaviour, runs: Vec::new() };
+        let behavior = behavior(harness, &case, configuration, cloud)?;
+        let mut runner = Runner { configuration, behavior, runs: Vec::new() };
         check(harness, &case, &mut runner, cloud)?;
         runners.push(runner);
     }
@@ -81,7 +81,7 @@ fn is_target(subject: &Subject, medium: Medium) -> bool {
 fn check(harness: &mut Harness, case: &Case, runner: &mut Runner, cloud: &CloudFacts) -> Result<(), Error> {
     let most = cloud.errors.iter().map(|(k, _)| *k).fold(0.0, f64::max);
     for seconds in harness.effort.of(vec![0.5], vec![4.0], vec![4.0]) {
-        let best = runner.behaviour.best_within(seconds, most);
+        let best = runner.behavior.best_within(seconds, most);
         if let Some(spending) = best {
             let run = run(harness, case, runner, spending, seconds as u64)?;
             runner.runs.push(run);
@@ -94,7 +94,7 @@ fn check(harness: &mut Harness, case: &Case, runner: &mut Runner, cloud: &CloudF
 fn run(harness: &mut Harness, case: &Case, runner: &Runner, spending: Spending, seed: u64) -> Result<Run, Error> {
     let (samples, spp) = (round(spending.samples), spending.spp.ceil() as u64);
     let name = runner.configuration.name;
-    let predicted = runner.behaviour.spending(samples as f64, spp as f64);
+    let predicted = runner.behavior.spending(samples as f64, spp as f64);
     harness.say(&format!("  {name}: K {}, {spp} paths, about {}", count(samples), time(predicted.seconds)));
     let seed = 100 + seed;
     let shot = case.shot(harness, runner.configuration);
@@ -120,8 +120,8 @@ fn time_to(
     wanted: f64,
 ) -> Result<Target, Error> {
     let what = format!("{} {}: the note's time to {} % over ours", case.subject.name, case.medium.name, 100.0 * error);
-    let seconds = |r: &Runner| r.behaviour.cheapest(error).map_or(f64::INFINITY, |s| s.seconds);
-    let note = runners.iter().find(|r| r.configuration.name == "note").and_then(|r| r.behaviour.cheapest(error));
+    let seconds = |r: &Runner| r.behavior.cheapest(error).map_or(f64::INFINITY, |s| s.seconds);
+    let note = runners.iter().find(|r| r.configuration.name == "note").and_then(|r| r.behavior.cheapest(error));
     let all = |r: &&mut Runner| r.configuration.name.starts_with("all") || r.configuration == harness.all();
     let ours = runners.iter_mut().filter(all).min_by(|a, b| seconds(a).total_cmp(&seconds(b)));
     let (Some(note), Some(ours)) = (note, ours) else {
@@ -144,7 +144,7 @@ fn time_to(
 fn reach<'a>(harness: &mut Harness, case: &Case, ours: &'a mut Runner, error: f64) -> Result<Option<&'a Run>, Error> {
     let mut aim = 0.98 * error;
     for attempt in 0..5 {
-        let spending = ours.behaviour.cheapest(aim);
+        let spending = ours.behavior.cheapest(aim);
         let Some(spending) = spending.filter(|s| s.seconds <= harness.effort.longest_run()) else { break };
         let run = run(harness, case, ours, spending, 200 + attempt)?;
         let found = run.error;
@@ -161,7 +161,7 @@ fn reach<'a>(harness: &mut Harness, case: &Case, ours: &'a mut Runner, error: f6
 fn plot(case: &Case, runners: &[Runner]) -> Plot {
     let curve = |runner: &Runner| {
         let errors = (0..=80).map(|step| 10f64.powf(-2.3 + f64::from(step) * 0.0225));
-        let spendings = errors.filter_map(|e| runner.behaviour.cheapest(e));
+        let spendings = errors.filter_map(|e| runner.behavior.cheapest(e));
         Curve {
             label: runner.configuration.name.into(),
             line: spendings.map(|s| (s.seconds, s.error)).filter(|p| p.1 >= 0.005).collect(),
@@ -179,9 +179,9 @@ fn plot(case: &Case, runners: &[Runner]) -> Plot {
 /// The two tables of a race.
 fn report(case: &Case, clouds: &[CloudFacts], runners: &[Runner]) -> String {
     let (own, falls) = (percent(case.reference.own_error()), case.falls);
-    let note = runners.iter().find(|r| r.configuration.name == "note").map(|r| r.behaviour);
+    let note = runners.iter().find(|r| r.configuration.name == "note").map(|r| r.behavior);
     let cells = |r: &Runner| {
-        let (b, name) = (&r.behaviour, r.configuration.name.to_owned());
+        let (b, name) = (&r.behavior, r.configuration.name.to_owned());
         let to = |e: f64| b.cheapest(e).map_or("out of reach".into(), |s| time(s.seconds));
         let gain = |e: f64| {
             let pair = note.and_then(|n| n.cheapest(e)).zip(b.cheapest(e));

@@ -2,7 +2,7 @@
 
 use crate::speed::configuration::{Configuration, Medium, Subject};
 
-/// What to render, and how.
+/// The input and the settings of an image.
 #[derive(Clone)]
 pub struct Shot<'a> {
     pub subject: &'a Subject,

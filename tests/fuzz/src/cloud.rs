@@ -10,9 +10,10 @@ use gather::{
 use std::{ops::Range, path::Path, sync::LazyLock};
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
-/// An accepted cloud has the groups that its facts name. In a verified cloud, samples have finite positions, unit vectors
-/// and a flux that is not negative, and sums over them are finite unless their numbers are absurd. Sums over a cloud that
-/// was not verified do no harm. The bytes are tried as they are, and with a version, length and checksums that fit.
+/// An accepted cloud has the groups that its facts name. In a verified cloud, samples have finite positions, unit
+/// vectors and a flux that is not negative, and sums over them are finite unless their numbers are absurd. Sums over a
+/// cloud that was not verified do no harm. The bytes are tried as they are, and with a version, length and checksums
+/// that fit.
 pub fn cloud(bytes: &[u8]) -> bool {
     let mut sealed = bytes.to_vec();
     seal(&mut sealed);

@@ -179,8 +179,8 @@ impl Bench {
         run
     }
 
-    /// Runs a program that must refuse its arguments or input: exit code 2, a message that says all of `words`, nothing on
-    /// stdout and no file left behind. Returns the message.
+    /// Runs a program that must refuse its arguments or input: exit code 2, a message that says all of `words`, nothing
+    /// on stdout and no file left behind. Returns the message.
     #[track_caller]
     pub fn refuses(&self, name: &str, arguments: &[&str], words: &[&str]) -> String {
         let before = self.files();

@@ -30,7 +30,7 @@ pub fn p_value(observed: &[u64], expected: &[f64]) -> f64 {
     upper_gamma(0.5 * freedom, 0.5 * statistic)
 }
 
-/// Joins neighbouring cells until each expects enough.
+/// Joins neighboring cells until each expects enough.
 fn pool(observed: &[u64], expected: &[f64]) -> Vec<(f64, f64)> {
     let mut cells: Vec<(f64, f64)> = Vec::new();
     let mut open = (0.0, 0.0);

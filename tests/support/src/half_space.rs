@@ -1,19 +1,19 @@
 //! Half-spaces and slabs by the models: plane integrals, in units of the reduced mean free path.
 
-use crate::quadrature::{Extent, integrate_graded, plane_integral};
+use crate::quadrature::{Annulus, integrate_graded, plane_integral};
 use bssrdf::{DVec3, Medium, Model, Separation, fresnel};
 use std::f64::consts::PI;
 
-/// A grey medium of reduced albedo `albedo` and unit reduced extinction.
+/// A gray medium of reduced albedo `albedo` and unit reduced extinction.
 pub fn medium(albedo: f64, eta: f64) -> Medium {
     let (s, a) = (albedo, 1.0 - albedo);
     let json =
-        format!(r#"{{"name":"grey","unit":"1/m","sigma_s":[{s},{s},{s}],"sigma_a":[{a},{a},{a}],"g":0,"eta":{eta}}}"#);
+        format!(r#"{{"name":"gray","unit":"1/m","sigma_s":[{s},{s},{s}],"sigma_a":[{a},{a},{a}],"g":0,"eta":{eta}}}"#);
     Medium::from_json(&json).expect("a valid medium")
 }
 
-/// `T12(θ) ∫ T21 cosθ_o dω_o`: turns `∫ S_bare dA` into a reflectance (method.md sections 2 and 12). The exit integral
-/// is the exact one, of which the models' `4π C_φ(1/η)` is a fit.
+/// `T12(θ) ∫ T21 cosθ_o dω_o`: turns `∫ S_bare dA` into a reflectance (docs/method.md sections 2 and 12). The exit
+/// integral is the exact one, of which the models' `4π C_φ(1/η)` is a fit.
 fn interface(eta: f64, cosine: f64) -> f64 {
     let steps = 4000;
     let exit: f64 = (0..steps)
@@ -30,9 +30,9 @@ pub fn reflectance(model: Model, albedo: f64, eta: f64, cosine: f64) -> f64 {
     let medium = medium(albedo, eta);
     let model = model.of(&medium);
     let sine = (1.0 - cosine * cosine).sqrt() / eta;
-    let reach = 40.0 / model.transport()[0].max(4e-5);
-    let extent = Extent { inner: 1e-7, outer: reach.min(1e6) };
-    interface(eta, cosine) * plane_integral(&*model, 0, sine, extent)
+    let outer = 40.0 / model.transport()[0].max(4e-5);
+    let annulus = Annulus { inner: 1e-7, outer: outer.min(1e6) };
+    interface(eta, cosine) * plane_integral(&*model, 0, sine, annulus)
 }
 
 /// Share of the light of normal incidence that a slab of `thickness` reduced mean free paths scatters out of its

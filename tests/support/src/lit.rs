@@ -59,7 +59,8 @@ impl<'a> Lit<'a> {
         self.summation.half(estimator, half, &self.exit(point, key), &mut Scratch::default())
     }
 
-    /// `L_r` at a point, W/(m² sr). The accuracy of a cut is that of both halves together, whose errors are independent.
+    /// `L_r` at a point, W/(m² sr). The accuracy of a cut is that of both halves together, whose errors are
+    /// independent.
     pub fn radiance(&self, estimator: Estimator, point: Point, key: u64) -> DVec3 {
         let keys = [key, key.rotate_left(32) ^ 0x9E37_79B9_7F4A_7C15];
         let estimator = estimator.map_accuracy(|accuracy| accuracy * SQRT_2);

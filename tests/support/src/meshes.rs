@@ -157,7 +157,7 @@ pub fn quad(half_width: f64, z: f64, cells: u32) -> Mesh {
     rectangle([-half_width, half_width], half_width, z, cells)
 }
 
-/// A disc about the origin facing +Z, whose triangles shrink towards the centre: the uniform choice among them puts
+/// A disc about the origin facing +Z, whose triangles shrink towards the center: the uniform choice among them puts
 /// the same number of samples into every octave of the distance.
 pub fn graded_disc(inner: f64, outer: f64, rings: u32) -> Mesh {
     const SECTORS: u32 = 24;

@@ -107,7 +107,7 @@ pub fn orthographic(towards: DVec3, half_height: f64) -> Camera {
     }
 }
 
-/// One path through the centre of each pixel, the exhaustive sum, and no light but that of the cloud.
+/// One path through the center of each pixel, the exhaustive sum, and no light but that of the cloud.
 pub fn settings(model: Model, width: usize, height: usize) -> gather::Settings {
     gather::Settings {
         width,
@@ -140,7 +140,7 @@ pub const ESTIMATORS: [Estimator; 6] = [
 ];
 
 /// A medium with these coefficients in all three channels, 1/m.
-pub fn grey(sigma_a: f64, sigma_s: f64, asymmetry: f64, eta: f64) -> Medium {
+pub fn gray(sigma_a: f64, sigma_s: f64, asymmetry: f64, eta: f64) -> Medium {
     medium([bssrdf::Coefficients { sigma_a, sigma_s, asymmetry }; 3], eta)
 }
 

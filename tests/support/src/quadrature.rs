@@ -42,9 +42,9 @@ pub fn integrate_graded(low: f64, high: f64, panels: usize, f: impl Fn(f64) -> f
     integrate(low.ln(), high.ln(), panels, |u| u.exp() * f(u.exp()))
 }
 
-/// Radii between which a plane integral is evaluated.
+/// The annulus over which a plane integral is evaluated.
 #[derive(Clone, Copy, Debug)]
-pub struct Extent {
+pub struct Annulus {
     /// The integrand is taken as constant within this radius, m.
     pub inner: f64,
     /// The integrand is taken as zero beyond this radius, m.
@@ -53,7 +53,7 @@ pub struct Extent {
 
 /// `∫ S_bare dA` of one channel over a plane, for light refracted to the polar angle of `sine`; in polar coordinates
 /// about the exitant point, graded in the radius, evenly spaced in the (periodic) angle.
-pub fn plane_integral(model: &dyn Bssrdf, channel: usize, sine: f64, extent: Extent) -> f64 {
+pub fn plane_integral(model: &dyn Bssrdf, channel: usize, sine: f64, annulus: Annulus) -> f64 {
     const ANGLES: usize = 128;
     let refracted = DVec3::new(sine, 0.0, -(1.0 - sine * sine).sqrt());
     let ring = |radius: f64| {
@@ -64,7 +64,7 @@ pub fn plane_integral(model: &dyn Bssrdf, channel: usize, sine: f64, extent: Ext
         };
         2.0 * PI * radius * (0..ANGLES).map(at).sum::<f64>() / ANGLES as f64
     };
-    integrate_graded(extent.inner, extent.outer, 40, ring)
+    integrate_graded(annulus.inner, annulus.outer, 40, ring)
 }
 
 #[cfg(test)]

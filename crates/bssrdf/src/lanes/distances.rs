@@ -14,7 +14,7 @@ pub(crate) struct Distances {
 }
 
 impl Distances {
-    /// From `d_r²`, `d_v²` and `δd² = d_v² − d_r²`.
+    /// Takes `d_r²`, `d_v²` and `δd² = d_v² − d_r²`.
     #[inline(always)]
     pub fn new(real2: f32, virtual2: f32, delta2: f32) -> Distances {
         let (d_real, d_virtual) = (real2.sqrt(), virtual2.sqrt());

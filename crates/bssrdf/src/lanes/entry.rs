@@ -1,9 +1,9 @@
 //! How light enters a medium, for sixteen samples (docs/method.md 2.1 to 2.3); [`bsdf::fresnel::enter`] is the float64
 //! reference.
 //!
-//! Normals `N` and directions `D` are vectors of integers, of any length. So `m = N·D`, `N²` and `D²` are exact, and the
-//! cosine `m/√(N² D²)` keeps its digits at grazing angles, where a dot product of unit vectors in float32 loses them. With
-//! `w = √(m² + (η² − 1) N² D²)`, which is `η t √(N² D²)`:
+//! Normals `N` and directions `D` are vectors of integers, of any length. So `m = N·D`, `N²` and `D²` are exact, and
+//! the cosine `m/√(N² D²)` keeps its digits at grazing angles, where a dot product of unit vectors in float32 loses
+//! them. With `w = √(m² + (η² − 1) N² D²)`, which is `η t √(N² D²)`:
 //!
 //! ```text
 //! T12 = 2 m w [1/(m + w)² + η²/(η² m + w)²]        ω12 = [(m − w) N/N² − D] / (η √D²)

@@ -2,8 +2,8 @@
 
 use std::f32::consts::LOG2_E;
 
-/// Adding this rounds a float32 below 2²² to an integer, whose bits are the low ones of the sum. They include the bias of
-/// the exponent, 127, so that a shift to the left makes a power of two.
+/// Adding this rounds a float32 below 2²² to an integer, whose bits are the low ones of the sum. They include the bias
+/// of the exponent, 127, so that a shift to the left makes a power of two.
 const ROUND: f32 = 12_582_912.0 + 127.0;
 
 /// At this exponent the power of two, and with it the result, becomes 0 instead of subnormal.

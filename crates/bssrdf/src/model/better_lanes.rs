@@ -43,7 +43,7 @@ impl LaneModel for BetterLanes {
         let channels = medium.channels.map(|c| {
             let reduced = c.reduced_extinction();
             let scatters = c.scatters();
-            // Where the prefactor is 0, any finite values do.
+            // Where the prefactor is 0, the other constants may have any finite value.
             let diffusion = if scatters { c.grosjean_diffusion() * reduced } else { 1.0 };
             let transport = if scatters { c.grosjean_transport() / reduced } else { 0.0 };
             let norm = PI * boundary.exit_norm;

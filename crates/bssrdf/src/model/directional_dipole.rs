@@ -1,8 +1,8 @@
 //! The directional dipole: Frisvad, Hachisuka and Kjeldsen 2014.
 //!
-//! Departures from the paper's print: the mirrored source vector is written out (docs/method.md 5.8), and a cross product
-//! replaces a difference of squares, which rounding makes negative. `S = 0` where nothing scatters, although the
-//! published formula does not tend to zero there (docs/method.md section 8). The model is not reciprocal.
+//! Departures from the paper's print: the mirrored source vector is written out (docs/method.md 5.8), and a cross
+//! product replaces a difference of squares, which rounding makes negative. `S = 0` where nothing scatters, although
+//! the published formula does not tend to zero there (docs/method.md section 8). The model is not reciprocal.
 
 use crate::{
     accuracy::ReflectanceErrors,

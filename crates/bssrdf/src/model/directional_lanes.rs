@@ -1,9 +1,9 @@
 //! The directional dipole on blocks; see [`DirectionalDipole`] for the model.
 //!
-//! The difference of the real and the virtual source is expanded in the difference of their distances (docs/method.md 9.1
-//! to 9.9): far away the two cancel like (h/r)², and float32 has no digits for that. Where `S` passes through zero the
-//! terms cancel in any form, and where `x` is parallel to `n_i` rounding decides the mirror normal. The float64 model
-//! evaluates those few values.
+//! The difference of the real and the virtual source is expanded in the difference of their distances
+//! (docs/method.md 9.1 to 9.9): far away the two cancel like (h/r)², and float32 has no digits for that. Where `S`
+//! passes through zero the terms cancel in any form, and where `x` is parallel to `n_i` rounding decides the mirror
+//! normal. The float64 model evaluates those few values.
 
 mod channel;
 mod geometry;

@@ -63,8 +63,8 @@ impl Model {
         }
     }
 
-    /// Extinction `σ̃_t` of the unscattered light `L_t`, 1/m (docs/method.md 5.11): the delta-Eddington extinction goes with the
-    /// directional dipole, which counts light that is scattered forward as unscattered.
+    /// Extinction `σ̃_t` of the unscattered light `L_t`, 1/m (docs/method.md 5.11): the delta-Eddington extinction goes
+    /// with the directional dipole, which counts light that is scattered forward as unscattered.
     pub fn unscattered_extinction(self, medium: &Medium) -> [f64; 3] {
         medium.channels.map(|c| match self {
             Model::DirectionalDipole => c.sigma_a + (1.0 - c.asymmetry * c.asymmetry) * c.sigma_s,

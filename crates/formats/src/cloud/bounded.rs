@@ -1,7 +1,7 @@
 //! Deserializers for the lists and texts of a cloud's facts that allocate nothing for a length that a file only claims.
 //!
-//! The decoder's limit bounds what it reads, but serde reserves memory for a list, and the decoder for a text, before the first
-//! byte of it is read. Here a list grows with its elements, and a text is copied after all of it was read.
+//! The decoder's limit bounds what it reads, but serde reserves memory for a list, and the decoder for a text, before
+//! the first byte of it is read. Here a list grows with its elements, and a text is copied after all of it was read.
 
 use serde::{
     Deserialize, Deserializer,

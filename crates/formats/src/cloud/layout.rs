@@ -27,8 +27,8 @@ const MAX_SECTIONS: u32 = 64;
 /// Sections start at multiples of this; the tiles start at a page.
 const ALIGN: u64 = 64;
 const PAGE: u64 = 4096;
-/// Bytes of the blocks by which a section is checked. A block fits the cache of a core, so that it is read from memory once for
-/// its checksum and for its values.
+/// Bytes of the blocks by which a section is checked. A block fits the cache of a core, so that it is read from memory
+/// once for its checksum and for its values.
 pub(super) const BLOCK: usize = 1 << 18;
 /// The layout in which elements follow each other.
 const RECORDS: u16 = 1;

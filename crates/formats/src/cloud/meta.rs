@@ -54,10 +54,11 @@ impl Meta {
         [self.samples_drawn.div_ceil(2), self.samples_drawn / 2]
     }
 
-    /// The origin of float32 positions in files for other programs (`P` of an image, `x y z` of a PLY), m. It is 0 and the
-    /// positions are those in the world, unless float32 would round them by more than 1e-5 of the scene's diagonal. Then it is
-    /// the scene's centre rounded to float32. That rounding moves it by 32 diagonals at most, because the import refuses scenes
-    /// that lie farther from the origin, and positions relative to it are rounded by 2e-6 of the diagonal.
+    /// The origin of float32 positions in files for other programs (`P` of an image, `x y z` of a PLY), m. It is 0 and
+    /// the positions are those in the world, unless float32 would round them by more than 1e-5 of the scene's diagonal.
+    /// Then it is the scene's center rounded to float32. That rounding moves it by 32 diagonals at most, because the
+    /// import refuses scenes that lie farther from the origin, and positions relative to it are rounded by 2e-6 of the
+    /// diagonal.
     pub fn exchange_origin_m(&self) -> [f32; 3] {
         const MAX_ROUNDING: f64 = 1e-5;
         let farthest = self.origin_m.iter().fold(0.0, |max: f64, x| max.max(x.abs())) + 0.5 * self.diagonal_m;
@@ -99,8 +100,8 @@ pub struct Options {
     pub environment: String,
 }
 
-/// The number of a cloud among several that are drawn apart and gathered together: `index` of `count`, from 0. Each shard has
-/// random numbers of its own and any number of samples.
+/// The number of a cloud among several that are drawn apart and gathered together: `index` of `count`, from 0. Each
+/// shard has random numbers of its own and any number of samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shard {
     pub index: u32,

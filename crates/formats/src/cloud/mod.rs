@@ -1,7 +1,8 @@
 //! The point cloud: the lit surface samples of phase one.
 //!
-//! The file is mapped into memory as it lies. Other programs can read it, too: the section table states where the sections
-//! start, `tile` and `node` are little-endian arrays of [`Record`] and [`Node`], and `provenance` repeats the facts as JSON.
+//! The file is mapped into memory as it lies. Other programs can read it, too: the section table states where the
+//! sections start, `tile` and `node` are little-endian arrays of [`Record`] and [`Node`], and `provenance` repeats the
+//! facts as JSON.
 
 mod bounded;
 mod layout;
@@ -138,8 +139,8 @@ impl Cloud {
         Ok(Cloud { modified: kind.modified().ok(), file, map, header, meta })
     }
 
-    /// Refuses a file that was modified since it was opened. A file that was replaced keeps its content in the mapping, and a
-    /// new time stamp alone does no harm.
+    /// Refuses a file that was modified since it was opened. A file that was replaced keeps its content in the mapping,
+    /// and a new time stamp alone does no harm.
     pub fn check_unchanged(&self, path: &Path) -> Result<(), Error> {
         let now = self.file.metadata().map_err(|source| Error::read(path, source))?;
         if now.len() == self.bytes() && now.modified().ok() == self.modified {
@@ -180,14 +181,15 @@ impl Cloud {
         self.verify_with(NonZeroUsize::MIN, path)
     }
 
-    /// Checks the checksum of every section, that every sample lies in the scene and has no negative flux, and that every node
-    /// has values in range. It reads the whole file once, at 6 GB/s for each thread where the file is in memory already.
+    /// Checks the checksum of every section, that every sample lies in the scene and has no negative flux, and that
+    /// every node has values in range. It reads the whole file once, at 6 GB/s for each thread where the file is in
+    /// memory already.
     pub fn verify_with(&self, threads: NonZeroUsize, path: &Path) -> Result<(), Error> {
-        let reach = self.meta.diagonal_m.clamp(0.0, MAX_DIAGONAL) as f32;
+        let max_coordinate = self.meta.diagonal_m.clamp(0.0, MAX_DIAGONAL) as f32;
         for section in &self.header.sections {
             let is_good = |block: &[u8]| match section.name {
-                "tile" => records_are_good(bytemuck::cast_slice(block), reach),
-                "node" => nodes_are_good(bytemuck::cast_slice(block), reach),
+                "tile" => records_are_good(bytemuck::cast_slice(block), max_coordinate),
+                "node" => nodes_are_good(bytemuck::cast_slice(block), max_coordinate),
                 _ => true,
             };
             let blocks = self.map[section.offset as usize..section.end() as usize].chunks(BLOCK).collect();
@@ -228,7 +230,8 @@ impl Cloud {
         })
     }
 
-    /// The elements of a section. The header was checked, so that the section exists, lies inside the file and is aligned.
+    /// The elements of a section. The header was checked, so that the section exists, lies inside the file and is
+    /// aligned.
     fn section<T: Pod>(&self, name: &str) -> &[T] {
         let Some(s) = self.header.sections.iter().find(|s| s.name == name) else {
             return &[];
@@ -239,25 +242,29 @@ impl Cloud {
 
 const SIGN: u32 = 1 << 31;
 
-/// True if positions lie within `reach` of the origin along each axis, and fluxes are finite and not negative.
-fn records_are_good(records: &[Record], reach: f32) -> bool {
+/// True if positions lie within `max_coordinate` of the origin along each axis, and fluxes are finite and not negative.
+fn records_are_good(records: &[Record], max_coordinate: f32) -> bool {
     const MASKS: [u32; 8] = [!SIGN, !SIGN, !SIGN, 0, 0, !0, !0, !0];
-    let limits = [reach, reach, reach, f32::MAX, f32::MAX, f32::MAX, f32::MAX, f32::MAX];
+    let limits = [max_coordinate, max_coordinate, max_coordinate, f32::MAX, f32::MAX, f32::MAX, f32::MAX, f32::MAX];
     are_within(bytemuck::cast_slice(records), MASKS, limits)
 }
 
-/// True if centres lie within `reach` of the origin along each axis, no radius or spread exceeds the distance between two such
-/// points, and flux and deviations are finite and not negative.
-fn nodes_are_good(nodes: &[Node], reach: f32) -> bool {
+/// True if centers lie within `max_coordinate` of the origin along each axis, no radius or spread exceeds the distance
+/// between two such points, and flux and deviations are finite and not negative.
+fn nodes_are_good(nodes: &[Node], max_coordinate: f32) -> bool {
     const MASKS: [u32; 8] = [!SIGN, !SIGN, !SIGN, !0, !0, !0, !0, !0];
-    let apart = 4.0 * reach;
-    are_within(bytemuck::cast_slice(nodes), MASKS, [reach, reach, reach, apart, apart, f32::MAX, f32::MAX, 2.0])
+    let apart = 4.0 * max_coordinate;
+    are_within(
+        bytemuck::cast_slice(nodes),
+        MASKS,
+        [max_coordinate, max_coordinate, max_coordinate, apart, apart, f32::MAX, f32::MAX, 2.0],
+    )
 }
 
 /// True if in each row of eight floats, the masked bits of every float are at most those of its limit.
 fn are_within(floats: &[[u32; 8]], masks: [u32; 8], limits: [f32; 8]) -> bool {
-    // As integers, finite floats without their sign come before infinity and NaN, and positive floats before negative ones.
-    // One maximum without branches takes as long as reading the memory.
+    // As integers, finite floats without their sign come before infinity and NaN, and positive floats before negative
+    // ones. One maximum without branches takes as long as reading the memory.
     let max = floats.iter().fold([0; 8], |max: [u32; 8], x| std::array::from_fn(|i| max[i].max(x[i] & masks[i])));
     max.iter().zip(limits).all(|(word, limit)| *word <= limit.to_bits())
 }

@@ -39,23 +39,23 @@ pub type Tile = [Record; TILE];
 
 /// Moments of the samples in 2^k neighboring tiles.
 ///
-/// The tree is a heap: node 1 is the root, and nodes `2i` and `2i + 1` are the children of node `i`. Over `T` tiles, the leaf
-/// of tile `t` is node `2^d + t` with the smallest `2^d ≥ T`. Node 0 is unused; nodes without tiles are zero.
+/// The tree is a heap: node 1 is the root, and nodes `2i` and `2i + 1` are the children of node `i`. Over `T` tiles,
+/// the leaf of tile `t` is node `2^d + t` with the smallest `2^d ≥ T`. Node 0 is unused; nodes without tiles are zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Node {
     /// Mean position, m.
-    pub centre: [f32; 3],
-    /// Root mean square distance from the centre, m.
+    pub center: [f32; 3],
+    /// Root mean square distance from the center, m.
     pub spread: f32,
-    /// Largest distance of a sample from the centre, m.
+    /// Largest distance of a sample from the center, m.
     pub radius: f32,
     /// Sum of the flux over samples and channels, W.
     pub flux: f32,
     /// Standard deviation of the flux relative to its mean.
     pub flux_deviation: f32,
     /// Root mean square deviation of directions and normals from their means.
-    pub turn: f32,
+    pub direction_deviation: f32,
 }
 
 /// Index of the first leaf over `tiles` tiles.

@@ -42,7 +42,8 @@ fn the_exchange_origin_depends_on_distance_over_size() {
         Meta { diagonal_m: scale, origin_m, ..meta(1) }.exchange_origin_m()
     };
     for scale in [1e-9, 1.0, 1e12] {
-        // Half a step of float32 is 1e-5 of the diagonal at a distance of 167.8 diagonals; the scene extends half a diagonal farther.
+        // Half a step of float32 is 1e-5 of the diagonal at a distance of 167.8 diagonals; the scene extends half a
+        // diagonal farther.
         assert_eq!(about(scale, 167.2), [0.0; 3]);
         assert_eq!(about(scale, -167.5)[1], (-167.5 * scale) as f32);
     }
@@ -190,8 +191,8 @@ fn with_sections(path: &Path, sections: &[Section]) {
     fs::OpenOptions::new().write(true).open(path).and_then(|f| f.set_len(length)).expect("files may have holes");
 }
 
-/// Seen to catch: facts of 64 GiB that are read to the end before they are refused; a section that occurs 60 times and is
-/// checked each time.
+/// Seen to catch: facts of 64 GiB that are read to the end before they are refused; a section that occurs 60 times and
+/// is checked each time.
 #[test]
 fn huge_facts_and_duplicate_sections_are_refused_at_once() {
     let folder = tempfile::tempdir().expect("folder");
@@ -237,7 +238,8 @@ fn groups_are_no_larger_than_their_indices() {
     }
 }
 
-/// Seen to catch: a file that is opened before its kind is checked, where a pipe's reader waits for a writer that never comes.
+/// Seen to catch: a file that is opened before its kind is checked, where a pipe's reader waits for a writer that never
+/// comes.
 #[cfg(unix)]
 #[test]
 fn a_pipe_is_no_cloud_and_is_not_waited_for() {
@@ -259,8 +261,14 @@ fn a_pipe_is_no_cloud_and_is_not_waited_for() {
 /// Seen to catch: only the flux is checked.
 #[test]
 fn only_nodes_that_a_tree_can_have_are_good() {
-    let good =
-        Node { centre: [-2.0, 4.0, 0.0], spread: 1.0, radius: 13.0, flux: f32::MAX, flux_deviation: 30.0, turn: 1.4 };
+    let good = Node {
+        center: [-2.0, 4.0, 0.0],
+        spread: 1.0,
+        radius: 13.0,
+        flux: f32::MAX,
+        flux_deviation: 30.0,
+        direction_deviation: 1.4,
+    };
     assert!(nodes_are_good(&[], 4.0) && nodes_are_good(&[Node::default(), good], 4.0));
     let limits = [4.0, 4.0, 4.0, 16.0, 16.0, f32::MAX, f32::MAX, 2.0];
     for word in 0..8 {

@@ -32,7 +32,7 @@ const ALWAYS_ALLOWED: u64 = 64 << 20;
 /// Bytes at the start of a file in which its compression is found for a refusal.
 const START: u64 = 1 << 20;
 
-/// What the header of an OpenEXR file says about its size.
+/// The size of an OpenEXR file as its header states it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Dimensions {
     /// Pixels per row of the data window.
@@ -41,8 +41,8 @@ pub struct Dimensions {
     pub height: usize,
     /// Channels of all parts.
     pub channels: usize,
-    /// Largest memory of [`Image::read`], including the file. Each further thread of [`Image::read_with`] takes 12 MiB or three
-    /// blocks more.
+    /// Largest memory of [`Image::read`], including the file. Each further thread of [`Image::read_with`] takes 12 MiB
+    /// or three blocks more.
     pub reading_bytes: u64,
 }
 
@@ -109,8 +109,8 @@ fn numbers(Chromaticities { red, green, blue, white }: Chromaticities) -> [f32; 
     [red.0, red.1, green.0, green.1, blue.0, blue.1, white.0, white.1]
 }
 
-/// Decodes a file. The blocks are unpacked by threads of this crate and not by the library's pool, so that a program keeps to its
-/// number of threads.
+/// Decodes a file. The blocks are unpacked by threads of this crate and not by the library's pool, so that a program
+/// keeps to its number of threads.
 pub(super) fn decode(bytes: &[u8], threads: NonZeroUsize) -> Result<Image, ImageError> {
     if !bytes.starts_with(&MAGIC) {
         return Err(ImageError::NotOpenExr);
@@ -255,8 +255,8 @@ impl Part {
         })
     }
 
-    /// Stores the samples of a block. Each block may come once: the offsets in the file could name one block twice and another
-    /// never.
+    /// Stores the samples of a block. Each block may come once: the offsets in the file could name one block twice and
+    /// another never.
     fn store(&mut self, block: &UncompressedBlock) -> Result<(), ImageError> {
         let (Vec2(x, y), Vec2(width, height)) = (block.index.pixel_position, block.index.pixel_size);
         let number = y / self.block.1 * self.blocks_per_row + x / self.block.0;
@@ -323,7 +323,8 @@ fn convert(kind: SampleType, line: &[u8], target: &mut [f32]) -> bool {
             for (value, bytes) in target.iter_mut().zip(line.as_chunks().0) {
                 let whole = u32::from_ne_bytes(*bytes);
                 *value = whole as f32;
-                // The comparison is in float64, which represents both: in uint32 the largest value would saturate and look equal.
+                // The comparison is in float64, which represents both: in uint32 the largest value would saturate and
+                // look equal.
                 if f64::from(*value) != f64::from(whole) {
                     return false;
                 }

@@ -19,7 +19,8 @@ use super::header;
 use super::parallel::parallel;
 use super::types::{Attribute, Channel, Image, ImageError, MAX_SAMPLES, Window};
 
-/// Blocks of 16 rows that a thread compresses at a time: enough to outweigh the start of the thread, and few enough for memory.
+/// Blocks of 16 rows that a thread compresses at a time: enough to outweigh the start of the thread, and few enough for
+/// memory.
 const BLOCKS_PER_THREAD: usize = 4;
 /// Longest name of a channel or attribute, bytes (OpenEXR file layout, "long names").
 const MAX_NAME: usize = 255;

@@ -1,4 +1,5 @@
-//! The attributes of an OpenEXR header as bytes. Each is a name, a zero, a type, a zero, a size and a value; a zero ends the list.
+//! The attributes of an OpenEXR header as bytes. Each is a name, a zero, a type, a zero, a size and a value; a zero
+//! ends the list.
 
 use super::types::{Attribute, ImageError};
 
@@ -90,8 +91,8 @@ struct HeaderField<'a> {
 
 /// Sorts the attributes of a file of one part by name.
 ///
-/// The exr crate keeps custom attributes in a hash map, so that their order changes from run to run. Sorting keeps the length of
-/// the header, and the offsets of the pixels stay valid.
+/// The exr crate keeps custom attributes in a hash map, so that their order changes from run to run. Sorting keeps the
+/// length of the header, and the offsets of the pixels stay valid.
 pub(super) fn sort(bytes: &mut [u8]) -> Result<(), ImageError> {
     let malformed = || ImageError::Unwritable("the header came out malformed".to_owned());
     let (mut entries, rest) = split(bytes.get(PREAMBLE..).ok_or_else(malformed)?).ok_or_else(malformed)?;
@@ -102,8 +103,8 @@ pub(super) fn sort(bytes: &mut [u8]) -> Result<(), ImageError> {
     Ok(())
 }
 
-/// The attributes of all parts, without those of the layout. Where a part disagrees with the parts before it, its attribute is
-/// added with the name `... of part 2`.
+/// The attributes of all parts, without those of the layout. Where a part disagrees with the parts before it, its
+/// attribute is added with the name `... of part 2`.
 pub(super) fn attributes(bytes: &[u8]) -> Option<std::collections::BTreeMap<String, Attribute>> {
     let several = bytes.get(5)? & SEVERAL_PARTS != 0;
     let mut found = std::collections::BTreeMap::new();

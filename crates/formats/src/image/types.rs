@@ -77,7 +77,7 @@ pub enum ImageError {
     File {
         /// The image.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The fault.
         source: Box<ImageError>,
     },
     /// The operating system refused.

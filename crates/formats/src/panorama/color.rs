@@ -25,8 +25,8 @@ const BRADFORD: DMat3 = DMat3::from_cols_array(&[
     -0.1614, 0.0367, 1.0296,
 ]);
 
-/// The matrix to linear Rec. 709 from the color space with these CIE x and y of red, green, blue and white; none if that is
-/// Rec. 709.
+/// The matrix to linear Rec. 709 from the color space with these CIE x and y of red, green, blue and white; none if
+/// that is Rec. 709.
 pub(super) fn to_rec_709(stated: [f64; 8]) -> Result<Option<DMat3>, String> {
     if stated.iter().zip(REC_709).all(|(a, b)| (a - b).abs() < TOLERANCE) {
         return Ok(None);
@@ -52,8 +52,8 @@ fn to_xyz([rx, ry, gx, gy, bx, by, wx, wy]: [f64; 8]) -> Option<(DMat3, DVec3)> 
     usable.then(|| (primaries * DMat3::from_diagonal(amounts), white))
 }
 
-/// Converts all pixels. A color outside the gamut of Rec. 709 has a negative channel, which becomes 0 because a density is made
-/// of the radiance; a warning states how much the light of the map changes.
+/// Converts all pixels. A color outside the gamut of Rec. 709 has a negative channel, which becomes 0 because a density
+/// is made of the radiance; a warning states how much the light of the map changes.
 pub(super) fn convert(picture: &mut Panorama, matrix: DMat3) {
     let (mut exact_mean, mut mean, mut outside) = (DVec3::ZERO, DVec3::ZERO, 0_u64);
     let (width, height) = (picture.width, picture.height);

@@ -11,7 +11,7 @@ pub struct Panorama {
     pub height: usize,
     /// Red, green and blue, row after row from the top.
     pub pixels: Vec<[f32; 3]>,
-    /// What differs from the numbers of the file, a sentence each.
+    /// The changes to the numbers of the file, a sentence each.
     pub warnings: Vec<String>,
 }
 

@@ -1,5 +1,5 @@
-//! Decodes Radiance HDR (Ward 1991, "Real pixels", Graphics Gems II; and the picture format in the Radiance reference manual).
-//! The bytes are not trusted.
+//! Decodes Radiance HDR (Ward 1991, "Real pixels", Graphics Gems II; and the picture format in the Radiance reference
+//! manual). The bytes are not trusted.
 
 use super::{
     color,
@@ -68,8 +68,8 @@ struct Header {
     matrix: Option<DMat3>,
 }
 
-/// Reads the lines before the resolution. A line that begins with a space or tab describes a picture from which this one was
-/// made, and is skipped.
+/// Reads the lines before the resolution. A line that begins with a space or tab describes a picture from which this
+/// one was made, and is skipped.
 fn header(reader: &mut Reader) -> Result<Header, String> {
     let mut header = Header { gain: [1.0; 3], matrix: None };
     loop {

@@ -62,8 +62,8 @@ fn decoded(image: &Image) -> Result<Panorama, String> {
     Panorama::decode(&image.encode().expect("encodes"))
 }
 
-/// Seen to catch: the data window stretched over the sphere; the offset of one window taken for that of the other; rows taken
-/// for columns.
+/// Seen to catch: the data window stretched over the sphere; the offset of one window taken for that of the other; rows
+/// taken for columns.
 #[test]
 fn the_display_window_is_the_sphere() {
     let window = |x: i32, y: i32, width: usize, height: usize| Window { position: [x, y], size: [width, height] };

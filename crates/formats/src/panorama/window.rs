@@ -1,5 +1,5 @@
-//! The display window of an OpenEXR picture is the whole sphere: pixels of the data window outside it are dropped, and the rest
-//! of it is black.
+//! The display window of an OpenEXR picture is the whole sphere: pixels of the data window outside it are dropped, and
+//! the rest of it is black.
 
 use crate::image::decode::Outline;
 

@@ -12,8 +12,8 @@ pub(super) const MAX_TESTS: usize = 1 << 26;
 /// Cost of clipping a triangle, in tests of depth.
 const COST_OF_CLIPPING: usize = 4;
 
-/// Whether the camera sees anything nearer than the first plane, and farther than the second, m. `bounds` are those of the mesh,
-/// and `room` is the number of tests that are left.
+/// Whether the camera sees anything nearer than the first plane, and farther than the second, m. `bounds` are those of
+/// the mesh, and `room` is the number of tests that are left.
 pub(super) fn cuts(
     (mesh, bounds): (&Mesh, (DVec3, DVec3)),
     origin: DVec3,

@@ -3,10 +3,10 @@
 use crate::{material::Material, mesh::Mesh};
 use std::collections::BTreeMap;
 
-/// Drops triangles with the three positions of an earlier one of the same material, in any winding. Returns their number by
-/// material.
+/// Drops triangles with the three positions of an earlier one of the same material, in any winding. Returns their
+/// number by material.
 ///
-/// A triangle of a one-sided emitter keeps a copy with the opposite winding: some lamps with two sides are modelled so.
+/// A triangle of a one-sided emitter keeps a copy with the opposite winding: some lamps with two sides are modeled so.
 pub(super) fn drop_duplicates(mesh: &mut Mesh, materials: &[Material]) -> BTreeMap<u16, u64> {
     let mut dropped = BTreeMap::new();
     let later = later_copies(mesh, |material| {
@@ -36,9 +36,9 @@ struct Key {
     turned: bool,
 }
 
-/// Indices of the triangles that repeat an earlier one, ascending. Sorts a word for each triangle: 32 bits of hash above its
-/// index. Triangles of equal hash are then compared with the first of them, in the order of the mesh for the sake of the cache. A
-/// few in a million share only the hash; they are sorted by their keys.
+/// Indices of the triangles that repeat an earlier one, ascending. Sorts a word for each triangle: 32 bits of hash
+/// above its index. Triangles of equal hash are then compared with the first of them, in the order of the mesh for the
+/// sake of the cache. A few in a million share only the hash; they are sorted by their keys.
 fn later_copies(mesh: &Mesh, has_sides: impl Fn(u16) -> bool) -> Vec<u32> {
     let word = |high: u64, low: u32| high << 32 | u64::from(low);
     let mut words: Vec<u64> = (0..mesh.triangles.len() as u32).map(|k| word(hash(mesh, k), k)).collect();

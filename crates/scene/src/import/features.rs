@@ -18,7 +18,8 @@ const SUPPORTED: &[&str] = &[
     "KHR_texture_transform",
 ];
 
-/// Extensions that change the geometry, with the way out. Without them the image would be wrong, whether they are required or not.
+/// Extensions that change the geometry, with the way out. Without them the image would be wrong, whether they are
+/// required or not.
 const GEOMETRY: &[(&str, &str)] = &[
     ("KHR_draco_mesh_compression", "export again without compression"),
     ("EXT_meshopt_compression", "export again without compression"),
@@ -44,8 +45,8 @@ pub(super) fn check(document: &Document) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Unknown extensions that the file declares but has no object of, so that their effect is unknown. Others are named where their
-/// objects are.
+/// Unknown extensions that the file declares but has no object of, so that their effect is unknown. Others are named
+/// where their objects are.
 pub(super) fn undeclared_effects(document: &Document) -> Vec<Unhonoured> {
     let declared: BTreeSet<&String> = document.root.extensions_used.iter().collect();
     let means_something = |name: &str| {
@@ -99,8 +100,8 @@ pub(super) fn check_nodes(root: &json::Root, nodes: &[SceneNode], warnings: &mut
     Ok(())
 }
 
-/// For each node, whether it or a descendant carries a mesh. Nodes outside the scene need not form a tree, so that each is visited
-/// once.
+/// For each node, whether it or a descendant carries a mesh. Nodes outside the scene need not form a tree, so that each
+/// is visited once.
 fn above_meshes(root: &json::Root) -> Vec<bool> {
     let mut parents = vec![Vec::new(); root.nodes.len()];
     for (k, node) in root.nodes.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Joins all primitives to one mesh in float32, relative to its centre.
+//! Joins all primitives to one mesh in float32, relative to its center.
 
 use super::{
     accessor::CheckedAccessor,
@@ -11,8 +11,8 @@ use glam::{DMat3, DVec3, Vec3};
 use memmap2::MmapMut;
 use std::collections::BTreeMap;
 
-/// Limits with all instances. They are checked before memory is allocated, because a small file can have many instances of a
-/// large mesh.
+/// Limits with all instances. They are checked before memory is allocated, because a small file can have many instances
+/// of a large mesh.
 const MAX_TRIANGLES: u64 = 1 << 26;
 const MAX_VERTICES: u64 = 1 << 27;
 const MAX_PRIMITIVES: u64 = 1 << 22;
@@ -52,7 +52,7 @@ pub(super) fn join(instances: &[Instance]) -> Result<Geometry, Refusal> {
 
 #[derive(Default)]
 struct Builder {
-    /// World positions, m, in float64 until the centre is known.
+    /// World positions, m, in float64 until the center is known.
     positions: Vec<DVec3>,
     normals: Vec<Vec3>,
     triangles: Vec<Triangle>,
@@ -146,8 +146,8 @@ impl Builder {
         Ok(determinant < 0.0)
     }
 
-    /// Centre of the box around all triangles.
-    fn centre(&self) -> Result<DVec3, Refusal> {
+    /// Center of the box around all triangles.
+    fn center(&self) -> Result<DVec3, Refusal> {
         let corners = self.triangles.iter().flat_map(|t| t.vertices.map(|i| self.positions[i as usize]));
         let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let (low, high) = corners.fold(start, |(low, high), p| (low.min(p), high.max(p)));
@@ -155,13 +155,13 @@ impl Builder {
         if size.length() > MAX_DIAGONAL {
             return Err(Refusal::TooLarge);
         }
-        let centre = low + size * 0.5;
+        let center = low + size * 0.5;
         // Beyond this distance, float64 resolves less than the float32 of relative positions.
-        if size != DVec3::ZERO && centre.length() * f64::EPSILON > size.length() * f64::from(f32::EPSILON) {
+        if size != DVec3::ZERO && center.length() * f64::EPSILON > size.length() * f64::from(f32::EPSILON) {
             let way_out = "move it to the origin and export again";
-            return Err(format!("the mesh is too far from the origin for its size, at {centre}; {way_out}").into());
+            return Err(format!("the mesh is too far from the origin for its size, at {center}; {way_out}").into());
         }
-        Ok(centre)
+        Ok(center)
     }
 
     /// Positions relative to an origin, m, in float32.
@@ -173,9 +173,9 @@ impl Builder {
         Ok(positions)
     }
 
-    /// Drops triangles without area, and makes positions relative to the centre of the rest. Triangles that have no area in
-    /// float32 relative to their own centre are dropped first: a needle to a stray vertex far away would move the centre of all
-    /// and cost the others their precision.
+    /// Drops triangles without area, and makes positions relative to the center of the rest. Triangles that have no
+    /// area in float32 relative to their own center are dropped first: a needle to a stray vertex far away would move
+    /// the center of all and cost the others their precision.
     fn finish(mut self) -> Result<Geometry, Refusal> {
         if self.triangles.is_empty() {
             return Err(Refusal::Invalid("no triangles: nothing to light or to see".into()));
@@ -187,13 +187,13 @@ impl Builder {
             |corners| area_alone(corners.map(|i| self.positions[i as usize])),
             &mut degenerate,
         );
-        // Dropping a triangle can move the centre, so this repeats until none is dropped. A dropped triangle is 2^24 times smaller
-        // than the mesh, so that there are few iterations.
+        // Dropping a triangle can move the center, so this repeats until none is dropped. A dropped triangle is 2^24
+        // times smaller than the mesh, so that there are few iterations.
         let (origin, positions) = loop {
             if self.triangles.is_empty() {
                 return Err(format!("all {count} triangles have no area (scale 0?)").into());
             }
-            let origin = self.centre()?;
+            let origin = self.center()?;
             let (positions, before) = (self.relative_to(origin)?, self.triangles.len());
             let rounded_area = |corners: [u32; 3]| area(corners.map(|i| positions[i as usize].as_dvec3()));
             drop_degenerate(&mut self.triangles, rounded_area, &mut rounded);
@@ -220,10 +220,10 @@ fn drop_degenerate(triangles: &mut Vec<Triangle>, area: impl Fn([u32; 3]) -> f64
     });
 }
 
-/// Area of a triangle in a scene of its own: the smaller of those in float64 and, relative to its centre, in float32.
+/// Area of a triangle in a scene of its own: the smaller of those in float64 and, relative to its center, in float32.
 fn area_alone(corners: [DVec3; 3]) -> f64 {
     let [a, b, c] = corners;
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-    let centre = low + (high - low) * 0.5;
-    area(corners).min(area(corners.map(|p| (p - centre).as_vec3().as_dvec3())))
+    let center = low + (high - low) * 0.5;
+    area(corners).min(area(corners.map(|p| (p - center).as_vec3().as_dvec3())))
 }

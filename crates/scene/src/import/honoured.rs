@@ -1,7 +1,8 @@
-//! The table of glTF properties and how each is honoured. Properties outside the table are not honoured, and a warning names them.
+//! The table of glTF properties and how each is honoured. Properties outside the table are not honoured, and a warning
+//! names them.
 //!
-//! A path starts at an element of a list of the file. `[]` stands for any index, and a final `*` for any ending. `name`, `extras`
-//! and metadata have no effect anywhere.
+//! A path starts at an element of a list of the file. `[]` stands for any index, and a final `*` for any ending.
+//! `name`, `extras` and metadata have no effect anywhere.
 
 /// How a property is honoured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +31,8 @@ pub(super) struct Row {
     pub translucent: Fate,
 }
 
-/// Lists of the file whose elements have properties. An element counts only if the image shows it or it lights the scene.
+/// Lists of the file whose elements have properties. An element counts only if the image shows it or it lights the
+/// scene.
 pub(super) const LISTS: &[&str] =
     &[MATERIALS, TEXTURES, SAMPLERS, IMAGES, MESHES, NODES, LIGHTS, CAMERAS, SCENES, ACCESSORS, VIEWS, BUFFERS];
 

@@ -1,5 +1,5 @@
-//! Checks that a JPEG file is complete: decoders silently pad missing data with gray. All coded coefficients of every scan are
-//! decoded, and their values are dropped (ITU-T T.81, annexes B, F and G).
+//! Checks that a JPEG file is complete: decoders silently pad missing data with gray. All coded coefficients of every
+//! scan are decoded, and their values are dropped (ITU-T T.81, annexes B, F and G).
 
 use huffman::{Bits, DAMAGED, EARLY, Table, next_marker};
 use std::array;

@@ -62,8 +62,8 @@ impl Pose<'_> {
     }
 }
 
-/// The directional, point and spot lights of the nodes, with positions relative to `origin`. A light shines along the −Z axis of
-/// its node, whose scale does not matter.
+/// The directional, point and spot lights of the nodes, with positions relative to `origin`. A light shines along the
+/// −Z axis of its node, whose scale does not matter.
 pub(super) fn punctual(
     root: &Root,
     nodes: &[SceneNode],

@@ -1,8 +1,8 @@
 //! The import of glTF as a [`Scene`].
 //!
-//! The container, all indices, ranges and component types are checked here: the validation of the gltf crate panics on some
-//! files and is not used. Node transforms are read in float64, and positions are rounded to float32 after they are made relative
-//! to the centre of the mesh.
+//! The container, all indices, ranges and component types are checked here: the validation of the gltf crate panics on
+//! some files and is not used. Node transforms are read in float64, and positions are rounded to float32 after they are
+//! made relative to the center of the mesh.
 
 mod accessor;
 mod cameras;

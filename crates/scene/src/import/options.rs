@@ -11,8 +11,8 @@ pub struct ImportOptions {
     pub emission_unit: LightUnit,
 }
 
-/// The unit of the lights or of the emitting materials. The two may differ: Blender multiplies its lights by 683 lm/W, and writes
-/// its emission as it is.
+/// The unit of the lights or of the emitting materials. The two may differ: Blender multiplies its lights by 683 lm/W,
+/// and writes its emission as it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LightUnit {
     /// W/m², W/sr, W/(m² sr).

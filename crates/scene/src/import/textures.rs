@@ -90,8 +90,8 @@ impl<'a> Textures<'a> {
         let picture = match (&image.uri, &image.buffer_view) {
             (None, Some(view)) => {
                 let bytes = self.document.view(view)?;
-                // Pictures that do not overlap never exceed this. A short file could name one picture many times, each time
-                // a byte longer.
+                // Pictures that do not overlap never exceed this. A short file could name one picture many times, each
+                // time a byte longer.
                 let left = self.bytes_left.checked_sub(bytes.len() as u64);
                 self.bytes_left = left.ok_or("the bufferViews of the images overlap; export them apart")?;
                 decode(bytes, self.texels_left)?
@@ -114,8 +114,8 @@ fn name_of(index: usize, image: &json::Image) -> String {
     }
 }
 
-/// A PNG without the chunks of compressed text and profiles, which are not used and may be a thousand times as long when
-/// decompressed.
+/// A PNG without the chunks of compressed text and profiles, which are not used and may be a thousand times as long
+/// when decompressed.
 fn without_compressed_chunks(bytes: &[u8]) -> Cow<'_, [u8]> {
     const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
     const PACKED: [&[u8]; 3] = [b"iCCP", b"zTXt", b"iTXt"];
@@ -140,8 +140,8 @@ fn without_compressed_chunks(bytes: &[u8]) -> Cow<'_, [u8]> {
     kept
 }
 
-/// Decodes a picture of at most `room` texels. Messages do not repeat those of the decoder, which show bytes, because a link can
-/// make a picture of any file.
+/// Decodes a picture of at most `room` texels. Messages do not repeat those of the decoder, which show bytes, because a
+/// link can make a picture of any file.
 fn decode(bytes: &[u8], room: u64) -> Result<Picture, Fault> {
     const WAY_OUT: &str = "export it as PNG or JPEG";
     let fault = |_| format!("the PNG or JPEG picture is damaged or of a kind that is not supported; {WAY_OUT} again");

@@ -36,8 +36,8 @@ impl Emitter {
     }
 }
 
-/// All triangles of one emitting material (KHR_materials_emissive_strength): a uniform point on them lights a surface by
-/// `E = L (n·ω)(n_l·−ω) A/d²`.
+/// All triangles of one emitting material (KHR_materials_emissive_strength): a uniform point on them lights a surface
+/// by `E = L (n·ω)(n_l·−ω) A/d²`.
 #[derive(Clone, Debug)]
 pub struct AreaLight {
     /// Index of the material.

@@ -104,7 +104,8 @@ impl LightSphere {
         [cosine, max_cosine].map(|c| (self.intensity * c / square).min(f64::MAX / 1e9))
     }
 
-    /// Whether points within `radius` of the one at `-offset` from the center may lie in the cone of a light of the sphere.
+    /// Whether points within `radius` of the one at `-offset` from the center may lie in the cone of a light of the
+    /// sphere.
     fn shines_towards(&self, offset: DVec3, length: f64, radius: f64) -> bool {
         if length <= radius {
             return true;

@@ -1,10 +1,10 @@
 //! The choice of one light, in a time that does not depend on the number of lights with bounds. Distant lights are
 //! weighed one by one.
 //!
-//! Nearby points share one list: lights with their importance at the center of the points, and nodes of the tree instead
-//! of lights of little importance. A few candidates are drawn from the list, and one of them is chosen by its importance
-//! at the point itself. Near and distant lights are weighed anew at every point. Every light that can reach a point has a
-//! chance there.
+//! Nearby points share one list: lights with their importance at the center of the points, and nodes of the tree
+//! instead of lights of little importance. A few candidates are drawn from the list, and one of them is chosen by its
+//! importance at the point itself. Near and distant lights are weighed anew at every point. Every light that can reach
+//! a point has a chance there.
 
 use super::{
     contract::Light,
@@ -38,8 +38,8 @@ pub struct Pick<'a> {
     /// Its index in the list that the tree was made of.
     pub index: usize,
     pub light: &'a dyn Light,
-    /// What its irradiance is divided by to stand for that of all lights: the probability of its choice or, where
-    /// candidates were compared, an estimate of it that keeps the mean.
+    /// Divisor of its irradiance with which it represents all lights: the probability of its choice or, where
+    /// candidates were compared, an estimate of that probability that keeps the mean.
     pub share: f64,
 }
 
@@ -96,8 +96,8 @@ impl<'t, 'a> LightChoice<'t, 'a> {
         closed
     }
 
-    /// Picks a light, nearly in proportion to its share of the irradiance at the point; none if no light that the uniform
-    /// number `xi` leads to reaches the point.
+    /// Picks a light, nearly in proportion to its share of the irradiance at the point; none if no light that the
+    /// uniform number `xi` leads to reaches the point.
     pub fn pick(&self, at: &SurfacePoint, mut xi: f64) -> Option<Pick<'a>> {
         let importance = |k: &u32| self.tree.lights[*k as usize].importance(at);
         let single: f64 = self.single.iter().map(importance).sum();
@@ -130,8 +130,8 @@ impl<'t, 'a> LightChoice<'t, 'a> {
         Pick { index, light: self.tree.lights[index], share }
     }
 
-    /// Picks one light of the shared list: candidates are drawn by their importance at the center of the receiver, and one
-    /// of them is chosen by its importance at the point (resampled importance sampling, Talbot et al. 2005).
+    /// Picks one light of the shared list: candidates are drawn by their importance at the center of the receiver, and
+    /// one of them is chosen by its importance at the point (resampled importance sampling, Talbot et al. 2005).
     fn resample(&self, at: &SurfacePoint, xi: f64, probability: f64) -> Option<Pick<'a>> {
         let count = CANDIDATES as f64;
         let (mut low, mut high) = (0.0f64, 1.0f64);

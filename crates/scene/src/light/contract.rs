@@ -1,4 +1,4 @@
-//! What every light must say of itself.
+//! The contract of all lights.
 
 use super::bounds::LightBounds;
 use crate::mesh::SurfacePoint;
@@ -18,23 +18,23 @@ pub struct Illumination {
 
 /// A source of light. No method has a default: a light that leaves one out does not compile.
 pub trait Light: Send + Sync {
-    /// The weight by which one light of many is chosen, W/m²: near the unshadowed irradiance at `at`, positive wherever the
-    /// light could reach that point, and 0 only where it certainly cannot.
+    /// The weight by which one light of many is chosen, W/m²: near the unshadowed irradiance at `at`, positive wherever
+    /// the light could reach that point, and 0 only where it certainly cannot.
     fn importance(&self, at: &SurfacePoint) -> f64;
 
-    /// Where the light is and what it can send; none if it is infinitely far away.
+    /// Bounds of the light's position and emission; none if it is infinitely far away.
     fn bounds(&self) -> Option<LightBounds>;
 
-    /// Samples the light that arrives at `at`, from the direction that the uniform numbers `xi` choose; none if it arrives
-    /// from below the surface.
+    /// Samples the light that arrives at `at`, from the direction that the uniform numbers `xi` choose; none if it
+    /// arrives from below the surface.
     fn illuminate(&self, at: &SurfacePoint, xi: [f64; 2]) -> Option<Illumination>;
 
-    /// Density with which [`Light::illuminate`] chooses `direction` at `at`, 1/sr; 0 if the light has a single direction
-    /// there (a delta distribution).
+    /// Density with which [`Light::illuminate`] chooses `direction` at `at`, 1/sr; 0 if the light has a single
+    /// direction there (a delta distribution).
     fn pdf_solid_angle(&self, at: &SurfacePoint, direction: DVec3) -> f64;
 
-    /// Emitted radiance that arrives at `position` from `direction` if nothing is in the way, W/(m² sr); 0 if the light has
-    /// a single direction there.
+    /// Emitted radiance that arrives at `position` from `direction` if nothing is in the way, W/(m² sr); 0 if the light
+    /// has a single direction there.
     fn radiance(&self, position: DVec3, direction: DVec3) -> DVec3;
 
     /// Hashes everything that defines the light: a cloud is kept as long as this stays the same.

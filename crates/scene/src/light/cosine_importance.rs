@@ -1,4 +1,5 @@
-//! What a surface sees of an environment, by its normal: the light of each part of the sky times a cosine.
+//! The light that a surface receives from each part of an environment, by its normal: the light of each part times a
+//! cosine.
 
 use super::{direction_cone::DirectionCone, hierarchical_sampler::HierarchicalSampler2d};
 use glam::DVec3;
@@ -21,7 +22,8 @@ pub(super) struct CosineImportanceTable {
 const MIN_SHARE: f64 = 0.5;
 
 impl CosineImportanceTable {
-    /// The table of a map whose pixels have this `power`. Its tiles are the cells of the finest level with few enough cells.
+    /// The table of a map whose pixels have this `power`. Its tiles are the cells of the finest level with few enough
+    /// cells.
     pub fn new(power: &HierarchicalSampler2d) -> CosineImportanceTable {
         let level = power.level_within(TILE_COLUMNS, TILE_ROWS);
         let (columns, rows) = power.size(level);
@@ -107,7 +109,7 @@ mod tests {
         DVec3::new(radius * cosine, radius * sine, z)
     }
 
-    /// Planted: sides of the cube mixed up, columns of a partial last tile taken for whole ones.
+    /// Seen to catch: sides of the cube mixed up, columns of a partial last tile taken for whole ones.
     #[test]
     fn normal_bins_and_tiles_lie_within_their_cones() {
         let stream = Stream::new(3, Purpose::Surface);

@@ -9,7 +9,7 @@ use super::{
 use crate::{mesh::SurfacePoint, rays::Rays};
 use glam::DVec3;
 
-/// What became of one attempt to light a point.
+/// The outcome of one attempt to light a point.
 #[derive(Clone, Copy, Debug)]
 pub enum Lit {
     /// Direction towards the light, and its irradiance over the share of the choice, W/m².
@@ -20,8 +20,8 @@ pub enum Lit {
     Shadowed,
 }
 
-/// Picks one light by importance, then a direction, and tests whether it is visible (method.md 6.4). Light must come
-/// from above the triangle, whatever normal the cosine is taken with. `shadow_rays` counts the rays traced.
+/// Picks one light by importance, then a direction, and tests whether it is visible (docs/method.md 6.4). Light must
+/// come from above the triangle, whatever normal the cosine is taken with. `shadow_rays` counts the rays traced.
 pub fn light_at(choice: &LightChoice, rays: &Rays, at: &SurfacePoint, xi: [f64; 3], shadow_rays: &mut u64) -> Lit {
     let Some(Pick { light, share, .. }) = choice.pick(at, xi[0]) else {
         return Lit::FacingAway;
@@ -39,8 +39,8 @@ pub fn light_at(choice: &LightChoice, rays: &Rays, at: &SurfacePoint, xi: [f64; 
 /// Number of nodes in the list from which the lights of a single point are picked.
 const NODES_PER_POINT: usize = 128;
 
-/// Irradiance for surfaces that are lit once a path. Up to `MAX_FLAT` lights are all sampled, one direction each, since the
-/// choice of one would be noise; of more, as many are picked. Each call of `xi` gives two uniform numbers.
+/// Irradiance for surfaces that are lit once a path. Up to `MAX_FLAT` lights are all sampled, one direction each, since
+/// the choice of one would be noise; of more, as many are picked. Each call of `xi` gives two uniform numbers.
 pub fn all_light_at(
     lights: &LightTree,
     rays: &Rays,

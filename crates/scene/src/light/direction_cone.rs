@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 pub struct DirectionCone {
     /// Unit vector.
     pub axis: DVec3,
-    /// rad, 0 to π.
+    /// Half of the opening angle, rad, 0 to π.
     pub half_angle: f64,
 }
 
@@ -39,8 +39,8 @@ impl DirectionCone {
         DirectionCone { axis: (wide.axis * cosine + across * sine).normalize(), half_angle }
     }
 
-    /// An upper bound of the cosine between a vector of this cone and one of the other, 0 if they are all perpendicular or
-    /// farther apart.
+    /// An upper bound of the cosine between a vector of this cone and one of the other, 0 if they are all perpendicular
+    /// or farther apart.
     pub fn max_cosine(&self, other: &DirectionCone) -> f64 {
         let between = self.axis.angle_between(other.axis);
         // Rounding must not hide what lies on the horizon.
@@ -59,7 +59,7 @@ mod tests {
         DVec3::new(at(0), at(1), at(2)).normalize()
     }
 
-    /// Planted: the wider cone returned when the other sticks out; half of the sum of the angles alone.
+    /// Seen to catch: the wider cone returned when the other sticks out; half of the sum of the angles alone.
     #[test]
     fn joined_cones_hold_both() {
         let stream = Stream::new(5, Purpose::Surface);
@@ -80,7 +80,7 @@ mod tests {
         assert_eq!(a.join(b).half_angle, PI);
     }
 
-    /// The largest cosine is an upper bound, and a close one. Planted: angles added with the wrong sign.
+    /// The largest cosine is an upper bound, and a close one. Seen to catch: angles added with the wrong sign.
     #[test]
     fn cosines_are_bounded_from_above() {
         let stream = Stream::new(4, Purpose::Surface);

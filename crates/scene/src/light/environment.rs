@@ -26,7 +26,7 @@ impl Environment {
         }
     }
 
-    /// What distinguishes it from others, as text: `R,G,B`, or a digest of the map's pixels with its scale and rotation.
+    /// Its identity as text: `R,G,B`, or a digest of the map's pixels with its scale and rotation.
     pub fn identity(&self) -> String {
         match self {
             Environment::Constant(DVec3 { x, y, z }) => format!("{x},{y},{z}"),
@@ -60,7 +60,7 @@ impl Light for Environment {
         }
     }
 
-    /// A constant environment gives cosine-distributed directions, `E = V π L` (method.md 6.4).
+    /// A constant environment gives cosine-distributed directions, `E = V π L` (docs/method.md 6.4).
     fn illuminate(&self, at: &SurfacePoint, xi: [f64; 2]) -> Option<Illumination> {
         match self {
             Environment::Constant(radiance) => Some(Illumination {

@@ -1,8 +1,8 @@
 //! Light from all around by a picture in the equirectangular projection.
 //!
-//! Seen from inside with +Y up, the middle of the picture lies in direction +X, and its columns run to the right, towards
-//! +Z; the top row surrounds +Y. A rotation turns it about +Y, counter-clockwise seen from above. Radiance is constant over
-//! each pixel: directions are chosen by exactly what a ray sees.
+//! Seen from inside with +Y up, the middle of the picture lies in direction +X, and its columns run to the right,
+//! towards +Z; the top row surrounds +Y. A rotation turns it about +Y, counter-clockwise seen from above. Radiance is
+//! constant over each pixel: directions are chosen by exactly what a ray sees.
 
 use super::{
     contract::{Illumination, channel_sum},
@@ -27,7 +27,8 @@ pub enum MapError {
     Size { width: usize, height: usize },
 }
 
-/// A picture of distant light. Its directions are chosen in proportion to radiance, solid angle and the cosine at the surface.
+/// A picture of distant light. Its directions are chosen in proportion to radiance, solid angle and the cosine at the
+/// surface.
 #[derive(Debug)]
 pub struct EnvironmentMap {
     width: usize,
@@ -45,8 +46,8 @@ pub struct EnvironmentMap {
 }
 
 impl EnvironmentMap {
-    /// Bytes that a map of this width and height takes: 12 for a pixel, 4 for its weight, and a third of 4 for the coarser
-    /// levels, each of which has a quarter of the cells of the level below.
+    /// Bytes that a map of this width and height takes: 12 for a pixel, 4 for its weight, and a third of 4 for the
+    /// coarser levels, each of which has a quarter of the cells of the level below.
     pub fn bytes((width, height): (usize, usize)) -> u64 {
         (width as u64).saturating_mul(height as u64).saturating_mul(18)
     }

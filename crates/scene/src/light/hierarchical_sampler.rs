@@ -3,8 +3,8 @@
 
 use crate::random::BELOW_ONE;
 
-/// Sums of weights over squares of 1, 2, 4, ... cells a side, the finest level first. Weights are relative to each other,
-/// and the probability of a cell is computed from the stored sums: their rounding makes no error in a density.
+/// Sums of weights over squares of 1, 2, 4, ... cells a side, the finest level first. Weights are relative to each
+/// other, and the probability of a cell is computed from the stored sums: their rounding makes no error in a density.
 #[derive(Debug)]
 pub(super) struct HierarchicalSampler2d {
     levels: Vec<Level>,
@@ -118,8 +118,8 @@ impl HierarchicalSampler2d {
     }
 }
 
-/// True if the uniform number `xi` chooses the second of two weights. It becomes uniform again within the chosen one, whose
-/// share `probability` is multiplied by.
+/// True if the uniform number `xi` chooses the second of two weights. It becomes uniform again within the chosen one,
+/// whose share `probability` is multiplied by.
 pub(super) fn split(xi: &mut f64, first: f64, second: f64, probability: &mut f64) -> bool {
     let total = first + second;
     let target = *xi * total;
@@ -136,8 +136,9 @@ mod tests {
     use super::*;
 
     /// Every cell is chosen as often as its weight says, by its own probability, and the numbers left are uniform.
-    /// Planted: halves taken in the wrong order, a
-    /// probability of one direction only, a border cell lost, a parent's cell divided by the sum of other cells.
+    ///
+    /// Seen to catch: halves taken in the wrong order, a probability of one direction only, a border cell lost, a
+    /// parent's cell divided by the sum of other cells.
     #[test]
     fn cells_are_chosen_in_proportion_to_their_weights() {
         let weights = [[1.0, 0.0, 3.0, 2.0, 4.0], [0.0, 0.0, 0.5, 1.5, 1e-60], [2.0, 6.0, 0.0, 0.0, 5.0]];

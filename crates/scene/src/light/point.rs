@@ -23,8 +23,8 @@ pub struct Spot {
 }
 
 impl Spot {
-    /// A cone about a unit vector, whole up to the angle `inner` and dark from `outer` on, rad, `inner <= outer`. Where both
-    /// are the same, the edge is hard.
+    /// A cone about a unit vector, whole up to the angle `inner` and dark from `outer` on, rad, `inner <= outer`. Where
+    /// both are the same, the edge is hard.
     pub fn new(axis: DVec3, inner: f64, outer: f64) -> Spot {
         let versine = |angle: f64| 2.0 * (0.5 * angle).sin().powi(2);
         // cos inner - cos outer, without a difference of numbers that are nearly equal.

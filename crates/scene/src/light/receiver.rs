@@ -3,8 +3,8 @@
 use crate::mesh::SurfacePoint;
 use glam::DVec3;
 
-/// A sphere that holds some surface points, and a cone that holds their normals. Of the cone's half angle it keeps cosine
-/// and sine: the choice of lights asks for nothing else, for many lights each time.
+/// A sphere that holds some surface points, and a cone that holds their normals. Of the cone's half angle it keeps
+/// cosine and sine: the choice of lights asks for nothing else, for many lights each time.
 #[derive(Clone, Copy, Debug)]
 pub struct ReceiverBounds {
     /// The center of the sphere, with the axis of the cone as its normals.
@@ -53,7 +53,7 @@ mod tests {
     use crate::random::{Purpose, Stream};
 
     /// No normal has a larger cosine with a direction than the bound, and all points lie within the sphere.
-    /// Planted: the spread left out; the cone of the mean of the first two normals.
+    /// Seen to catch: the spread left out; the cone of the mean of the first two normals.
     #[test]
     fn receivers_hold_their_points_and_normals() {
         let stream = Stream::new(6, Purpose::Surface);

@@ -10,8 +10,8 @@ use glam::DVec3;
 /// Up to this number, lights with bounds are weighed one by one, without a tree.
 pub(super) const MAX_FLAT: usize = 16;
 
-/// The least importance of a node, as a share of the irradiance with the largest cosine: what the center of a receiver does
-/// not see may light the rest of it.
+/// The least importance of a node, as a share of the irradiance with the largest cosine: lights that the center of a
+/// receiver does not see may light the rest of it.
 const MIN_SHARE: f64 = 0.5;
 
 /// Lights, ready to choose from.
@@ -32,7 +32,7 @@ struct Node {
     kind: Kind,
 }
 
-/// What is below a node, by index.
+/// The children of a node or its light, by index.
 #[derive(Clone, Copy)]
 pub(super) enum Kind {
     /// Two nodes.

@@ -13,13 +13,13 @@ use obvhs::{
 /// reciprocals, limit, box corners and slab test together can be wrong by seven.
 const MIN_PADDING: f32 = 16.0 * f32::EPSILON;
 
-/// Boxes grow by at most this share, each by a random amount: the builder joins each box with the best of its neighbours,
-/// and among equal boxes (a mesh on top of itself) all would prefer the same one, which would make the build quadratic and
-/// the tree a list.
+/// Boxes grow by at most this share, each by a random amount: the builder joins each box with the best of its
+/// neighbors, and among equal boxes (a mesh on top of itself) all would prefer the same one, which would make the build
+/// quadratic and the tree a list.
 pub(super) const PADDING: f32 = 2.0 * MIN_PADDING;
 
-/// The tree of a mesh with more [`crowding`] is not optimized: that would take time in proportion to the square of the number
-/// of triangles. Ordinary surfaces have 10 at most.
+/// The tree of a mesh with more [`crowding`] is not optimized: that would take time in proportion to the square of the
+/// number of triangles. Ordinary surfaces have 10 at most.
 const MAX_CROWDING: f64 = 64.0;
 
 /// A tree over triangles whose bounding box has this diagonal, or less.
@@ -62,8 +62,8 @@ fn binary(triangles: &[[Vec3; 3]], diagonal: f32) -> Bvh2 {
     tree
 }
 
-/// How many boxes of triangles overlap where a triangle is, in the mean over the triangles: over the nodes above it, the
-/// maximum of the area of all boxes of triangles below the node, divided by the area of the node's box.
+/// How many boxes of triangles overlap where a triangle is, in the mean over the triangles: over the nodes above it,
+/// the maximum of the area of all boxes of triangles below the node, divided by the area of the node's box.
 fn crowding(tree: &Bvh2) -> f64 {
     let nodes = &tree.nodes;
     if !tree.children_are_ordered_after_parents {
@@ -117,8 +117,8 @@ mod tests {
         (0..count).map(triangle).collect()
     }
 
-    /// Overlapping boxes are distinguished from separate ones, whether all overlap or those of one corner. Seen to catch: the
-    /// root alone, which does not see the corner.
+    /// Overlapping boxes are distinguished from separate ones, whether all overlap or those of one corner. Seen to
+    /// catch: the root alone, which does not see the corner.
     #[test]
     fn crowding_counts_the_boxes_over_each_other() {
         let of = |triangles: &[[Vec3; 3]]| {

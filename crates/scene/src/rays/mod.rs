@@ -1,9 +1,9 @@
 //! Closest hit and visibility.
 //!
 //! The walk through the tree is in float32, through boxes that are padded by more than its rounding can amount to. The
-//! triangles are tested in float64 with the watertight test of Woop, Benthin and Wald 2013: neighbours agree on the sign of
-//! their common edge, so no ray slips between them. The mesh is first scaled, exactly, to one size: nothing here depends on
-//! that of the scene. No ray needs an offset: one that starts on a triangle names it.
+//! triangles are tested in float64 with the watertight test of Woop, Benthin and Wald 2013: neighbors agree on the sign
+//! of their common edge, so no ray slips between them. The mesh is first scaled, exactly, to one size: nothing here
+//! depends on that of the scene. No ray needs an offset: one that starts on a triangle names it.
 //!
 //! obvhs builds a binary tree; the walk is our own. Those of obvhs lose hits near the origin and along axes, and have
 //! little more than half the speed.
@@ -42,7 +42,7 @@ pub struct Rays<'a> {
     scale: f64,
     /// m per scaled unit.
     metres: f64,
-    /// Where rays pass through triangles.
+    /// Holes through which rays pass.
     cutouts: Option<Cutouts<'a>>,
 }
 
@@ -58,19 +58,19 @@ impl<'a> Rays<'a> {
         Rays { mesh: ScaledMesh::new(&corners), bounds, scale, metres: 1.0 / scale, cutouts: None }
     }
 
-    /// The same on the mesh of a scene, where rays pass through the holes of opaque surfaces.
+    /// Builds the tree over the mesh of a scene, where rays pass through the holes of opaque surfaces.
     pub fn of_scene(scene: &'a Scene, translucent: impl Fn(u16) -> bool) -> Self {
         Rays { cutouts: Cutouts::new(scene, translucent), ..Rays::new(&scene.mesh) }
     }
 
-    /// The nearest triangle along the ray, other than the one it starts `from`; of equally near ones the first of the mesh.
-    /// `direction` is a unit vector.
+    /// The nearest triangle along the ray, other than the one it starts `from`; of equally near ones the first of the
+    /// mesh. `direction` is a unit vector.
     pub fn closest(&self, origin: DVec3, direction: DVec3, from: Option<u32>) -> Option<Hit> {
         self.closest_within(origin, direction, f64::INFINITY, from)
     }
 
-    /// What [`Rays::closest`] finds, if that lies within `limit` (m, may be infinite): a short limit makes the query much
-    /// cheaper.
+    /// What [`Rays::closest`] finds, if that lies within `limit` (m, may be infinite): a short limit makes the query
+    /// much cheaper.
     pub fn closest_within(&self, origin: DVec3, direction: DVec3, limit: f64, from: Option<u32>) -> Option<Hit> {
         let ray = &Ray::new(origin * self.scale, direction, from, self.bounds)?;
         // Rounding must not lose a hit at the limit itself: the walk goes a little farther.

@@ -6,7 +6,7 @@ use glam::Vec3;
 /// The boxes of up to eight children, in full float32: smaller codes cost more to unpack than they save.
 #[repr(align(64))]
 pub(super) struct Node {
-    /// By axis, then low and high, then child.
+    /// The planes of the boxes, by axis, then low and high, then child.
     planes: [[[f32; 8]; 2]; 3],
     /// A code for each child, see [`Node::leaf`] and [`Node::leaf_of`].
     pub children: [u32; 8],

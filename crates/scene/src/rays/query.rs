@@ -10,7 +10,7 @@ use super::{
 use crate::cutouts::Cutouts;
 use std::ops::ControlFlow;
 
-/// Which points of triangles are solid, and which are holes.
+/// Tells whether a point of a triangle is solid or a hole.
 pub(super) trait Solid: Copy {
     fn is_solid(self, triangle: u32, crossing: &Crossing) -> bool;
 }
@@ -33,8 +33,8 @@ impl Solid for &Cutouts<'_> {
     }
 }
 
-/// Finds the nearest hit within `limit`, of equally near ones that of the first triangle. Its distance is measured from the
-/// ray's start, in scaled units.
+/// Finds the nearest hit within `limit`, of equally near ones that of the first triangle. Its distance is measured from
+/// the ray's start, in scaled units.
 pub(super) struct Closest<'a, S> {
     pub mesh: &'a ScaledMesh,
     pub solid: S,

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// Where a ray meets a triangle.
+/// The point where a ray meets a triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit {
     /// m along the unit direction.
@@ -27,8 +27,8 @@ pub(super) struct Ray {
 /// A ray in float32, for the tests of boxes.
 pub(super) struct BoxRay {
     pub origin: [f32; 3],
-    /// Reciprocals of the direction. For a ray that lies in a plane across an axis, infinity times zero is not a number:
-    /// the tests of boxes ignore such a plane.
+    /// Reciprocals of the direction. For a ray that lies in a plane across an axis, infinity times zero is not a
+    /// number: the tests of boxes ignore such a plane.
     pub inverse: [f32; 3],
     /// For each axis, which of a box's two planes across it the ray meets first.
     pub first: [usize; 3],

@@ -33,8 +33,8 @@ impl ScaledMesh {
         ScaledMesh { tree, leaves, slots }
     }
 
-    /// False for crossings behind the origin, for the triangle that the ray left, and for its neighbours where only rounding
-    /// puts them in the way.
+    /// False for crossings behind the origin, for the triangle that the ray left, and for its neighbors where only
+    /// rounding puts them in the way.
     #[inline(always)]
     pub fn counts(&self, distance: f64, leaf: &Leaf, lane: usize, ray: &Ray) -> bool {
         let Some(from) = ray.from else {
@@ -44,8 +44,8 @@ impl ScaledMesh {
         in_front && (distance > SELF_HIT_EPSILON || self.is_ahead(leaf, lane, from, ray.direction))
     }
 
-    /// Whether a triangle reaches into the half-space that the ray enters as it leaves triangle `from`. If it lies in the same
-    /// plane or bends away, it cannot be in the way, wherever rounding puts the crossing.
+    /// Whether a triangle reaches into the half-space that the ray enters as it leaves triangle `from`. If it lies in
+    /// the same plane or bends away, it cannot be in the way, wherever rounding puts the crossing.
     #[cold]
     #[inline(never)]
     fn is_ahead(&self, leaf: &Leaf, lane: usize, from: u32, direction: DVec3) -> bool {

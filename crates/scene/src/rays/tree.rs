@@ -8,7 +8,7 @@ pub(super) struct Tree {
     pub nodes: Vec<Node>,
 }
 
-/// What a walk does with the leaves.
+/// The action of a walk at the leaves.
 pub(super) trait Visitor {
     /// Whether nearer children are visited first. Where any hit will do, the order costs more than it saves.
     const ORDERED: bool;
@@ -51,8 +51,8 @@ impl Tree {
     }
 }
 
-/// A child with the distance at which the ray enters its box in the upper bits: entries are ordered by distance, which is
-/// positive.
+/// A child with the distance at which the ray enters its box in the upper bits: entries are ordered by distance, which
+/// is positive.
 #[inline(always)]
 fn entry(near: f32, child: u32) -> u64 {
     u64::from(near.to_bits()) << 32 | u64::from(child)

@@ -6,7 +6,7 @@ use std::array::from_fn;
 /// The triangles of a leaf: up to four.
 #[repr(align(32))]
 pub(super) struct Leaf {
-    /// By axis, then corner, then triangle. Lanes without a triangle hold a point, which no ray meets.
+    /// The corners, by axis, then corner, then triangle. Lanes without a triangle hold a point, which no ray meets.
     pub corners: [[[f32; 4]; 3]; 3],
     /// Indices of the triangles in the mesh.
     pub triangles: [u32; 4],
@@ -22,7 +22,7 @@ pub(super) struct TriangleTest {
 
 /// Where a ray meets the plane of a triangle, within it.
 pub(super) struct Crossing {
-    /// Of any sign.
+    /// Distance along the ray, of any sign.
     pub distance: f64,
     /// Twice the areas opposite the corners, as seen along the axis; no two have opposite signs.
     areas: [f64; 3],

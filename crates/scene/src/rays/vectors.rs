@@ -1,7 +1,7 @@
 //! Tests of eight boxes and of four triangles at a time.
 //!
-//! Every implementation does the same operations in the same order, without fused multiply-adds, so that all results are
-//! the same to the last bit.
+//! Every implementation does the same operations in the same order, without fused multiply-adds, so that all results
+//! are the same to the last bit.
 
 use super::{
     node::Node,

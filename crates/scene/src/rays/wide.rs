@@ -1,5 +1,5 @@
-//! Collapses a binary tree into nodes of up to eight children and leaves of up to four triangles, with the least expected
-//! cost, by the dynamic programme of Ylitie, Karras and Laine 2017.
+//! Collapses a binary tree into nodes of up to eight children and leaves of up to four triangles, with the least
+//! expected cost, by the dynamic program of Ylitie, Karras and Laine 2017.
 
 use obvhs::{aabb::Aabb, bvh2::Bvh2};
 

@@ -21,7 +21,8 @@ fn area(scene: &Scene) -> f64 {
     (0..scene.mesh.triangles.len()).map(|k| scene.mesh.area(k)).sum()
 }
 
-/// Turned, or begun with another corner; with normals of the other side. The first stays, and the mesh is that of one copy.
+/// Turned, or begun with another corner; with normals of the other side. The first stays, and the mesh is that of one
+/// copy.
 ///
 /// Seen to fail: eight triangles, and a surface of twice its area, which takes in twice the light.
 #[test]
@@ -52,7 +53,7 @@ fn copies_are_found_by_where_they_are() {
     assert_eq!(import(&asset).mesh.triangles.len(), 8, "beside, not upon");
 }
 
-/// Which of two materials is meant, nobody can say: both stay, and are counted if both are translucent.
+/// Copies of two materials are ambiguous: both stay, and are counted if both materials are translucent.
 #[test]
 fn copies_of_other_materials_stay() {
     let mut asset = tetrahedron();
@@ -81,7 +82,8 @@ fn fronts_and_backs_of_lamps_differ() {
     assert_eq!(lamp(&[1, 2, 0, 1, 0, 3], true), 4);
 }
 
-/// Two triangles, each a hundred thousand times: a tenth of a second, and minutes if each were compared with all others.
+/// Two triangles, each a hundred thousand times: a tenth of a second, and minutes if each were compared with all
+/// others.
 #[test]
 fn many_copies_take_a_moment() {
     let mut asset = tetrahedron();

@@ -19,7 +19,7 @@ fn map(size: Size, pixels: &[Vec3]) -> EnvironmentMap {
     EnvironmentMap::new(size, pixels.to_vec(), 1.0, 0.0).expect("good pixels")
 }
 
-/// The direction of a place in the picture, as the documentation of the map has it.
+/// The direction of a point of the picture, as the documentation of the map has it.
 fn direction(across: f64, down: f64) -> DVec3 {
     let ((sine, cosine), (radius, height)) = ((TAU * (across - 0.5)).sin_cos(), (PI * down).sin_cos());
     DVec3::new(radius * cosine, height, radius * sine)
@@ -42,7 +42,7 @@ fn with_sun(size: Size, (column, row): Size) -> Vec<Vec3> {
     pixels
 }
 
-/// Irradiance by the middles of so many parts of each pixel.
+/// Irradiance by the midpoint rule over parts of each pixel.
 fn quadrature((width, height): Size, pixels: &[Vec3], normal: DVec3) -> DVec3 {
     let parts = (2000 / width).clamp(4, 200);
     let (columns, rows) = (width * parts, height * parts);
@@ -129,7 +129,7 @@ fn the_picture_lies_where_it_should() {
 }
 
 /// Light from one pixel comes from where that pixel is seen, whatever the numbers, and a turn of the picture turns it.
-/// Planted: rays turned the other way than light.
+/// Seen to catch: rays turned the other way than light.
 #[test]
 fn light_comes_from_where_it_is_seen() {
     let size = (16, 8);
@@ -186,7 +186,7 @@ fn a_turn_by_whole_pixels_shifts_them_and_scale_multiplies() {
 }
 
 /// Well-spread numbers stay well spread: of sixteen times as many, independent ones would have a quarter of the error.
-/// Planted: numbers that are drawn anew below a window.
+/// Seen to catch: numbers that are drawn anew below a window.
 #[test]
 fn the_choice_of_a_direction_keeps_numbers_well_spread() {
     let size = (256, 128);

@@ -1,4 +1,4 @@
-//! What clouds are known by: the digests of a scene's lights and geometry.
+//! The digests of a scene's lights and geometry, by which clouds recognize it.
 
 use scene::{ImportOptions, LightUnit, Scene};
 use std::path::Path;
@@ -13,7 +13,8 @@ fn imported(name: &str) -> Scene {
     Scene::import(&path, &options).expect("the scene can be read")
 }
 
-/// A cloud is kept as long as these do not change: other bytes, or the same in another order, would make all clouds stale.
+/// A cloud is kept as long as these do not change: other bytes, or the same in another order, would make all clouds
+/// stale.
 ///
 /// Seen to catch: the range of a point light left out.
 #[test]

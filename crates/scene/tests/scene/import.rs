@@ -226,7 +226,7 @@ fn an_object_far_from_the_origin_keeps_its_shape() {
 
 /// Stray vertices far away make needles without area, exactly or in float32. None moves the mesh or costs it precision.
 ///
-/// Seen to fail: all triangles of the file counted in the box whose centre is the origin.
+/// Seen to fail: all triangles of the file counted in the box whose center is the origin.
 #[test]
 fn what_has_no_area_costs_the_others_no_digits() {
     let strays: [[[f32; 3]; 3]; 2] =

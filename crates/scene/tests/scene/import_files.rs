@@ -107,7 +107,8 @@ fn one_file_is_read_once() {
     assert!(start.elapsed().as_secs() < 5, "16 GiB would take longer");
 }
 
-/// The files of a scene's folder may be links. Their targets are read like files, and their content appears in no message.
+/// The files of a scene's folder may be links. Their targets are read like files, and their content appears in no
+/// message.
 ///
 /// Seen to catch: the decoder's message, with bytes of the file; the value of an index or number in a message.
 #[cfg(unix)]

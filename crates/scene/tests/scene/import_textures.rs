@@ -94,9 +94,9 @@ fn texels_of_an_embedded_png() {
     let scene = with_picture(&png(), textured(json!({})), json!({ "magFilter": NEAREST })).import().expect("imports");
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
     for (x, y) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-        let centre = [x, y].map(|k| 0.5 * f64::from(k) + 0.25);
-        assert_color(&scene, centre, linear(x, y));
-        assert_color(&scene, centre.map(|c| c + 0.2), linear(x, y));
+        let center = [x, y].map(|k| 0.5 * f64::from(k) + 0.25);
+        assert_color(&scene, center, linear(x, y));
+        assert_color(&scene, center.map(|c| c + 0.2), linear(x, y));
     }
     for sampler in [json!({}), json!({ "magFilter": LINEAR }), json!({ "minFilter": NEAREST })] {
         let scene = with_picture(&png(), textured(json!({})), sampler).import().expect("imports");
@@ -113,11 +113,11 @@ fn texels_of_an_embedded_png() {
 /// Seen to catch: the factor left out.
 #[test]
 fn a_jpeg_in_the_uri_times_the_factor() {
-    let grey = RgbaImage::from_pixel(16, 8, Rgba([188, 188, 188, 255]));
+    let gray = RgbaImage::from_pixel(16, 8, Rgba([188, 188, 188, 255]));
     let mut material = textured(json!({}));
     material["pbrMetallicRoughness"]["baseColorFactor"] = json!([0.5, 0.25, 1.0, 0.5]);
     let mut asset = with_picture(&[], material, json!({}));
-    let uri = format!("data:image/jpeg;base64,{}", STANDARD.encode(encoded(&grey, ImageFormat::Jpeg)));
+    let uri = format!("data:image/jpeg;base64,{}", STANDARD.encode(encoded(&gray, ImageFormat::Jpeg)));
     asset.set("/images/0", json!({ "uri": uri }));
     let color = color_at(&asset.import().expect("imports"), 0.3, 0.6);
     let expected = DVec4::new(0.5, 0.25, 1.0, 0.0) * LINEAR_188 + DVec4::W * 0.5;
@@ -141,8 +141,8 @@ fn a_picture_beside_the_scene() {
     assert!(fault(&asset).contains("not a file in the scene's folder"));
 }
 
-/// Seen to catch: the angle with the other sign; scale after rotation; the texture's set of coordinates where the transform states
-/// its own.
+/// Seen to catch: the angle with the other sign; scale after rotation; the texture's set of coordinates where the
+/// transform states its own.
 #[test]
 fn coordinates_of_another_set_transformed() {
     let angle = 0.5_f64;

@@ -1,4 +1,5 @@
-//! Work that a short file can cause: time and memory grow with the length of the file, and not with the number of references.
+//! Work that a short file can cause: time and memory grow with the length of the file, and not with the number of
+//! references.
 
 use crate::import_textures::{encoded, textured, with_picture};
 use image::{ImageFormat, RgbaImage};
@@ -98,8 +99,8 @@ fn sparse_accessors_change_no_more_elements_than_they_have() {
     assert!(fault(&asset).contains("POSITION: sparse: count 5 exceeds the 4 elements"), "{}", fault(&asset));
 }
 
-/// Seen to catch: the full name of a mesh in every column of its primitives; the name of a camera for each of its nodes without a
-/// limit.
+/// Seen to catch: the full name of a mesh in every column of its primitives; the name of a camera for each of its nodes
+/// without a limit.
 #[test]
 fn long_names_are_not_multiplied() {
     let mut asset = tetrahedron();

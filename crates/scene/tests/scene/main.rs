@@ -9,7 +9,7 @@ mod import;
 mod import_faults;
 mod import_files;
 mod import_lights;
-mod import_quantised;
+mod import_quantized;
 mod import_textures;
 mod import_volumes;
 mod import_work;

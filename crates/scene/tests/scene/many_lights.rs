@@ -48,9 +48,9 @@ fn lamps(count: u64, distances: [f64; 2]) -> Vec<Box<dyn Light>> {
     (0..count).map(|k| Box::new(lamp(k)) as Box<dyn Light>).collect()
 }
 
-fn panel(centre: DVec3, towards: DVec3) -> Box<dyn Light> {
+fn panel(center: DVec3, towards: DVec3) -> Box<dyn Light> {
     let (a, b) = towards.any_orthonormal_pair();
-    let corners = [centre - a, centre + a, centre + b].map(|c| centre + (c - centre) * 0.3);
+    let corners = [center - a, center + a, center + b].map(|c| center + (c - center) * 0.3);
     let mesh: Mesh = mesh(&corners, &[[0, 1, 2]]);
     Box::new(AreaLight::new(&mesh, &[0], DVec3::splat(40.0), false).expect("an area"))
 }
@@ -66,11 +66,12 @@ fn everything() -> Vec<Box<dyn Light>> {
 }
 
 /// One over its share, and 0 when another light is picked: the mean is 1 for every light that reaches a point. Means of
-/// the 2000 lights and points that are picked at least a hundred times lie within 5 standard errors; of so many, one lies
-/// outside in 1700 runs with other numbers. Lights that are not picked at all would have to be faint.
+/// the 2000 lights and points that are picked at least a hundred times lie within 5 standard errors; of so many, one
+/// lies outside in 1700 runs with other numbers. Lights that are not picked at all would have to be faint.
 ///
 /// Seen to catch: a share that lacks the choice between near and distant lights; one that lacks the way down the tree;
-/// a range that cuts lights off; a light that is left out of the tree; candidates compared by the number that drew them.
+/// a range that cuts lights off; a light that is left out of the tree; candidates compared by the number that drew
+/// them.
 #[test]
 fn every_light_is_picked_as_often_as_its_share_says() {
     let lights = everything();
@@ -162,8 +163,8 @@ fn one_of_many_lights_has_the_mean_of_all() {
     }
 }
 
-/// For points that lie together, the lists cost a few entries a point however many lamps there are, and a choice is hardly
-/// noisier than by what each lamp really sends, which would have no noise at all.
+/// For points that lie together, the lists cost a few entries a point however many lamps there are, and a choice is
+/// hardly noisier than by what each lamp really sends, which would have no noise at all.
 ///
 /// Seen to catch: lists that grow with the number of lights; nodes opened in the order of the tree.
 #[test]
@@ -173,15 +174,15 @@ fn the_cost_of_a_choice_hardly_depends_on_the_number_of_lights() {
         let tree = LightTree::new(lights.iter().map(|light| &**light));
         let (mut weighed, mut variance, regions, points) = (0, 0.0, 40, 256);
         for index in 0..regions {
-            let centre = direction(random(index), 0);
+            let center = direction(random(index), 0);
             let beside = |k: u64| {
-                let normal = (centre + 0.05 * direction(random(1000 * index + k), 2)).normalize();
+                let normal = (center + 0.05 * direction(random(1000 * index + k), 2)).normalize();
                 facing(normal, normal)
             };
-            let places: Vec<SurfacePoint> = (0..points).map(beside).collect();
-            let choice = LightChoice::new(&tree, &ReceiverBounds::around(&places).expect("points"), 1024);
+            let surface: Vec<SurfacePoint> = (0..points).map(beside).collect();
+            let choice = LightChoice::new(&tree, &ReceiverBounds::around(&surface).expect("points"), 1024);
             weighed += choice.weighed;
-            for (k, at) in places.iter().enumerate() {
+            for (k, at) in surface.iter().enumerate() {
                 let all: f64 = lights.iter().map(|l| l.importance(at)).sum();
                 let pick = choice.pick(at, random(1000 * index + k as u64).uniform(9));
                 let ratio = pick.map_or(0.0, |p| p.light.importance(at) / (p.share * all));

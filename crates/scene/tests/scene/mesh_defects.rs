@@ -37,8 +37,8 @@ fn closed_meshes_have_no_faults() {
         assert_eq!(defects(&mesh), MeshDefects::default());
     }
     // Two bodies that touch along an edge, and zeros of either sign.
-    let neighbours = with(&cube(1.0), &cube(1.0), DVec3::new(2.0, 2.0, 0.0));
-    assert_eq!(defects(&neighbours), MeshDefects::default());
+    let neighbors = with(&cube(1.0), &cube(1.0), DVec3::new(2.0, 2.0, 0.0));
+    assert_eq!(defects(&neighbors), MeshDefects::default());
     let mut signs = split(&with(&cube(1.0), &cube(0.0), DVec3::ZERO));
     signs.positions.iter_mut().step_by(2).for_each(|p| *p += -0.0);
     signs.triangles.truncate(12);

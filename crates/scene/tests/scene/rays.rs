@@ -106,7 +106,7 @@ fn from_far_outside() {
     }
 }
 
-/// Seen from far, a hit's distance and place are those of the sphere.
+/// Seen from far, a hit's distance and position are those of the sphere.
 #[test]
 fn hits_lie_on_the_surface() {
     for (radius, mesh, rays) in CLOSED.iter().step_by(2) {

@@ -1,4 +1,4 @@
-//! Rays that start on the surface: no shadow of the triangle itself or its neighbours, none lost either.
+//! Rays that start on the surface: no shadow of the triangle itself or its neighbors, none lost either.
 
 use crate::meshes::{cube, direction, mesh, random, sphere};
 use scene::{DVec3, Mesh, NormalKind, Rays, SurfacePoint, warp};
@@ -94,7 +94,7 @@ fn a_thin_sheet_shadows_its_other_side() {
     }
 }
 
-/// A sheet modelled twice, back to back without thickness, is lit on both sides.
+/// A sheet modeled twice, back to back without thickness, is lit on both sides.
 #[test]
 fn a_sheet_without_thickness_does_not_shadow_itself() {
     for size in [1e-3, 1.0, 1e3] {

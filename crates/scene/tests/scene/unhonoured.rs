@@ -1,4 +1,4 @@
-//! What a file asks for and the picture does not show is named, once, and in one line.
+//! Properties of a file that the picture does not show are named once, in one line.
 
 use scene::Scene;
 use serde_json::{Value, json};
@@ -83,7 +83,7 @@ fn known_properties_are_named_with_what_has_them() {
     }
 }
 
-/// What nobody has heard of is named where it is, whatever it is called.
+/// Unknown properties are named with their location, whatever their name.
 ///
 /// Seen to fail: only the names in `extensionsUsed` were said, whether or not anything in the scene had them.
 #[test]
@@ -112,8 +112,8 @@ fn unknown_properties_are_named_wherever_they_are() {
     }
 }
 
-/// Defaults, what is honoured, and what means nothing. A metal is one that its file says is one, not one that leaves the
-/// word out.
+/// Defaults, what is honoured, and what means nothing. A metal is one that its file says is one, not one that leaves
+/// the word out.
 #[test]
 fn what_changes_no_picture_is_not_named() {
     assert_eq!(warnings(&asset()), Vec::<String>::new());
@@ -132,7 +132,7 @@ fn what_changes_no_picture_is_not_named() {
     assert_eq!(with("/asset", json!({ "version": "2.0", "generator": "a", "copyright": "b", "extras": 0 })), "");
 }
 
-/// Of materials on nothing, nodes outside the scene, and textures that nothing needs, there is no word.
+/// Unused materials, nodes outside the scene, and unused textures cause no warning.
 #[test]
 fn what_is_not_drawn_is_not_named() {
     let mut asset = asset();
@@ -143,7 +143,7 @@ fn what_is_not_drawn_is_not_named() {
     asset.push("cameras", json!({ "type": "perspective", "perspective": { "yfov": 1, "znear": 1, "shutter": 1 } }));
     asset.mesh(json!({ "attributes": { "POSITION": 0 }, "material": 2, "extensions": { "ACME_wings": {} } }));
     assert_eq!(warnings(&asset), Vec::<String>::new());
-    // Nobody knows what this one is to do.
+    // The effect of this extension is unknown.
     asset.set(
         "/extensionsUsed",
         json!(["ACME_wings", "ACME_tail", "ACME_tail", "KHR_materials_ior", "KHR_xmp_json_ld"]),
@@ -151,7 +151,7 @@ fn what_is_not_drawn_is_not_named() {
     assert_eq!(line(&asset), "not honoured: extensionsUsed[] (`ACME_tail`); docs/scenes.md says what is");
 }
 
-/// What changes the geometry is refused where it is met, declared or not.
+/// Extensions that change the geometry are refused where they occur, declared or not.
 #[test]
 fn geometry_is_refused_undeclared() {
     let mut asset = asset();

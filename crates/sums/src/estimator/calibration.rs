@@ -5,16 +5,16 @@
 #[derive(Clone, Debug)]
 pub struct Calibration(Box<[f32; ENTRIES]>);
 
-/// The factors are indexed by the bits of a float64 above this one: two steps for each doubling of the sum, from 2⁻²⁵⁶ to
-/// 2²⁵⁶.
+/// The factors are indexed by the bits of a float64 above this one: two steps for each doubling of the sum, from 2⁻²⁵⁶
+/// to 2²⁵⁶.
 const SHIFT: u32 = 51;
 const ENTRIES: usize = 1 << 10;
 /// The index of 2⁻²⁵⁶.
 const FIRST: u64 = (1023 - 256) << 1;
 
 impl Calibration {
-    /// From pairs of a predicted sum, W/(m² sr), and its factor, by ascending sums. Between them the logarithm of the
-    /// factor is linear in the logarithm of the sum; beyond them the factor is constant. Without any pair it is 1.
+    /// Takes pairs of a predicted sum, W/(m² sr), and its factor, in order of the sums. Between them the logarithm of
+    /// the factor is linear in the logarithm of the sum; beyond them the factor is constant. Without any pair it is 1.
     pub fn new(known: &[(f64, f64)]) -> Calibration {
         let middle = |k: usize| f64::from_bits((k as u64 + FIRST) << SHIFT | 1 << (SHIFT - 1));
         Calibration(Box::new(std::array::from_fn(|k| interpolate(known, middle(k)) as f32)))

@@ -4,8 +4,8 @@
 //! `n` times. The sum is unbiased for every cut that is chosen without regard to the samples that are picked. A node is
 //! opened while the standard deviation that it would add, as [`FalloffTables`] predict it, exceeds a threshold. The
 //! threshold is the same for all nodes, which takes the fewest nodes for a given sum of variances. It follows from the
-//! target error and from an estimate of the sum, which is the contribution of the open leaves and the predicted one of the
-//! closed nodes, and is lowered until the predicted error of the cut is small enough.
+//! target error and from an estimate of the sum, which is the contribution of the open leaves and the predicted one of
+//! the closed nodes, and is lowered until the predicted error of the cut is small enough.
 
 use super::{
     calibration::Calibration,
@@ -29,7 +29,7 @@ struct Closed {
     error: f32,
     /// Its predicted contribution, in the same unit.
     value: f32,
-    /// The same where most of it comes from the near end of the node.
+    /// The predicted contribution if most of it comes from the near end of the node.
     max_value: f32,
 }
 
@@ -52,24 +52,24 @@ pub struct Cut<'a, M> {
     pub exit: &'a Exit,
     /// Target of the relative standard error of the sum.
     pub accuracy: f32,
-    /// The factor of that target.
+    /// Factor on that target.
     pub calibration: &'a Calibration,
     pub scratch: &'a mut Scratch,
 }
 
-/// Which nodes are opened.
+/// The criterion by which nodes are opened.
 #[derive(Clone, Copy)]
 enum Criterion {
-    /// Those that the exitant point sees under a wide angle.
+    /// Opens nodes that the exitant point sees under a wide angle.
     Wide,
-    /// Those whose error exceeds this.
+    /// Opens nodes whose error exceeds this.
     Above(f32),
 }
 
 /// Root mean square deviation of the directions of diffuse light, `√(5/9)`, for which the tables hold the scatter.
-const DIFFUSE_TURN: f32 = 0.745_356;
+const DIFFUSE_DEVIATION: f32 = 0.745_356;
 
-/// A node is seen under a wide angle if this times its squared radius exceeds the squared distance of its centre.
+/// A node is seen under a wide angle if this times its squared radius exceeds the squared distance of its center.
 const WIDE: f32 = 0.5;
 
 /// The first threshold is this, times the target error to the power 3/2, times a rough estimate of the sum.
@@ -78,7 +78,7 @@ const START: f32 = 0.7;
 /// The predicted error may exceed the target by this factor.
 const GOOD_ENOUGH: f32 = 1.2;
 
-/// The threshold is lowered at most so many times.
+/// The largest number of times that the threshold is lowered.
 const ROUNDS: usize = 6;
 
 impl<M: LaneModel> Kernel for Cut<'_, M> {
@@ -96,7 +96,8 @@ impl<M: LaneModel> Kernel for Cut<'_, M> {
 }
 
 impl<M: LaneModel> Cut<'_, M> {
-    /// Finds the cut and adds the samples of its open leaves; returns the number of visited nodes and the predicted sum.
+    /// Finds the cut and adds the samples of its open leaves; returns the number of visited nodes and the predicted
+    /// sum.
     #[inline(always)]
     fn choose(&mut self, sum: &mut Accumulator) -> (u64, f64) {
         self.scratch.closed.clear();
@@ -187,7 +188,8 @@ impl<M: LaneModel> Cut<'_, M> {
             let depth = first_leaf.ilog2() - node.id.ilog2();
             let first = ((u64::from(node.id) << depth) - first_leaf) * TILE as u64;
             let end = (((u64::from(node.id) + 1) << depth) - first_leaf) * TILE as u64;
-            // Only in a forged file has a node beyond the last sample flux, so that it is closed instead of dropped.
+            // A node beyond the last sample has no flux and is dropped; only in a forged file can it have flux and be
+            // closed.
             let Some(count) = end.min(self.samples.len() as u64).checked_sub(first).filter(|count| *count > 0) else {
                 continue;
             };
@@ -259,7 +261,7 @@ impl Leaves {
     }
 }
 
-/// What is predicted of sixteen nodes if they are closed; see [`Closed`].
+/// The predictions for sixteen nodes if they are closed; see [`Closed`].
 #[derive(Default)]
 struct Predicted {
     error: Lane,
@@ -277,7 +279,7 @@ fn predict(tables: &FalloffTables, exit: &Exit, nodes: &[Node], scale: f32, ids:
     for i in 0..LANES {
         // Nodes beyond the end of the tree are empty.
         let node = nodes.get(ids[i] as usize).copied().unwrap_or_default();
-        let o = exit.offset(node.centre);
+        let o = exit.offset(node.center);
         for c in 0..3 {
             offset[c][i] = o[c];
         }
@@ -285,23 +287,23 @@ fn predict(tables: &FalloffTables, exit: &Exit, nodes: &[Node], scale: f32, ids:
         rest[1][i] = node.radius;
         rest[2][i] = node.flux * scale;
         rest[3][i] = node.flux_deviation;
-        rest[4][i] = node.turn;
+        rest[4][i] = node.direction_deviation;
     }
-    let [spread, radius, flux, deviation, turn] = rest;
+    let [spread, radius, flux, flux_deviation, direction_deviation] = rest;
     let mut predicted = Predicted::default();
     for i in 0..LANES {
         let far2 = offset[0][i] * offset[0][i] + offset[1][i] * offset[1][i] + offset[2][i] * offset[2][i];
         let near = (far2.sqrt() - radius[i]).max(0.0);
         let near2 = near * near;
         let by_position = tables.slope(near2) * spread[i];
-        let by_direction = tables.scatter(near2) * turn[i] * (1.0 / DIFFUSE_TURN);
-        // The squared radius of a disc is twice the mean squared distance from its centre.
+        let by_direction = tables.scatter(near2) * direction_deviation[i] * (1.0 / DIFFUSE_DEVIATION);
+        // The squared radius of a disc is twice the mean squared distance from its center.
         let disc2 = 2.0 * spread[i] * spread[i];
         let value = if far2 > disc2 { tables.value(far2) } else { tables.disc(disc2) };
-        // The mean of an exponential over a node is close to the geometric mean of its values at the centre and at the
+        // The mean of an exponential over a node is close to the geometric mean of its values at the center and at the
         // near end.
         let near_value = (value * tables.value(near2)).sqrt();
-        let by_flux = value * deviation[i];
+        let by_flux = value * flux_deviation[i];
         predicted.error[i] =
             flux[i] * (by_position * by_position + by_direction * by_direction + by_flux * by_flux).sqrt();
         predicted.value[i] = flux[i] * value;

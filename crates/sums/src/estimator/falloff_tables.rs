@@ -1,5 +1,5 @@
-//! How a BSSRDF varies with the distance between the points. The cut opens nodes by these tables; its efficiency depends
-//! on them, its mean does not.
+//! How a BSSRDF varies with the distance between the points. The cut opens nodes by these tables; its efficiency
+//! depends on them, its mean does not.
 
 use bssrdf::{Bssrdf, DVec3, Medium, Separation, fresnel};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
@@ -9,17 +9,17 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI};
 const SHIFT: u32 = 19;
 const ENTRIES: usize = 1 << (32 - 1 - SHIFT);
 
-/// Tables over the squared distance, m², of all float32 values: means over the channels, and over normals at the exitant
-/// point. The normals matter only in nearly clear media, where the directional dipole has a pole for light that passes the
-/// exitant point at a grazing angle.
+/// Tables over the squared distance, m², of all float32 values: means over the channels, and over normals at the
+/// exitant point. The normals matter only in nearly clear media, where the directional dipole has a pole for light that
+/// passes the exitant point at a grazing angle.
 #[derive(Clone, Debug)]
 pub struct FalloffTables {
     /// Mean of `S_bare`, 1/(m² sr).
     value: Box<[f32; ENTRIES]>,
     /// Mean of `value` over a disc of this squared radius around the exitant point, 1/(m² sr).
     disc: Box<[f32; ENTRIES]>,
-    /// Standard deviation over samples, divided by the root mean square of their distances from their mean, 1/(m³ sr). It
-    /// never grows with the distance.
+    /// Standard deviation over samples, divided by the root mean square of their distances from their mean, 1/(m³ sr).
+    /// It never grows with the distance.
     slope: Box<[f32; ENTRIES]>,
     /// Standard deviation over diffuse directions of light, 1/(m² sr).
     scatter: Box<[f32; ENTRIES]>,
@@ -34,7 +34,8 @@ struct Variation {
 }
 
 impl FalloffTables {
-    /// `size` is that of the surface, m: over shorter distances it is nearly a plane. A surface of infinite size is one.
+    /// `size` is that of the surface, m: over shorter distances it is nearly a plane. A surface of infinite size is
+    /// one.
     pub fn new(medium: &Medium, model: &dyn Bssrdf, size: f64) -> FalloffTables {
         let table = || -> Box<[f32; ENTRIES]> { Box::new([0.0; ENTRIES]) };
         let mut tables = FalloffTables { value: table(), disc: table(), slope: table(), scatter: table() };
@@ -103,8 +104,8 @@ fn middle(index: usize) -> f32 {
     f32::from_bits((index as u32) << SHIFT | 1 << (SHIFT - 1))
 }
 
-/// The range of distances for which the model is evaluated, m: from a thousandth of the shortest transport mean free path
-/// to where the channel of the smallest `σ_tr` has vanished.
+/// The range of distances for which the model is evaluated, m: from a thousandth of the shortest transport mean free
+/// path to where the channel of the smallest `σ_tr` has vanished.
 fn distances(medium: &Medium, model: &dyn Bssrdf) -> (f64, f64) {
     let scattering = medium.channels.iter().filter(|c| c.scatters());
     let shortest = scattering.map(|c| 1.0 / c.reduced_extinction()).fold(f64::INFINITY, f64::min);
@@ -126,16 +127,16 @@ fn directions(eta: f64) -> [Vec<DVec3>; 8] {
     })
 }
 
-/// The normals at the exitant point over which the tables are a mean: that of a plane, and four perpendicular to it, each
-/// at 45 degrees to the offset.
+/// The normals at the exitant point over which the tables are a mean: that of a plane, and four perpendicular to it,
+/// each at 45 degrees to the offset.
 fn normals() -> [DVec3; 5] {
     let slant = FRAC_1_SQRT_2;
     let across = |x: f64, y: f64| DVec3::new(slant * x, slant * y, 0.0);
     [DVec3::Z, across(1.0, 1.0), across(-1.0, 1.0), across(-1.0, -1.0), across(1.0, -1.0)]
 }
 
-/// The share of the normals other than a plane's at a distance of the surface's size. It is proportional to the distance,
-/// since a surface is nearly a plane around any point.
+/// The share of the normals other than a plane's at a distance of the surface's size. It is proportional to the
+/// distance, since a surface is nearly a plane around any point.
 const CURVED: f64 = 0.5;
 
 /// `S_bare` of one channel for each direction, where the offset is perpendicular to the normal at the point of entry.

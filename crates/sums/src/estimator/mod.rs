@@ -28,7 +28,7 @@ use std::fmt;
 pub enum Estimator {
     /// Hierarchical: near samples are evaluated one by one, far ones by a few that represent many.
     Cut {
-        /// Target of the relative standard error of a pixel's sums.
+        /// Target of the relative standard error of a pixel's sums; callers that make one of many sums set that of the sum.
         accuracy: f64,
     },
     /// The note's: a sample is evaluated with a probability that falls with its distance.
@@ -67,9 +67,9 @@ impl Estimator {
         }
     }
 
-    /// Whether a sum over many samples costs hardly more than one over few. Then it is better to sum a whole shard at
-    /// each point than a share of every shard: to cut through the trees of four shards takes twice the samples of a cut
-    /// through that of one cloud as large.
+    /// Whether a sum over many samples costs hardly more than one over few. If so, each point gathers from one whole
+    /// shard instead of from all: cuts through the trees of four shards evaluate twice as many samples as one cut
+    /// through the tree of a cloud of the same total size.
     pub fn is_hierarchical(self) -> bool {
         matches!(self, Estimator::Cut { .. })
     }
@@ -102,7 +102,7 @@ impl fmt::Display for Estimator {
     }
 }
 
-/// One sum, before it is known which model it is for.
+/// The arguments of one sum, before the type of its model is known.
 struct Estimation<'a> {
     estimator: Estimator,
     scatterer: &'a Scatterer,

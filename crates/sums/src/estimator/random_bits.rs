@@ -1,7 +1,7 @@
 //! Random bits for each sample of each sum, at a few integer operations.
 
-/// 32 random bits for one sample in one sum: two rounds of multiplications and xor-shifts, with the constants of Wellons'
-/// search for 32-bit mixers of low bias, each keyed.
+/// 32 random bits for one sample in one sum: two rounds of multiplications and xor-shifts, with the constants of
+/// Wellons' search for 32-bit mixers of low bias, each keyed.
 #[inline(always)]
 pub fn random_bits(index: u32, key: u64) -> u32 {
     let mut x = index ^ key as u32;

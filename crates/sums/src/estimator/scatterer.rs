@@ -1,4 +1,4 @@
-//! A medium under one BSSRDF model, with what the estimators need to know of it.
+//! A medium under one BSSRDF model, prepared for the estimators.
 
 use super::falloff_tables::FalloffTables;
 use bssrdf::{AnyLanes, Medium, Model, simd::Level};
@@ -20,8 +20,8 @@ pub struct Scatterer {
 }
 
 impl Scatterer {
-    /// `size` is that of the surface, m, which is nearly a plane over shorter distances; it changes only how fast the cut
-    /// is, and may be infinite.
+    /// `size` is that of the surface, m, which is nearly a plane over shorter distances; it changes only how fast the
+    /// cut is, and may be infinite.
     pub fn new(model: Model, medium: &Medium, size: f64) -> Scatterer {
         Scatterer {
             model,

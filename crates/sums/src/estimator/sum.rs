@@ -1,4 +1,4 @@
-//! What an estimator returns, and how it adds.
+//! The result of an estimator, and the accumulator that makes it.
 
 use bssrdf::lanes::{LANES, Lane};
 use glam::DVec3;
@@ -12,8 +12,8 @@ pub struct Sum {
     pub evaluations: u64,
     /// How many nodes of the tree were visited.
     pub nodes: u64,
-    /// An estimate of the radiance, summed over the channels, that does not depend on which samples the cut picks; 0 for
-    /// the other estimators.
+    /// An estimate of the radiance, summed over the channels, that does not depend on which samples the cut picks; 0
+    /// for the other estimators.
     pub predicted: f64,
 }
 

@@ -1,6 +1,7 @@
 //! The colors of errors: black, violet, red, orange, yellow.
 //!
-//! Equal steps of the error are equal steps of lightness in Oklab, so that the picture can also be read in gray and by those who do not tell red from green.
+//! Equal steps of the error are equal steps of lightness in Oklab, so that the picture can also be read in gray and by
+//! those who do not tell red from green.
 
 use color::{oklab, srgb};
 use std::f64::consts::FRAC_PI_2;
@@ -80,8 +81,9 @@ mod tests {
         [lightness, yellow.atan2(red).to_degrees()]
     }
 
-    /// The tolerance is half a step of eight bits. It is largest in the dark, where the cube root is steep: 0.04 of lightness near
-    /// black, and 0.005 and three degrees of hue elsewhere. Seen to catch: no reduction of chroma, a wrong sign in a matrix.
+    /// The tolerance is half a step of eight bits. It is largest in the dark, where the cube root is steep: 0.04 of
+    /// lightness near black, and 0.005 and three degrees of hue elsewhere. Seen to catch: no reduction of chroma, a
+    /// wrong sign in a matrix.
     #[test]
     fn lightness_is_linear_in_the_error() {
         for (step, color) in scale().into_iter().enumerate() {

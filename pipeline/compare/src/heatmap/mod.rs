@@ -41,9 +41,9 @@ pub enum HeatmapError {
     Png(#[from] png::EncodingError),
 }
 
-/// Draws the absolute error of the chosen layer, the largest of its channels, as color from 0 to `max`, and returns a PNG file
-/// with a legend below the picture. Small images are enlarged by a whole factor. If all layers are chosen, the first is drawn,
-/// which is `beauty` if that exists.
+/// Draws the absolute error of the chosen layer, the largest of its channels, as color from 0 to `max`, and returns a
+/// PNG file with a legend below the picture. Small images are enlarged by a whole factor. If all layers are chosen, the
+/// first is drawn, which is `beauty` if that exists.
 pub fn heatmap(reference: &Image, test: &Image, choice: &Choice, max: f64) -> Result<Vec<u8>, HeatmapError> {
     let layers = layers(reference, test);
     let layer = choose(&layers, choice)?;

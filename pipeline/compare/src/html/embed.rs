@@ -9,8 +9,8 @@ use serde::Serialize;
 /// The scripts that every page begins with.
 pub(super) const COMMON: &str = concat!(include_str!("page/dom.js"), include_str!("page/theme.js"));
 
-/// A data block of one line. In JSON `<` occurs in strings only, where `\u003c` means the same, so that no string can end the
-/// block or begin a comment in it.
+/// A data block of one line. In JSON `<` occurs in strings only, where `\u003c` means the same, so that no string can
+/// end the block or begin a comment in it.
 pub(super) fn json(id: &str, value: &impl Serialize) -> Result<String, serde_json::Error> {
     let text = serde_json::to_string(value)?.replace('<', "\\u003c");
     Ok(format!("{}{text}{END}", json_start(id)))
@@ -55,8 +55,8 @@ pub(super) fn plane(plane: &Plane) -> String {
     format!("<script type=\"text/plain\" id=\"plane-{}\">{}{END}", plane.id, plane.text)
 }
 
-/// The page: its template with style, script and data. The security policy allows only the script and the style of the template,
-/// and no network. The nonce is a hash of the data, so that no data can contain it.
+/// The page: its template with style, script and data. The security policy allows only the script and the style of the
+/// template, and no network. The nonce is a hash of the data, so that no data can contain it.
 pub(super) fn page(template: &str, script: &str, data: &str) -> Vec<u8> {
     let nonce = blake3::hash(data.as_bytes()).to_hex();
     let style = include_str!("page/page.css");

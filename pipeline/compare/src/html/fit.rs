@@ -9,7 +9,8 @@ use super::reduce::{Rectangle, block_for, means};
 use crate::layer::Layer;
 use crate::report::{LayerReport, Report};
 
-/// The largest number of bytes for the text of all planes. The code and the numbers of the page fit into the rest of 100 MB.
+/// The largest number of bytes for the text of all planes. The code and the numbers of the page fit into the rest of
+/// 100 MB.
 pub(super) const BUDGET: usize = 96_000_000;
 
 /// The largest number of pixels of a layer that is embedded pixel by pixel.
@@ -43,7 +44,8 @@ struct Grid {
     height: usize,
     /// The side of a block in pixels; a block of one pixel is the pixel itself.
     block: usize,
-    /// The numbers of the planes of reference and test for each channel, which are the same if the images have the same bits.
+    /// The numbers of the planes of reference and test for each channel, which are the same if the images have the same
+    /// bits.
     planes: Vec<[usize; 2]>,
     #[serde(skip)]
     encoded: Vec<Plane>,
@@ -52,7 +54,7 @@ struct Grid {
 /// The samples that the page holds.
 pub(super) struct Fitted {
     pub layers: Vec<LayerData>,
-    /// What was reduced or left out, in words.
+    /// The reductions and omissions, in words.
     pub notes: Vec<String>,
 }
 
@@ -81,8 +83,9 @@ impl LayerData {
     }
 }
 
-/// Embeds all layers with at most [`FULL`] blocks each. While the text is longer than the budget, the longest layer after the
-/// first gets blocks that are twice as wide; if they cannot be wider, the first does; at last the last layer is left out.
+/// Embeds all layers with at most [`FULL`] blocks each. While the text is longer than the budget, the longest layer
+/// after the first gets blocks that are twice as wide; if they cannot be wider, the first does; at last the last layer
+/// is left out.
 pub(super) fn fit(report: &Report, layers: &[Layer<'_>], image: &Image, budget: usize) -> Fitted {
     let encode = |index: usize, block: usize| encode(&layers[index], &report.layers[index], image, block);
     let block = block_for([image.width, image.height], FULL);

@@ -21,7 +21,7 @@ pub enum IndexError {
     Io {
         /// The report, or the index itself.
         path: PathBuf,
-        /// What the operating system said.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// The file is something else, or from another version.
@@ -56,16 +56,16 @@ struct Row {
     test: String,
     verdict: String,
     pass: bool,
-    /// The largest ratio of value and limit of the gates that failed. It is infinite if there is no such number, 0 if no gate
-    /// failed.
+    /// The largest ratio of value and limit of the gates that failed. It is infinite if there is no such number, 0 if
+    /// no gate failed.
     excess: f64,
     /// The relMSE of the worst channel that was judged. It is infinite if there is no such number.
     relmse: f64,
     thumbnails: Thumbnails,
 }
 
-/// The page that lists reports of [`super::page`], to be written to the file `target`. Those that failed come first, by the ratio
-/// to their limit, then the others by relMSE.
+/// The page that lists reports of [`super::page`], to be written to the file `target`. Those that failed come first, by
+/// the ratio to their limit, then the others by relMSE.
 pub fn index(target: &Path, reports: &[PathBuf]) -> Result<Vec<u8>, IndexError> {
     let folder = target.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     let folder = folder.canonicalize().map_err(|source| IndexError::Io { path: target.to_owned(), source })?;

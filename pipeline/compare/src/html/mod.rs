@@ -1,7 +1,7 @@
 //! The report as one HTML file that needs no other: numbers, both images as float32, and the page that shows them.
 //!
-//! Names, paths and attributes come from files and are not trusted. They reach the page as JSON only (`embed.rs`), and the page
-//! shows them as text nodes only; nothing is pasted into markup.
+//! Names, paths and attributes come from files and are not trusted. They reach the page as JSON only (`embed.rs`), and
+//! the page shows them as text nodes only; nothing is pasted into markup.
 
 mod color;
 mod embed;
@@ -47,7 +47,7 @@ struct Picture<'a> {
     window: [i32; 2],
     layers: &'a [LayerData],
     attributes: Vec<AttributePair<'a>>,
-    /// What was reduced or left out, in words.
+    /// The reductions and omissions, in words.
     notes: Vec<String>,
     colors: color::Maps,
 }
@@ -60,10 +60,12 @@ struct AttributePair<'a> {
     test: Option<String>,
 }
 
-/// The report on two images as an HTML page. `document` is what the page shows in its tables, with at least the keys of `report`.
+/// The report on two images as an HTML page. `document` is what the page shows in its tables, with at least the keys of
+/// `report`.
 ///
-/// The page is under 100 MB: beyond 2^21 pixels it holds means of blocks of pixels, and if that is still too long, larger blocks
-/// of the layers after the first; the page says so. The same input gives the same bytes for any number of threads.
+/// The page is under 100 MB: beyond 2^21 pixels it holds means of blocks of pixels, and if that is still too long,
+/// larger blocks of the layers after the first; the page says so. The same input gives the same bytes for any number of
+/// threads.
 pub fn page(
     document: &impl Serialize,
     report: &Report,

@@ -24,8 +24,8 @@ pub(super) fn block_for(size: [usize; 2], limit: usize) -> usize {
     (0..usize::BITS).map(|bit| 1 << bit).find(|block| fits(*block).is_some_and(|n| n <= limit)).unwrap_or(1)
 }
 
-/// The means over the blocks of a rectangle, row after row. Blocks at the right and bottom end may be smaller. The mean of one
-/// pixel has the bits of the pixel; the mean of a block with a value that is not finite is not finite.
+/// The means over the blocks of a rectangle, row after row. Blocks at the right and bottom end may be smaller. The mean
+/// of one pixel has the bits of the pixel; the mean of a block with a value that is not finite is not finite.
 pub(super) fn means(samples: &[f32], row: usize, area: Rectangle, block: usize) -> Vec<f32> {
     let at = |x: usize, y: usize| samples[(area.y + y) * row + area.x + x];
     let mut means = Vec::with_capacity(area.width.div_ceil(block) * area.height.div_ceil(block));

@@ -1,8 +1,8 @@
 //! Tests of the bytes of the page. Its behavior is tested in a browser (`make browser-test`).
 //!
-//! Seen to catch: `<` left in JSON, planes that are equal in both images embedded twice, bytes not shuffled, means of partial
-//! blocks divided by whole ones, offsets of the data window left out, a layer dropped without a note, a value of the template
-//! searched for names.
+//! Seen to catch: `<` left in JSON, planes that are equal in both images embedded twice, bytes not shuffled, means of
+//! partial blocks divided by whole ones, offsets of the data window left out, a layer dropped without a note, a value
+//! of the template searched for names.
 
 use std::collections::BTreeSet;
 use std::io::Read;
@@ -90,8 +90,8 @@ fn hostile_names_remain_text() {
     assert_eq!(page.matches("</script>").count(), 3 + 5 + 1);
 }
 
-/// In the markup of the page and of the index each id occurs once, every id that the scripts ask for exists, nothing is loaded,
-/// and no markup is made of text.
+/// In the markup of the page and of the index each id occurs once, every id that the scripts ask for exists, nothing is
+/// loaded, and no markup is made of text.
 #[test]
 fn pages_are_whole() {
     for (template, script) in [

@@ -62,8 +62,8 @@ fn white(values: &[f32]) -> f64 {
     value.map(f64::from).filter(|white| *white > 0.0).unwrap_or(1.0)
 }
 
-/// The largest error of each block relative to the root of the squared reference plus [`EPSILON`], as in relMSE. It is NaN if any
-/// error of the block is.
+/// The largest error of each block relative to the root of the squared reference plus [`EPSILON`], as in relMSE. It is
+/// NaN if any error of the block is.
 fn heat(planes: &[Pair<'_>], size: [usize; 2], block: usize) -> Vec<f64> {
     let row = size[0].div_ceil(block);
     let mut errors = vec![0.0_f64; row * size[1].div_ceil(block)];

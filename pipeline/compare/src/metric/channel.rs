@@ -1,4 +1,4 @@
-//! What is measured of one channel, or of all channels of a layer together.
+//! The metrics of one channel, or of all channels of a layer together.
 
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
@@ -17,7 +17,7 @@ pub struct ChannelMetric {
     pub heading: &'static str,
     /// Whether the table shows a plus sign.
     pub signed: bool,
-    /// What is averaged over the samples: a function of reference and test image.
+    /// The term that is averaged over the samples: a function of reference and test image.
     pub(super) term: fn(f64, f64) -> f64,
     /// The metric as a function of the means.
     pub(super) value: fn(&Means) -> f64,
@@ -34,8 +34,8 @@ pub(super) struct Means {
     pub term: f64,
 }
 
-/// What was measured. Values are in units of the channel unless a metric says otherwise. The names are the keys of the JSON
-/// report.
+/// The measured values. They are in units of the channel unless a metric says otherwise. The names are the keys of the
+/// JSON report.
 #[derive(Clone, Debug, Serialize)]
 pub struct Metrics {
     /// The mean of the reference.
@@ -74,8 +74,8 @@ pub(super) fn as_map<V: Serialize, S: Serializer>(
     serializer.collect_map(values.iter().map(|(key, value)| (key, value)))
 }
 
-/// Measures all samples together, and each plane by itself. The image is `width` pixels wide, `window` is its top left pixel.
-/// `terms` computes the terms of `metrics`, in the same order.
+/// Measures all samples together, and each plane by itself. The image is `width` pixels wide, `window` is its top left
+/// pixel. `terms` computes the terms of `metrics`, in the same order.
 pub(super) fn measure_each<const N: usize>(
     metrics: &[ChannelMetric; N],
     terms: impl Terms<N>,

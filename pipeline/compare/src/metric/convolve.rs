@@ -1,4 +1,5 @@
-//! One-dimensional filters over a tile, along its rows or its columns. One after the other, two make a separable filter.
+//! One-dimensional filters over a tile, along its rows or its columns. One after the other, two make a separable
+//! filter.
 
 use std::ops::Range;
 

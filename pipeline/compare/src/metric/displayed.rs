@@ -14,10 +14,10 @@ use super::tile::{Plane, SIDE, Tile, planes};
 pub(super) struct DisplayedMetric {
     /// Its key in the JSON report.
     pub key: &'static str,
-    /// What a channel of a tile adds to the sum. The planes `reference` and `test` must stay as they are.
+    /// The contribution of a channel of a tile to the sum. The planes `reference` and `test` must stay as they are.
     pub sum: fn(Tile, &mut Scratch) -> f64,
-    /// The metric of a picture of this size in pixels as a function of the sum over all tiles and the three channels, or why
-    /// there is none.
+    /// The metric of a picture of this size in pixels as a function of the sum over all tiles and the three channels,
+    /// or why there is none.
     pub value: fn(f64, [usize; 2]) -> Result<f64, String>,
     /// The metric in words.
     pub words: fn(f64) -> String,

@@ -1,4 +1,4 @@
-//! What a gate limits, and how it is called on the command line and in limits files.
+//! The kinds of gates: the value that each limits, and its name on the command line and in limits files.
 
 use super::picture::Pair;
 

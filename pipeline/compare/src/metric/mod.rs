@@ -1,7 +1,8 @@
-//! What is measured of a channel, of all channels of a layer together, and of the picture that they show.
+//! The metrics of a channel, of all channels of a layer together, and of the picture that they show.
 //!
-//! A metric is a file of this folder and a row in one of the tables below, and in [`GATES`] if it can be limited. The report,
-//! the table for people, the limits files, the options of the program and the HTML page take the rest from there.
+//! A metric is a file of this folder and a row in one of the tables below, and in [`GATES`] if it can be limited. The
+//! report, the table for people, the limits files, the options of the program and the HTML page take the rest from
+//! there.
 
 mod bias;
 mod channel;
@@ -55,8 +56,8 @@ static DISPLAYED_METRICS: [DisplayedMetric; 2] = [psnr::METRIC, ssim::METRIC];
 pub static GATES: [GateKind; 7] =
     [bias::GATE, rel_mse::GATE, mse::GATE, outliers::ABS, outliers::OUTLIERS, flip::GATE, outliers::EXACT];
 
-/// Measures all samples together, and each pair of planes by itself. The image is `width` pixels wide, `window` is its top left
-/// pixel.
+/// Measures all samples together, and each pair of planes by itself. The image is `width` pixels wide, `window` is its
+/// top left pixel.
 pub fn measure_each(samples: &[Pair<'_>], width: usize, window: [i32; 2]) -> (Metrics, Vec<Metrics>) {
     channel::measure_each(&CHANNEL_METRICS, terms, samples, width, window)
 }

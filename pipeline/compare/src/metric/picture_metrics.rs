@@ -8,12 +8,12 @@ use super::displayed::{self, DisplayedMetric};
 use super::flip::{self, Exposures, Flip, HdrFlip};
 use super::picture::Picture;
 
-/// What was measured of the picture. The names are the keys of the JSON report. Every value is NaN, `null` in JSON, if the
+/// The metrics of the picture. The names are the keys of the JSON report. Every value is NaN, `null` in JSON, if the
 /// picture is not finite.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct PictureMetrics {
-    /// The metrics of display values with their keys, in the order of their table. The PSNR of equal pictures is infinite,
-    /// `null` in JSON.
+    /// The metrics of display values with their keys, in the order of their table. The PSNR of equal pictures is
+    /// infinite, `null` in JSON.
     #[serde(flatten, serialize_with = "as_map")]
     pub values: Vec<(&'static str, Option<f64>)>,
     /// LDR-FLIP of display values.
@@ -126,8 +126,8 @@ mod tests {
         assert_eq!(metrics.missing, ["flip: not asked for"]);
     }
 
-    /// The similarity lost by all windows that see one black pixel in a plane of display value `a`. If w is its weight in a
-    /// window, the means are a and a (1 - w), and the variances 0 and a^2 w (1 - w).
+    /// The similarity lost by all windows that see one black pixel in a plane of display value `a`. If w is its weight
+    /// in a window, the means are a and a (1 - w), and the variances 0 and a^2 w (1 - w).
     fn lost_by_a_black_pixel(a: f64) -> f64 {
         let weight = |x: i32| (-f64::from(x * x) / 4.5).exp();
         let sum: f64 = (-5..=5).map(weight).sum();
@@ -157,9 +157,9 @@ mod tests {
         let small = measure(&uniform(10, 40, 0.2), &uniform(10, 40, 0.3), true);
         assert!(small.get("ssim").is_none() && small.get("psnr").is_some() && small.flip_hdr.is_some());
         assert!(small.missing[0].contains("11 x 11"));
-        let mut grey = uniform(20, 20, 0.2);
-        grey.channels.retain(|channel| channel.name == "G");
-        let metrics = measure(&grey, &grey, true);
+        let mut gray = uniform(20, 20, 0.2);
+        gray.channels.retain(|channel| channel.name == "G");
+        let metrics = measure(&gray, &gray, true);
         assert!(
             metrics.get("psnr").is_none() && metrics.flip_ldr.is_none() && metrics.missing[0].contains("no R, G and B")
         );

@@ -1,8 +1,8 @@
 //! The value of a given rank without sorting or copying, by two histograms over the bits of float32.
 //!
-//! The bits of numbers that are not negative have the order of the numbers, with infinity and then NaN at the end. The first
-//! histogram, over the upper half of the bits, finds the bin of the value; the second, over the lower half of the bits of the
-//! numbers in that bin, finds the value. Counts do not depend on the order in which they are made.
+//! The bits of numbers that are not negative have the order of the numbers, with infinity and then NaN at the end. The
+//! first histogram, over the upper half of the bits, finds the bin of the value; the second, over the lower half of the
+//! bits of the numbers in that bin, finds the value. Counts do not depend on the order in which they are made.
 
 use rayon::prelude::*;
 

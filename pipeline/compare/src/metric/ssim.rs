@@ -1,9 +1,9 @@
 //! Structural similarity: Wang, Bovik, Sheikh and Simoncelli, *Image quality assessment: from error visibility to
 //! structural similarity*, 2004.
 //!
-//! It is computed of display values with the paper's constants and Gaussian window (standard deviation 1.5 pixels, cut off at
-//! 5) and weighted moments, and averaged over the windows that lie in the picture and over the three channels. This is what
-//! scikit-image computes with `gaussian_weights=True, use_sample_covariance=False, data_range=1`.
+//! It is computed of display values with the paper's constants and Gaussian window (standard deviation 1.5 pixels, cut
+//! off at 5) and weighted moments, and averaged over the windows that lie in the picture and over the three channels.
+//! This is what scikit-image computes with `gaussian_weights=True, use_sample_covariance=False, data_range=1`.
 
 use simd::Kernel;
 

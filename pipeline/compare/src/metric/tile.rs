@@ -1,7 +1,7 @@
 //! Tiles of the picture, which are so small that everything computed from them stays in the processor's cache.
 //!
-//! A tile is a square of pixels with a margin that is wide enough for every filter. Beyond the edges of the picture the margin
-//! repeats the outermost pixels.
+//! A tile is a square of pixels with a margin that is wide enough for every filter. Beyond the edges of the picture the
+//! margin repeats the outermost pixels.
 
 /// The side of a tile in pixels.
 pub(super) const SIDE: usize = 128;
@@ -14,8 +14,8 @@ pub(super) const PITCH: usize = SIDE + 2 * MARGIN;
 /// The number of rows with both margins.
 pub(super) const ROWS: usize = SIDE + 2 * HALO;
 
-/// The number of samples that are computed together. Loops over arrays of this length become vector instructions; loops over
-/// planes do not, because the compiler has to assume that planes overlap.
+/// The number of samples that are computed together. Loops over arrays of this length become vector instructions; loops
+/// over planes do not, because the compiler has to assume that planes overlap.
 pub(super) const LANES: usize = 32;
 
 /// One channel of a tile with its margin, row after row.
@@ -65,8 +65,8 @@ impl Tile {
         [0, 1].map(|axis| SIDE.min(self.picture[axis] - self.first[axis]))
     }
 
-    /// Fills a plane from a channel of the picture. Negative values, NaN and infinity become 0, because one of them would spoil
-    /// the filtered tile.
+    /// Fills a plane from a channel of the picture. Negative values, NaN and infinity become 0, because one of them
+    /// would spoil the filtered tile.
     pub fn load(self, from: &[f32], to: &mut Plane) {
         let [width, height] = self.picture;
         for (row, line) in to.as_chunks_mut::<PITCH>().0.iter_mut().enumerate() {

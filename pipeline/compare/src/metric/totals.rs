@@ -4,7 +4,8 @@ use rayon::prelude::*;
 
 use super::worst::Found;
 
-/// The number of samples that are summed one after the other. It is fixed, so that sums do not depend on the number of threads.
+/// The number of samples that are summed one after the other. It is fixed, so that sums do not depend on the number of
+/// threads.
 const CHUNK: usize = 1 << 16;
 
 /// Computes the terms of all metrics from the values of reference and test image.

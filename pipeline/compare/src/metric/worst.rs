@@ -61,8 +61,8 @@ pub(super) fn histogram((reference, test): Pair<'_>) -> select::Histogram {
     select::upper(reference.len(), |i| error(reference, test, i))
 }
 
-/// The 99th percentile by nearest rank: the smallest error that at least 99 % of the samples do not exceed. NaN counts as the
-/// largest.
+/// The 99th percentile by nearest rank: the smallest error that at least 99 % of the samples do not exceed. NaN counts
+/// as the largest.
 pub(super) fn percentile_99(samples: &[Pair<'_>], upper: &select::Histogram) -> f64 {
     let Some(rank) = (upper.iter().sum::<u64>() * 99).div_ceil(100).checked_sub(1) else { return 0.0 };
     let (bin, rank) = select::locate(upper, rank);

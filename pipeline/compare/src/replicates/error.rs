@@ -18,7 +18,7 @@ pub enum ReplicateError {
     Invalid {
         /// The image, the folder or the summary.
         path: PathBuf,
-        /// What is wrong, and what can be done.
+        /// The fault, and its remedy.
         what: String,
     },
 }

@@ -1,9 +1,10 @@
 //! The statistical tests.
 //!
-//! Student's two-sample t-test uses the pooled variance: if nothing has changed, both sides have the same variance, and the many
-//! replicates of the reference estimate it well. Welch's test would rest on the few replicates of the test side, and at the
-//! corrected level its Student tail would need three times the deviation. A larger variance is found by tests of its own: a
-//! one-sided t-test of the noise that the images claim, and Fisher's one-sided test of the ratio of the variances.
+//! Student's two-sample t-test uses the pooled variance: if nothing has changed, both sides have the same variance, and
+//! the many replicates of the reference estimate it well. Welch's test would rest on the few replicates of the test
+//! side, and at the corrected level its Student tail would need three times the deviation. A larger variance is found
+//! by tests of its own: a one-sided t-test of the noise that the images claim, and Fisher's one-sided test of the ratio
+//! of the variances.
 
 use super::error::ReplicateError;
 use super::folder::Replicates;
@@ -17,8 +18,8 @@ pub const FALSE_ALARM_RATE: f64 = 1e-3;
 /// The probability that a bias of the size called visible is found.
 const POWER: f64 = 0.9;
 
-/// The significance level of each of `tests` tests in each of `family` folders for which all together have the false alarm rate
-/// (Šidák 1967).
+/// The significance level of each of `tests` tests in each of `family` folders for which all together have the false
+/// alarm rate (Šidák 1967).
 pub fn corrected_level(tests: usize, family: usize) -> f64 {
     -((-FALSE_ALARM_RATE).ln_1p() / (tests * family) as f64).exp_m1()
 }
@@ -76,7 +77,8 @@ fn one(reference: &Summarised, values: &[f64], (n, m): (f64, f64), level: f64) -
     let (t, p) = significance(reference, mean - reference.mean, error, freedom);
     let sided = if reference.kind == Kind::Noise { level } else { 0.5 * level };
     let limit = student_quantile(sided, freedom);
-    // The statistic of a true difference has the noncentral t distribution, whose spread includes that of the estimated error.
+    // The statistic of a true difference has the noncentral t distribution, whose spread includes that of the estimated
+    // error.
     let spread = (1.0 + 0.5 * limit * limit / freedom).sqrt();
     let visible = (limit + student_quantile(1.0 - POWER, freedom) * spread) * error;
     let scatter = tests_scatter(reference).then(|| {

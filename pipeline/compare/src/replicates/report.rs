@@ -17,7 +17,7 @@ const NAMED: usize = 3;
 pub struct Judged {
     /// The layer, the part of it, and the channel.
     pub name: String,
-    /// What the statistic measures.
+    /// The quantity that the statistic measures.
     pub kind: Kind,
     /// The mean of the reference; it is the geometric mean if logarithms are compared.
     pub reference: f64,
@@ -112,7 +112,8 @@ impl NoiseReport {
         table + "visible is the smallest bias that is found nine times in ten; of `noise`, only growth is tested\n"
     }
 
-    /// One line: `PASS name` with the smallest p-value and the visible biases, or `FAIL name` with the statistics that differ.
+    /// One line: `PASS name` with the smallest p-value and the visible biases, or `FAIL name` with the statistics that
+    /// differ.
     pub fn verdict(&self, name: &str) -> String {
         let (p, whose) = self.min_p();
         let (name, whose) = (printable(name), printable(whose));

@@ -1,8 +1,9 @@
 //! The statistics of an image: a few means over many pixels, so that they are nearly normally distributed.
 //!
-//! They are the channel means of every color layer, and the brightness and color of nine tiles of the subsurface layer, because
-//! a fault may brighten one side and darken the other. Ratios of channels do not have the noise that the channels share: the
-//! color of skin is known ten times better than its brightness. The last statistic is the noise that the image claims.
+//! They are the channel means of every color layer, and the brightness and color of nine tiles of the subsurface layer,
+//! because a fault may brighten one side and darken the other. Ratios of channels do not have the noise that the
+//! channels share: the color of skin is known ten times better than its brightness. The last statistic is the noise
+//! that the image claims.
 
 use formats::image::Image;
 use serde::{Deserialize, Serialize};
@@ -14,7 +15,7 @@ const SCATTERED: &str = "subsurface";
 /// The channels of a color layer.
 const RGB: [&str; 3] = ["R", "G", "B"];
 
-/// What a statistic measures.
+/// The quantity that a statistic measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
@@ -87,7 +88,8 @@ fn means(image: &Image, layer: &str, inside: impl Fn(usize, usize) -> bool) -> [
     })
 }
 
-/// The mean standard errors. The root gives less weight to the few pixels that the mirror image of a lamp makes very noisy.
+/// The mean standard errors. The root gives less weight to the few pixels that the mirror image of a lamp makes very
+/// noisy.
 fn noise(image: &Image) -> impl Iterator<Item = Statistic> + '_ {
     RGB.iter().filter_map(|channel| {
         let variances = image.channel(&full("variance", channel))?;
@@ -139,7 +141,8 @@ mod tests {
 
     use super::*;
 
-    /// A picture of six by six pixels: red is 1 in the left tiles, 2 in the middle and 3 on the right, green is 2, blue is 4.
+    /// A picture of six by six pixels: red is 1 in the left tiles, 2 in the middle and 3 on the right, green is 2, blue
+    /// is 4.
     fn picture() -> Image {
         let red = (0..36).map(|pixel| ((pixel % 6) / 2 + 1) as f32).collect::<Vec<_>>();
         let planes = [red, vec![2.0; 36], vec![4.0; 36]];

@@ -20,8 +20,9 @@ const SCHEMA: u32 = 1;
 const MAX_BYTES: u64 = 16 << 20;
 /// The relative standard deviation below which logarithms are compared. Above it they would be skewed.
 const LOGARITHM_BELOW: f64 = 0.2;
-/// The largest skewness of a statistic that is tested, in units of `√(6/n)`, the standard deviation of the skewness of normal
-/// numbers. For 64 replicates it is 0.77. Beyond it, means of eight would not be nearly normal five standard errors out.
+/// The largest skewness of a statistic that is tested, in units of `√(6/n)`, the standard deviation of the skewness of
+/// normal numbers. For 64 replicates it is 0.77. Beyond it, means of eight would not be nearly normal five standard
+/// errors out.
 const MAX_SKEWNESS: f64 = 2.5;
 /// The largest excess kurtosis, in units of `√(24/n)`. For 64 replicates it is 2.
 const MAX_KURTOSIS: f64 = 3.3;
@@ -52,7 +53,7 @@ pub struct Summary {
 pub struct Summarised {
     /// The layer, the part of it, and the channel.
     pub name: String,
-    /// What the statistic measures.
+    /// The quantity that the statistic measures.
     pub kind: Kind,
     /// Whether mean and variance are those of its logarithm.
     pub logarithm: bool,
@@ -115,7 +116,8 @@ impl Summary {
         Ok(Summary { schema: SCHEMA, scene, width, height, window, channels, meaning, clouds, statistics, folder })
     }
 
-    /// Refuses a folder of images, where the mean would be taken for a replicate and the summary would be read instead of them.
+    /// Refuses a folder of images, where the mean would be taken for a replicate and the summary would be read instead
+    /// of them.
     pub fn check_target(folder: &Path) -> Result<(), ReplicateError> {
         let images = if folder.is_dir() { Replicates::paths(folder)? } else { Vec::new() };
         match images.into_iter().find(|path| !path.ends_with(MEAN_IMAGE)) {
@@ -127,7 +129,8 @@ impl Summary {
         }
     }
 
-    /// Writes the summary and the mean picture into a folder, which must hold no images and is made if it does not exist.
+    /// Writes the summary and the mean picture into a folder, which must hold no images and is made if it does not
+    /// exist.
     pub fn write(&self, replicates: &Replicates, folder: &Path) -> Result<(), ReplicateError> {
         Summary::check_target(folder)?;
         std::fs::create_dir_all(folder).map_err(|source| formats::Error::write(folder, source))?;
@@ -213,8 +216,8 @@ fn leave_out_background(statistics: &mut [Summarised], replicates: &Replicates) 
     }
 }
 
-/// The mean, and the variance with n − 1 degrees of freedom. Sums are relative to the first value, so that the variance of equal
-/// values is exactly zero.
+/// The mean, and the variance with n − 1 degrees of freedom. Sums are relative to the first value, so that the variance
+/// of equal values is exactly zero.
 pub(super) fn moments(values: &[f64]) -> (f64, f64) {
     let n = values.len() as f64;
     let first = values.first().copied().unwrap_or(f64::NAN);

@@ -1,7 +1,7 @@
 //! Tests of `--accept`: what is copied, what is logged, what is refused.
 //!
-//! Seen to catch: the log overwritten, means of old and new exchanged, an image accepted that is not finite, the exit code of the
-//! verdict, the image encoded again instead of copied.
+//! Seen to catch: the log overwritten, means of old and new exchanged, an image accepted that is not finite, the exit
+//! code of the verdict, the image encoded again instead of copied.
 
 use std::fs;
 use std::process::Command;
@@ -76,8 +76,8 @@ fn the_time_is_that_of_source_date_epoch() {
     assert_eq!(log(&bench)[0]["time"], 1234);
 }
 
-/// Of many acceptances at the same time, each is logged as a change from the one before it. Seen to catch: lines whose `old` is
-/// the `new` of no other, and lost lines.
+/// Of many acceptances at the same time, each is logged as a change from the one before it. Seen to catch: lines whose
+/// `old` is the `new` of no other, and lost lines.
 #[test]
 fn acceptances_at_once_are_one_chain() {
     let bench = bench();

@@ -1,7 +1,7 @@
 //! Tests of the gates of a limits file. The unit tests of the library test what such a file may hold.
 //!
-//! Seen to catch: the gates of the file instead of those of the command line, those of the command line instead of those of the
-//! file, `--layer` applied to the gates of the file.
+//! Seen to catch: the gates of the file instead of those of the command line, those of the command line instead of
+//! those of the file, `--layer` applied to the gates of the file.
 
 use crate::support::{Compare, Verdict, bench, scale};
 use test_support::{Bench, Run};

@@ -1,8 +1,9 @@
-//! Tests that every channel of the picture is judged, that layers without a gate are named, and that the attributes that give the
-//! numbers their meaning are compared.
+//! Tests that every channel of the picture is judged, that layers without a gate are named, and that the attributes
+//! that give the numbers their meaning are compared.
 //!
-//! Seen to catch: alpha 1 against 0, X and Z of a picture of X, Y and Z, chroma beside luminance, other primaries, another display
-//! window, pixels of another shape, and a cube for a map of latitude and longitude, all of which passed without a message.
+//! Seen to catch: alpha 1 against 0, X and Z of a picture of X, Y and Z, chroma beside luminance, other primaries,
+//! another display window, pixels of another shape, and a cube for a map of latitude and longitude, all of which passed
+//! without a message.
 
 use formats::image::{Attribute, Channel, Image, Window};
 

@@ -1,8 +1,8 @@
 //! Tests of `compare --replicates` and `--summarise` as programs.
 //!
-//! Seen to catch: one tail of t only, a gate written as `!(p < level)`, samples that are not finite passing because no statistic
-//! holds them, a layer that is no longer black passing, a cloud twice, a cloud of the reference, too few replicates, another
-//! scene, a reference that is not finite, logarithms of one side only.
+//! Seen to catch: one tail of t only, a gate written as `!(p < level)`, samples that are not finite passing because no
+//! statistic holds them, a layer that is no longer black passing, a cloud twice, a cloud of the reference, too few
+//! replicates, another scene, a reference that is not finite, logarithms of one side only.
 
 use formats::image::{Attribute, Image};
 use test_support::{Bench, Run};
@@ -143,8 +143,8 @@ fn a_summary_judges_like_the_images_it_was_made_of() {
     run(&bench, "--replicates", ["golden", "test"], &[]).cannot_judge(&["same cloud", "golden"]);
 }
 
-/// Seen to catch: the mean written among the replicates, so that a second run refused the folder; a summary beside images, which
-/// would be read instead of them.
+/// Seen to catch: the mean written among the replicates, so that a second run refused the folder; a summary beside
+/// images, which would be read instead of them.
 #[test]
 fn a_summary_is_not_written_among_images() {
     let bench = bench(SOUND);

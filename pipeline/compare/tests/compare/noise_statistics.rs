@@ -1,8 +1,8 @@
 //! Tests of replicates on synthetic images with known bias and variance.
 //!
-//! Seen to catch: Šidák's correction left out, or not over all folders; the error of the reference left out; a pooled variance 25
-//! times too small, which is that of pixels; the visible bias without the quantile of the power, or of another level; variances
-//! tested on the wrong side.
+//! Seen to catch: Šidák's correction left out, or not over all folders; the error of the reference left out; a pooled
+//! variance 25 times too small, which is that of pixels; the visible bias without the quantile of the power, or of
+//! another level; variances tested on the wrong side.
 
 use std::path::{Path, PathBuf};
 
@@ -115,8 +115,8 @@ fn noise_that_grew_is_found_and_noise_that_fell_is_not() {
     assert_eq!(failing(Fault { claimed: 0.1, scatter: 0.1, ..SOUND }, |_, judged| !judged.ok), 0);
 }
 
-/// The error of the cloud is four times that of a mean over its 49 pixels with independent errors, and six standard errors are
-/// visible.
+/// The error of the cloud is four times that of a mean over its 49 pixels with independent errors, and six standard
+/// errors are visible.
 #[test]
 fn pixels_that_share_an_error_are_no_evidence() {
     let report = run(1, SOUND);

@@ -1,7 +1,7 @@
 //! Tests of `compare --html` and `--html-index` as programs.
 //!
-//! Seen to catch: the page written only on success, no guard of the inputs, links from the working folder instead of that of the
-//! index, a relMSE that is not finite counted as zero.
+//! Seen to catch: the page written only on success, no guard of the inputs, links from the working folder instead of
+//! that of the index, a relMSE that is not finite counted as zero.
 
 use test_support::{Bench, Run};
 

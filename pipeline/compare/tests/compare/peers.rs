@@ -1,10 +1,10 @@
-//! Compares metrics with those of scikit-image (SSIM, PSNR) and flip-evaluator (FLIP) for the pictures of `tests/peers`.
-//! `make peers` computes them again; this test reads them from `expected.json`.
+//! Compares metrics with those of scikit-image (SSIM, PSNR) and flip-evaluator (FLIP) for the pictures of
+//! `tests/peers`. `make peers` computes them again; this test reads them from `expected.json`.
 //!
-//! Seen to catch: another constant or width of SSIM's window, its border counted, light taken for display values, a natural
-//! logarithm; in FLIP another white, no adjustment after Hunt, a Euclidean distance, filtered colors not clamped, other weights of
-//! the two terms of the blue and yellow filter or one of them left out, points left out, features not divided by the root of 2,
-//! the last exposure left out; a black margin of tiles.
+//! Seen to catch: another constant or width of SSIM's window, its border counted, light taken for display values, a
+//! natural logarithm; in FLIP another white, no adjustment after Hunt, a Euclidean distance, filtered colors not
+//! clamped, other weights of the two terms of the blue and yellow filter or one of them left out, points left out,
+//! features not divided by the root of 2, the last exposure left out; a black margin of tiles.
 
 use std::path::PathBuf;
 
@@ -36,8 +36,8 @@ fn metrics_agree_with_the_peers() {
         let picture = compare(&read("reference"), &read("test"), &settings).unwrap().picture;
         let (name, ldr) = (format!("{} {}", pair["reference"], pair["test"]), picture.flip_ldr.as_ref().unwrap());
         let hdr = picture.flip_hdr.as_ref().unwrap();
-        // The requirement is 1e-4 for SSIM and 1e-3 for FLIP. All implementations of FLIP use float32. They agree to 1e-6, except
-        // for a single pixel, where rounding makes an edge out of none.
+        // The requirement is 1e-4 for SSIM and 1e-3 for FLIP. All implementations of FLIP use float32. They agree to
+        // 1e-6, except for a single pixel, where rounding makes an edge out of none.
         let flip = if pair["reference"] == "1x1" { 1e-4 } else { 2e-6 };
         close(&name, &pair["psnr"], picture.get("psnr"), 1e-4);
         close(&name, &pair["ssim"], picture.get("ssim"), 1e-5);

@@ -1,8 +1,8 @@
 //! Tests of PSNR, SSIM and FLIP in the program: what is measured, gates, and the same bytes for any number of threads.
 //!
-//! Seen to catch: FLIP allowed as the only gate, the gate on LDR-FLIP, a difference of zero at a pixel that is not finite, the
-//! finiteness of the picture unchecked, sums over one piece for each thread. (The sum of a map of FLIP alone is nearly always
-//! exact in float64, and would not show that.)
+//! Seen to catch: FLIP allowed as the only gate, the gate on LDR-FLIP, a difference of zero at a pixel that is not
+//! finite, the finiteness of the picture unchecked, sums over one piece for each thread. (The sum of a map of FLIP
+//! alone is nearly always exact in float64, and would not show that.)
 
 use formats::image::{Channel, Image};
 use serde_json::Value;

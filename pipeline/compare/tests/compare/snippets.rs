@@ -72,8 +72,8 @@ fn the_step_runs_again_in_the_same_folder() {
     assert!(index.contains("a.html") && index.contains("b.html"));
 }
 
-/// An image that was not rendered has no page. Its exit code 2 is not hidden by the 1 of a later image that differs. Seen to
-/// catch: a page of the last run that stays and is listed as new.
+/// An image that was not rendered has no page. Its exit code 2 is not hidden by the 1 of a later image that differs.
+/// Seen to catch: a page of the last run that stays and is listed as new.
 #[test]
 fn the_step_shows_no_page_of_an_earlier_run() {
     let bench = bench();

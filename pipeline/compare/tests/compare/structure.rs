@@ -1,6 +1,7 @@
 //! Tests of what cannot be judged: images that do not belong together, files that are no images, wrong usage.
 //!
-//! Seen to catch: no message about a hash of one image alone, `-` taken for a file, a closed stdout taken for a failure.
+//! Seen to catch: no message about a hash of one image alone, `-` taken for a file, a closed stdout taken for a
+//! failure.
 
 use std::process::Command;
 

@@ -31,9 +31,9 @@ fn a_camera_that_shows_nothing_translucent_or_stands_in_it_is_said() {
     bench.write("views.json", format!("[{},{},{}]", views[0], views[1], views[2]));
     let own = ["--medium", "skin1", "--spp", "2"];
     let said = gather(&bench, &sphere, "16", &[&own[..], &["--view", "views.json"]].concat());
-    for (warning, place) in [(NOTHING, "warning: view away: the camera"), (WITHIN, "warning: view in: the camera")] {
+    for (warning, prefix) in [(NOTHING, "warning: view away: the camera"), (WITHIN, "warning: view in: the camera")] {
         let lines: Vec<&str> = said.lines().filter(|line| line.contains(warning)).collect();
-        assert!(lines.len() == 1 && lines[0].starts_with(place), "{warning}: {said}");
+        assert!(lines.len() == 1 && lines[0].starts_with(prefix), "{warning}: {said}");
     }
     assert!(said.contains("(100 % of its paths to them)"), "{said}");
     let counted = |view: &str| {

@@ -5,7 +5,7 @@ use formats::Attribute;
 use std::{f64::consts::PI, fs};
 use test_support::{Bench, data};
 
-/// Jensen's closed form, method.md (3.5), from the published formulas alone.
+/// Jensen's closed form, docs/method.md (3.5), from the published formulas alone.
 fn reflectance(sigma_a: f64, sigma_s: f64, eta: f64) -> f64 {
     let albedo = sigma_s / (sigma_a + sigma_s);
     let diffuse = -1.4399 / (eta * eta) + 0.7099 / eta + 0.6681 + 0.0636 * eta;

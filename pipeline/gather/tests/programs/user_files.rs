@@ -374,9 +374,9 @@ fn skins_morphs_and_animations() {
     assert!(sample(&bench, &scene, &[]).contains("cameras and lights stay at rest"));
 }
 
-/// Compressed geometry is refused by the extension's name, required or not; quantised is read. `import_quantised`.
+/// Compressed geometry is refused by the extension's name, required or not; quantized is read. `import_quantized`.
 #[test]
-fn compressed_and_quantised_meshes() {
+fn compressed_and_quantized_meshes() {
     let bench = Bench::new();
     for list in ["extensionsUsed", "extensionsRequired"] {
         for name in ["KHR_draco_mesh_compression", "EXT_meshopt_compression"] {

@@ -1,5 +1,5 @@
-//! A list of views: one call, an image for each, the same bytes as one by one. Planted errors seen: the first view's size for
-//! all; files numbered from one; outputs looked at one by one.
+//! A list of views: one call, an image for each, the same bytes as one by one. Planted errors seen: the first view's
+//! size for all; files numbered from one; outputs looked at one by one.
 
 use std::fs;
 use test_support::{Bench, data};
@@ -54,7 +54,7 @@ fn lists_that_say_too_much_are_refused() {
     bench.refuses("gather", &own, &["list.json", "view 1", "eye"]);
 }
 
-/// What may be wrong with all of a list is said once.
+/// A fault that all views of a list may share is reported once.
 ///
 /// Seen to fail: said of each view.
 #[test]
@@ -68,7 +68,7 @@ fn a_list_is_warned_of_once() {
     assert_eq!(said.matches("aspect is 1.500, the image's 1.000").count(), 1, "{said}");
 }
 
-/// What is wrong with one view is said of it, and before any view is rendered.
+/// A fault of one view is reported with its name, before any view is rendered.
 #[test]
 fn faults_of_one_view_name_it_and_come_first() {
     let bench = Bench::new();

@@ -1,8 +1,9 @@
-//! One channel of the directional dipole on blocks, in four steps, with the equation of docs/method.md on each line. The
-//! steps of the three channels take turns, so that a processor has something to do while one of them waits for its roots.
+//! One channel of the directional dipole on blocks, in four steps, with the equation of docs/method.md on each line.
+//! The steps of the three channels take turns, so that a processor has something to do while one of them waits for its
+//! roots.
 //!
-//! Lengths are in units of `1/σ_t'`, so that `D = 1/3`, and `G` is in units of `3C_φ`, so that `k = C_E/(3C_φ)` is the only
-//! constant of the boundary (docs/method.md 9.7).
+//! Lengths are in units of `1/σ_t'`, so that `D = 1/3`, and `G` is in units of `3C_φ`, so that `k = C_E/(3C_φ)` is the
+//! only constant of the boundary (docs/method.md 9.7).
 
 use super::geometry::{Projections, SourceGeometry};
 use crate::{

@@ -1,5 +1,5 @@
-//! What the three channels of the directional dipole share, with the equation of docs/method.md on each line. Lengths are
-//! in m. Each part is one loop: the compiler makes worse vector code of several short ones.
+//! The geometry that the three channels of the directional dipole share, with the equation of docs/method.md on each
+//! line. Lengths are in m. Each part is one loop: the compiler makes worse vector code of several short ones.
 
 use crate::lanes::block::{Block, LANES, Lane, cross, dot};
 
@@ -9,7 +9,7 @@ const NULL_DIRECTION2: f32 = 1e-12;
 /// Square of the distance, m², below which squares lose digits: they come near the end of the range of float32.
 const NULL_DISTANCE2: f32 = 1e-30;
 
-/// What the depth of the real source depends on.
+/// The geometry on which the depth of the real source depends.
 pub(super) struct SourceGeometry {
     /// `r²`.
     pub r2: Lane,

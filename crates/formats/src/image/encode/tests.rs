@@ -1,4 +1,4 @@
-//! What is written is read again, bit for bit, and always with the same bytes.
+//! Written images are read again bit for bit, and the same image always gives the same bytes.
 
 use std::collections::BTreeMap;
 

@@ -3,7 +3,8 @@
 use super::{DAMAGED, EARLY, check};
 use base64::{Engine, engine::general_purpose::STANDARD};
 
-/// Files of 21 by 19 pixels by libjpeg, with color at half the resolution and restarts: one sequential, one progressive.
+/// Files of 21 by 19 pixels by libjpeg, with color at half the resolution and restarts: one sequential, one
+/// progressive.
 const SEQUENTIAL: &str = "\
     /9j/4AAQSkZJRgABAQAAAQABAAD/2wBDABALDA4MChAODQ4SERATGCgaGBYWGDEjJR0oOjM9PDkzODdASFxOQERXRTc4UG1RV19iZ2hnPk1xeX\
     BkeFxlZ2P/2wBDARESEhgVGC8aGi9jQjhCY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2P/wAARCAAT\
@@ -27,8 +28,8 @@ fn files() -> [Vec<u8>; 2] {
     [SEQUENTIAL, PROGRESSIVE].map(|text| STANDARD.decode(text).expect("base64"))
 }
 
-/// Seen to catch: a block too few; bits of a run of blocks not read; a refinement that reads no bits of known coefficients; padding
-/// taken for data.
+/// Seen to catch: a block too few; bits of a run of blocks not read; a refinement that reads no bits of known
+/// coefficients; padding taken for data.
 #[test]
 fn a_file_is_whole_or_refused() {
     for whole in files() {
@@ -41,8 +42,8 @@ fn a_file_is_whole_or_refused() {
     }
 }
 
-/// An end marker after too little data, so that the file does not end early. A progressive file may end after any scan: it is
-/// complete, with fewer details.
+/// An end marker after too little data, so that the file does not end early. A progressive file may end after any scan:
+/// it is complete, with fewer details.
 #[test]
 fn data_that_ends_early_is_refused_though_the_end_is_marked() {
     for whole in files() {

@@ -58,7 +58,7 @@ function setSplit(split) {
 function zoomBy(factor, point = pointOfCursor()) {
   const [x, y] = toImage(...point);
   const zoom = Math.min(Math.max(state.zoom * factor, 1 / 64), 256 * density());
-  state.centre = [x, y].map((held, i) => held - ((held - state.centre[i]) * state.zoom) / zoom);
+  state.center = [x, y].map((held, i) => held - ((held - state.center[i]) * state.zoom) / zoom);
   Object.assign(state, { zoom, fitted: false });
   draw();
 }
@@ -76,7 +76,7 @@ function fit() {
   const pane = panes()[0];
   const zoom = Math.min(pane.width / picture.width, pane.height / picture.height);
   state.zoom = zoom >= 1 ? Math.floor(zoom) : zoom;
-  state.centre = [picture.width / 2, picture.height / 2];
+  state.center = [picture.width / 2, picture.height / 2];
   state.fitted = true;
   draw();
 }

@@ -23,15 +23,15 @@ function drawLabels(pane) {
 function drawValues(pane, x, y, channels, size) {
   const { grid, index } = locate(state.data, x, y);
   if (grid.block > 1) return;
-  const centre = toStage(pane, x + 0.5, y + 0.5);
+  const center = toStage(pane, x + 0.5, y + 0.5);
   const { canvas } = paint(grid, pane.kind);
   const ink = inkOn(canvas, index % grid.width, Math.floor(index / grid.width));
   channels.forEach((channel, line) => {
     const [reference, test] = [grid.reference[channel][index], grid.test[channel][index]];
     const value = pane.kind === "reference" ? reference : pane.kind === "test" ? test : test - reference;
-    const baseline = centre[1] + (line - (channels.length - 1) / 2) * size * 1.25;
+    const baseline = center[1] + (line - (channels.length - 1) / 2) * size * 1.25;
     context.fillStyle = ink;
-    context.fillText(pixelText(value), centre[0], baseline);
+    context.fillText(pixelText(value), center[0], baseline);
   });
 }
 

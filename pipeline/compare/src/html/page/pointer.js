@@ -33,7 +33,7 @@ function pointerMove(event) {
 
 /** Moves the view by screen pixels. */
 function pan(x, y) {
-  state.centre = [state.centre[0] + x / state.zoom, state.centre[1] + y / state.zoom];
+  state.center = [state.center[0] + x / state.zoom, state.center[1] + y / state.zoom];
   state.fitted = false;
   draw();
 }

@@ -46,7 +46,7 @@ function follow() {
     const margin = Math.min(state.zoom, (high - low) / 4);
     const beyond = point[i] < low + margin ? point[i] - low - margin : point[i] > high - margin ? point[i] - high + margin : 0;
     if (beyond) {
-      state.centre[i] += beyond / state.zoom;
+      state.center[i] += beyond / state.zoom;
       state.fitted = false;
     }
   });
@@ -70,7 +70,7 @@ function goToWorst(number) {
   const [x, y] = pixel.map((coordinate, i) => coordinate - picture.window[i]);
   state.zoom = Math.max(state.zoom, (MIN_SIDE_OF_VALUES + 12) * density());
   const side = state.split > 0.5 ? state.split - 1 : state.split;
-  state.centre = [x + 0.5 - (state.view === "split" ? (side / 2) * stage.width / state.zoom : 0), y + 0.5];
+  state.center = [x + 0.5 - (state.view === "split" ? (side / 2) * stage.width / state.zoom : 0), y + 0.5];
   state.fitted = false;
   moveCursor(x, y);
 }

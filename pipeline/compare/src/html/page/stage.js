@@ -26,14 +26,14 @@ function panes() {
 
 /** The point of the stage, in screen pixels, at a point of the image. */
 function toStage(pane, x, y) {
-  return [pane.x + pane.width / 2 + (x - state.centre[0]) * state.zoom, pane.height / 2 + (y - state.centre[1]) * state.zoom];
+  return [pane.x + pane.width / 2 + (x - state.center[0]) * state.zoom, pane.height / 2 + (y - state.center[1]) * state.zoom];
 }
 
 /** The point of the image at a point of the stage in screen pixels. */
 function toImage(stageX, stageY) {
   const all = panes();
   const pane = all.find((candidate) => stageX < candidate.right) ?? all[all.length - 1];
-  return [(stageX - pane.x - pane.width / 2) / state.zoom + state.centre[0], (stageY - pane.height / 2) / state.zoom + state.centre[1]];
+  return [(stageX - pane.x - pane.width / 2) / state.zoom + state.center[0], (stageY - pane.height / 2) / state.zoom + state.center[1]];
 }
 
 let drawPending = false;

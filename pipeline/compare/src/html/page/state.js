@@ -24,7 +24,7 @@ const state = {
   split: 0.5,
   /** The number of screen pixels per image pixel, and the point of the image at the middle of the stage. */
   zoom: 1,
-  centre: [picture.width / 2, picture.height / 2],
+  center: [picture.width / 2, picture.height / 2],
   fitted: true,
   /** The column and row of the pixel that is read, from the top left of the image. */
   cursor: [Math.floor(picture.width / 2), Math.floor(picture.height / 2)],

@@ -1,4 +1,5 @@
-//! Colors: linear sRGB, the opponent channels in which contrast is filtered, and the space in which differences are measured.
+//! Colors: linear sRGB, the opponent channels in which contrast is filtered, and the space in which differences are
+//! measured.
 
 use color::xyz;
 
@@ -17,16 +18,16 @@ fn transform(matrix: &xyz::Matrix, [a, b, c]: [f32; 3]) -> [f32; 3] {
     [row(matrix[0]), row(matrix[1]), row(matrix[2])]
 }
 
-/// The opponent channels Y, X - Y and Y - Z, relative to white, of linear R, G, B in 0..1. The paper's YCxCz is 116 Y - 16,
-/// 500 (X - Y) and 200 (Y - Z); a filter whose weights sum to 1 acts on both in the same way.
+/// The opponent channels Y, X - Y and Y - Z, relative to white, of linear R, G, B in 0..1. The paper's YCxCz is 116 Y -
+/// 16, 500 (X - Y) and 200 (Y - Z); a filter whose weights sum to 1 acts on both in the same way.
 #[inline(always)]
 pub(super) fn opponents(rgb: [f32; 3]) -> [f32; 3] {
     let [x, y, z] = transform(&TO_XYZ, rgb);
     [y, x - y, y - z]
 }
 
-/// L*a*b* of opponent channels, whose R, G, B are clamped to what a screen shows, with Hunt's adjustment, by which colors fade
-/// in the dark.
+/// L*a*b* of opponent channels, whose R, G, B are clamped to what a screen shows, with Hunt's adjustment, by which
+/// colors fade in the dark.
 #[inline(always)]
 pub(super) fn hunt_lab([y, xy, yz]: [f32; 3]) -> [f32; 3] {
     let [r, g, b] = transform(&TO_RGB, [y + xy, y, y - yz]);
@@ -53,7 +54,8 @@ fn distance(a: [f32; 3], b: [f32; 3]) -> f32 {
     l.abs() + (a * a + b * b).sqrt()
 }
 
-/// The distance to the power of 0.7, the paper's q_c, by which large differences count less. It is exactly zero for equal colors.
+/// The distance to the power of 0.7, the paper's q_c, by which large differences count less. It is exactly zero for
+/// equal colors.
 #[inline(always)]
 fn compressed_distance(a: [f32; 3], b: [f32; 3]) -> f32 {
     let distance = distance(a, b);
@@ -66,8 +68,8 @@ pub(super) fn largest_difference() -> f32 {
     compressed_distance(green, blue)
 }
 
-/// The difference, 0 to 1, of two adjusted colors. Distances up to 0.4 of the largest, the paper's p_c, take 0.95 of the range,
-/// its p_t.
+/// The difference, 0 to 1, of two adjusted colors. Distances up to 0.4 of the largest, the paper's p_c, take 0.95 of
+/// the range, its p_t.
 #[inline(always)]
 pub(super) fn difference(a: [f32; 3], b: [f32; 3], largest: f32) -> f32 {
     let (joint, distance) = (0.4 * largest, compressed_distance(a, b));
@@ -85,11 +87,11 @@ mod tests {
     }
 
     #[test]
-    fn white_grey_and_black_have_no_color() {
-        for (grey, lightness) in [(0.0, 0.0), (0.001, 0.903_3), (0.184_187, 50.0), (1.0, 100.0)] {
-            let [l, a, b] = lab([grey; 3]);
+    fn white_gray_and_black_have_no_color() {
+        for (gray, lightness) in [(0.0, 0.0), (0.001, 0.903_3), (0.184_187, 50.0), (1.0, 100.0)] {
+            let [l, a, b] = lab([gray; 3]);
             // The tolerance is the rounding of 100 in float32.
-            assert!((l - lightness).abs() < 1e-4 && a.abs() < 1e-4 && b.abs() < 1e-4, "{grey}: {l} {a} {b}");
+            assert!((l - lightness).abs() < 1e-4 && a.abs() < 1e-4 && b.abs() < 1e-4, "{gray}: {l} {a} {b}");
         }
     }
 

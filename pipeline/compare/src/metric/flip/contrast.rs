@@ -1,4 +1,5 @@
-//! Contrast sensitivity: filters of the opponent channels remove what is too fine to be seen. Color blurs more than light.
+//! Contrast sensitivity: filters of the opponent channels remove what is too fine to be seen. Color blurs more than
+//! light.
 
 use std::f64::consts::PI;
 

@@ -87,12 +87,12 @@ fn light_shown() -> f64 {
 mod tests {
     use super::*;
 
-    fn exposures(greys: &[f32]) -> Exposures {
-        Exposures::of(&Picture { size: [greys.len(), 1], reference: [greys; 3], test: [greys; 3] })
+    fn exposures(grays: &[f32]) -> Exposures {
+        Exposures::of(&Picture { size: [grays.len(), 1], reference: [grays; 3], test: [grays; 3] })
     }
 
     #[test]
-    fn the_curve_shows_black_grey_and_white() {
+    fn the_curve_shows_black_gray_and_white() {
         let tone = Tone::Aces(ACES_SCALE as f32);
         assert_eq!(
             [tone.show(0.0), tone.show(f32::MAX), Tone::Clamp.show(0.3), Tone::Clamp.show(3.0)],

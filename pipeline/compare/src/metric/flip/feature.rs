@@ -37,7 +37,8 @@ impl Default for Detectors {
     }
 }
 
-/// The difference, 0 to 1, of the edges and points of reference and test at a pixel. The paper's exponent q_f is a half.
+/// The difference, 0 to 1, of the edges and points of reference and test at a pixel. The paper's exponent q_f is a
+/// half.
 #[inline(always)]
 pub(super) fn difference(edges: [f32; 2], points: [f32; 2]) -> f32 {
     let largest = (edges[0] - edges[1]).abs().max((points[0] - points[1]).abs());

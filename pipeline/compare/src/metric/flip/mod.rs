@@ -1,10 +1,10 @@
 //! FLIP: the difference that is seen when two pictures are shown in alternation, 0 to 1 for every pixel.
 //!
 //! LDR-FLIP is Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild, *FLIP: A Difference Evaluator for
-//! Alternating Images*, 2020; HDR-FLIP is Andersson, Nilsson, Shirley and Akenine-Möller, *Visualizing Errors in Rendered
-//! High Dynamic Range Images*, 2021. All constants are those of the papers. The viewer sits 0.7 m from a screen that is 0.7 m
-//! wide and has 3840 columns. Negative light counts as no light. A pixel that is not finite in one of the images is NaN in the
-//! map, and so is the mean; the filters of its neighbors take it as black.
+//! Alternating Images*, 2020; HDR-FLIP is Andersson, Nilsson, Shirley and Akenine-Möller, *Visualizing Errors in
+//! Rendered High Dynamic Range Images*, 2021. All constants are those of the papers. The viewer sits 0.7 m from a
+//! screen that is 0.7 m wide and has 3840 columns. Negative light counts as no light. A pixel that is not finite in one
+//! of the images is NaN in the map, and so is the mean; the filters of its neighbors take it as black.
 
 use rayon::prelude::*;
 use serde::Serialize;

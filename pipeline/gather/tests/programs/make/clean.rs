@@ -1,4 +1,4 @@
-//! What make removes and where it writes: nothing of others.
+//! make removes and overwrites no files of others.
 
 use super::{IMAGES, Tree, said, view};
 use std::{fs, os::unix::fs::symlink, process::Command};
@@ -101,8 +101,8 @@ fn out_of_the_environment_is_not_used() {
     }
 }
 
-/// A name that is not one word to make would be written elsewhere, or read from elsewhere: of `OUT="out copy"` the Makefile
-/// was seen to make the folder `copy`.
+/// A name that is not one word to make would be written elsewhere, or read from elsewhere: of `OUT="out copy"` the
+/// Makefile was seen to make the folder `copy`.
 #[test]
 fn names_that_make_reads_otherwise_are_refused() {
     let tree = Tree::new();
@@ -129,8 +129,8 @@ fn names_that_make_reads_otherwise_are_refused() {
     }
 }
 
-/// The copy that `make check-power` makes is removed with the next run: seen to remove a `tree` of somebody else's in the
-/// folder that the variable WORK names.
+/// The copy that `make check-power` makes is removed with the next run: seen to remove a `tree` of somebody else's in
+/// the folder that the variable WORK names.
 #[test]
 fn check_power_removes_its_own_copy_only() {
     let tree = Tree::new();

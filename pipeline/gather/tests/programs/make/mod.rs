@@ -14,7 +14,7 @@ use std::{
 };
 use test_support::{Bench, program};
 
-/// Where the images of `thing` lie.
+/// The folder of the images of `thing`.
 const IMAGES: &str = "out/thing/k500-s0/marble-directional-dipole";
 
 /// A copy of what make needs, in a folder below that of the bench.
@@ -22,7 +22,7 @@ struct Tree {
     bench: Bench,
 }
 
-/// What a run of make said, both streams.
+/// The output of a run of make, both streams.
 struct Said(String);
 
 impl Tree {
@@ -56,7 +56,7 @@ impl Tree {
         fs::write(path, content).expect("writes");
     }
 
-    /// The same with a time before that of all other files.
+    /// Writes a file whose time is before that of all other files.
     fn write_old(&self, name: &str, content: impl AsRef<[u8]>) {
         self.write(name, content);
         let file = fs::OpenOptions::new().append(true).open(self.path(name)).expect("opens");

@@ -5,7 +5,7 @@ use serde_json::json;
 use std::{fs, os::unix::fs::PermissionsExt};
 use test_support::data;
 
-/// Of two files of one name the last must count, also if it is the older one. Seen to fail where targets depended on
+/// If two files have one name, the one that was named last counts, even if it is the older one. Seen to fail where targets depended on
 /// files by their times: each of these left the picture of the other file.
 #[test]
 fn a_picture_is_of_the_file_that_was_named() {
@@ -24,7 +24,7 @@ fn a_picture_is_of_the_file_that_was_named() {
     });
 }
 
-/// The same of media and environments, and of one file that an older one takes the place of.
+/// The same holds for media and environments, and for a file that is replaced by an older one.
 #[test]
 fn a_picture_is_of_the_medium_and_the_environment_that_were_named() {
     let tree = Tree::new();
@@ -37,11 +37,11 @@ fn a_picture_is_of_the_medium_and_the_environment_that_were_named() {
     let arguments = ["SCENE=thing.gltf", "VIEWS=s.json", "MEDIUM=b/m.json", "ENVIRONMENT=sky.exr"];
     tree.remakes(image, &arguments, || tree.write_old("b/m.json", medium(2.0)));
     tree.remakes(image, &arguments, || tree.write_old("sky.exr", sky(0.7)));
-    // Of the size and time of the last.
+    // This file has the size and the time of the last one.
     tree.remakes(image, &arguments, || tree.write_old("b/m.json", medium(3.0)));
 }
 
-/// What a .gltf names beside it. Seen to fail where a picture depended on the .gltf alone.
+/// A picture depends on the files that a .gltf names. Seen to fail where a picture depended on the .gltf alone.
 #[test]
 fn a_picture_is_of_what_the_scene_names() {
     let tree = Tree::new();
@@ -101,8 +101,8 @@ fn cameras_are_of_the_scene_that_was_named() {
     }
 }
 
-/// The gallery and the images of `make check`, of one scene. Seen to fail where the .png stood for nothing, where an older
-/// picture in the place of the environment changed nothing, and where the sheet of one model stayed for another.
+/// The gallery and the images of `make check`, of one scene. Seen to fail where the .png stood for nothing, where an
+/// older picture in the place of the environment changed nothing, and where the sheet of one model stayed for another.
 #[test]
 fn the_gallery_is_of_what_it_was_made_from() {
     let tree = Tree::new();

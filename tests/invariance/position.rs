@@ -20,11 +20,11 @@ use test_support::{
 /// not.
 const FAR: [[f64; 3]; 3] = [[512.0, -256.0, 1024.0], [571.3, 0.0, 0.0], [-333.1, 571.3, 87.654_321]];
 
-/// World positions are float64 until the centre of the mesh is subtracted: rounding there is 10⁻¹³ m, six orders
+/// World positions are float64 until the center of the mesh is subtracted: rounding there is 10⁻¹³ m, six orders
 /// below the float32 of a coordinate. A few coordinates in ten thousand round to the next float32, which changes
 /// light by 10⁻⁷ at most; the roulette decides in float64 and keeps its decisions.
 ///
-/// Seen to catch: the centre subtracted after rounding to float32; a light, or the camera, left in world coordinates.
+/// Seen to catch: the center subtracted after rounding to float32; a light, or the camera, left in world coordinates.
 #[test]
 fn far_from_the_origin_the_image_is_the_same() {
     let original = Figure::read().with_panel(PANEL).world();

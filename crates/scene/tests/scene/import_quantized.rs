@@ -9,8 +9,9 @@ const UNSIGNED_BYTE: u32 = 5121;
 const SHORT: u32 = 5122;
 const UNSIGNED_SHORT: u32 = 5123;
 
-/// The tetrahedron with the attribute of this accessor as integers in a view of `stride` bytes, to be scaled by `scale`.
-fn quantised(accessor: usize, vectors: &[[i32; 3]; 4], kind: (u32, usize, bool), scale: f64) -> Asset {
+/// The tetrahedron with the attribute of this accessor as integers in a view of `stride` bytes, to be scaled by
+/// `scale`.
+fn quantized(accessor: usize, vectors: &[[i32; 3]; 4], kind: (u32, usize, bool), scale: f64) -> Asset {
     let (component, width, normalized) = kind;
     let mut asset = tetrahedron();
     let stride = (3 * width).next_multiple_of(4);
@@ -46,7 +47,7 @@ fn positions_of_every_kind_of_integer() {
     for (component, width, largest) in kinds {
         let integers = TETRAHEDRON.map(|p| p.map(|x| x as i32 * largest));
         for (normalized, scale) in [(true, 1.0), (false, 1.0 / f64::from(largest))] {
-            let scene = quantised(0, &integers, (component, width, normalized), scale).import().expect("a good file");
+            let scene = quantized(0, &integers, (component, width, normalized), scale).import().expect("a good file");
             assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
             for (a, b) in world(&scene).iter().zip(&expected) {
                 assert!(a.distance(*b) < 1e-6, "{component}: {a} {b}");
@@ -55,7 +56,7 @@ fn positions_of_every_kind_of_integer() {
     }
     // Negative ones. The smallest integer of a type is -1, too.
     let below = TETRAHEDRON.map(|p| p.map(|x| if x > 0.0 { -128 } else { 0 }));
-    let (low, high) = quantised(0, &below, (BYTE, 1, true), 1.0).import().expect("a good file").mesh.bounds();
+    let (low, high) = quantized(0, &below, (BYTE, 1, true), 1.0).import().expect("a good file").mesh.bounds();
     assert_eq!(high - low, DVec3::ONE);
 }
 
@@ -64,7 +65,7 @@ fn normals_of_normalized_integers() {
     for (component, width, largest) in [(BYTE, 1, 127.0), (SHORT, 2, 32767.0)] {
         let out = TETRAHEDRON.map(|p| DVec3::from_array(p.map(f64::from)) - 0.25);
         let integers = out.map(|n| (n.normalize() * largest).to_array().map(|x| x.round() as i32));
-        let scene = quantised(1, &integers, (component, width, true), 1.0).import().expect("a good file");
+        let scene = quantized(1, &integers, (component, width, true), 1.0).import().expect("a good file");
         let plain = tetrahedron().import().expect("a good file");
         for k in 0..4 {
             let of = |scene: &Scene| scene.mesh.point(k, [0.6, 0.3, 0.1], NormalKind::Shading).normal;
@@ -75,7 +76,7 @@ fn normals_of_normalized_integers() {
 
 #[test]
 fn integers_of_32_bits_and_normalized_floats_are_none_of_it() {
-    let wide = quantised(0, &[[1; 3]; 4], (5125, 4, false), 1.0);
+    let wide = quantized(0, &[[1; 3]; 4], (5125, 4, false), 1.0);
     assert!(fault(&wide).contains("POSITION: the accessor must hold VEC3"));
     let mut float = tetrahedron();
     float.set("/accessors/1/normalized", json!(true));

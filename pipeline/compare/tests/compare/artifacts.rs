@@ -1,7 +1,7 @@
 //! Tests of the images that the program writes: the signed difference and the heatmap.
 //!
-//! Seen to catch: reference - test, outputs written only on success, the guard of the inputs left out for each option, the scale
-//! taken from the images.
+//! Seen to catch: reference - test, outputs written only on success, the guard of the inputs left out for each option,
+//! the scale taken from the images.
 
 use std::path::Path;
 

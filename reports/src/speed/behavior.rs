@@ -6,7 +6,7 @@ use crate::{
         configuration::{CloudKind, Configuration, Medium, Subject, Summing},
         harness::Harness,
         measure::{self, Reference},
-        model::{Behaviour, Line, PathCost, PowerLaw},
+        model::{Behavior, Line, PathCost, PowerLaw},
         picture::Picture,
         shot::Shot,
     },
@@ -20,7 +20,7 @@ pub struct Case<'a> {
     /// Width and height, pixels.
     pub side: u64,
     pub reference: &'a Reference,
-    /// Exponent of the error of the paths: see [`Behaviour`].
+    /// Exponent of the error of the paths: see [`Behavior`].
     pub falls: f64,
 }
 
@@ -88,12 +88,12 @@ pub fn falls(harness: &mut Harness, case: &Case) -> Result<f64, Error> {
 }
 
 /// Measures variance and time of the paths of a configuration, and joins them with the facts of its clouds.
-pub fn behaviour(
+pub fn behavior(
     harness: &mut Harness,
     case: &Case,
     configuration: Configuration,
     cloud: &CloudFacts,
-) -> Result<Behaviour, Error> {
+) -> Result<Behavior, Error> {
     let effort = harness.effort;
     let tree = matches!(configuration.summing, Summing::Cut(_));
     let counts = match tree {
@@ -124,7 +124,7 @@ pub fn behaviour(
     } else {
         PathCost::Every(Line::fit(&per_path).unwrap_or_default())
     };
-    Ok(Behaviour {
+    Ok(Behavior {
         pixels,
         cloud: cloud.law,
         paths: Line::fit(&paths).unwrap_or_default(),
