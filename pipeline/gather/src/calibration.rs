@@ -35,13 +35,13 @@ const DARKEST: f64 = 1e-6;
 /// whole sum.
 const RANGE: (f64, f64) = (0.01, 8.0);
 
-/// Measures the calibration of each object. `size` is that of the image, pixels.
-pub fn calibrate(renderer: &mut Renderer, size: DVec2, seed: u64) {
+/// Measures the calibration of each object.
+pub fn calibrate(renderer: &mut Renderer) {
     let Some(accuracy) = renderer.estimator_for(1.0).accuracy() else {
         return;
     };
-    let stream = Stream::new(seed, Purpose::Calibration);
-    let points = points(renderer, size, stream);
+    let stream = Stream::new(renderer.settings.seed, Purpose::Calibration);
+    let points = points(renderer, stream);
     for (material, points) in points.iter().enumerate() {
         let mut measured = Vec::new();
         for round in 0..ROUNDS {
@@ -73,16 +73,17 @@ fn fit(measured: &[Measured]) -> Calibration {
 }
 
 /// For each material, points that the camera sees, with their normals.
-fn points(renderer: &Renderer, size: DVec2, stream: Stream) -> Vec<Vec<(DVec3, DVec3)>> {
+fn points(renderer: &Renderer, stream: Stream) -> Vec<Vec<(DVec3, DVec3)>> {
+    let (input, size) = (&renderer.input, renderer.settings.size());
     let mut points = vec![Vec::new(); renderer.objects.len()];
     let spread = Sequence::new(stream.item(0), stream);
     for index in 0..RAYS {
         let [x, y, ..] = spread.point(index);
-        let (origin, direction) = renderer.camera.ray(DVec2::new(x, y) * size, size);
-        let Some(hit) = renderer.rays.closest(origin - renderer.scene.origin, direction, None) else {
+        let (origin, direction) = input.camera.ray(DVec2::new(x, y) * size, size);
+        let Some(hit) = input.rays.closest(origin - input.scene.origin, direction, None) else {
             continue;
         };
-        let point = renderer.scene.mesh.point(hit.triangle, hit.weights, renderer.normals);
+        let point = input.scene.mesh.point(hit.triangle, hit.weights, renderer.settings.normals);
         let own: &mut Vec<_> = &mut points[point.material as usize];
         if own.len() < POINTS && point.normal.dot(direction) < 0.0 {
             own.push((point.position, point.normal));
@@ -118,7 +119,7 @@ fn measure(
         let sum = |replicate: u64| {
             let exit = Exit::new(*position, *normal, item.bits(round * REPLICATES + replicate));
             let (half, shard) = (index % 2, index / 2 % summation.shards());
-            summation.sum(renderer.estimator_for(1.0), half, shard, &exit, context.scratch(material))
+            summation.sum(renderer.estimator_for(1.0), half, shard, &exit, &mut context.scratch[material])
         };
         let sums: Vec<Sum> = (0..REPLICATES).map(sum).collect();
         let (mean, variance) = moments(&sums);

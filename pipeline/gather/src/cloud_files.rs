@@ -10,7 +10,8 @@ use std::{fmt::Display, num::NonZeroUsize, path::PathBuf};
 /// The open clouds of a request, at least one, which are gathered as one.
 pub struct CloudFiles {
     paths: Vec<PathBuf>,
-    clouds: Vec<Cloud>,
+    /// In an order that does not depend on that of the arguments.
+    pub clouds: Vec<Cloud>,
 }
 
 impl CloudFiles {
@@ -20,11 +21,6 @@ impl CloudFiles {
         let files: Vec<(PathBuf, Cloud)> = paths.iter().map(open).collect::<Result<_, formats::Error>>()?;
         let (paths, clouds) = shards::join(files)?;
         Ok(CloudFiles { paths, clouds })
-    }
-
-    /// The clouds, in an order that does not depend on that of the arguments.
-    pub fn clouds(&self) -> &[Cloud] {
-        &self.clouds
     }
 
     /// Defects of the sampled surfaces, as phase one found them.

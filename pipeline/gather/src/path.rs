@@ -64,7 +64,7 @@ impl Renderer<'_> {
     ) {
         while self.step(state, mirrored, light, context) {
             state.events += 1;
-            if state.events >= self.max_depth {
+            if state.events >= self.settings.max_depth {
                 context.counts.cut_by_depth += 1;
                 break;
             }
@@ -81,13 +81,13 @@ impl Renderer<'_> {
     ) -> bool {
         context.counts.rays += 1;
         let free = self.free_path(state);
-        let Some(hit) = self.rays.closest_within(state.origin, state.direction, free, state.from) else {
+        let Some(hit) = self.input.rays.closest_within(state.origin, state.direction, free, state.from) else {
             if free == f64::INFINITY {
                 self.escape(state, light, &mut context.counts);
             }
             return false;
         };
-        let point = self.scene.mesh.point(hit.triangle, hit.weights, self.normals);
+        let point = self.input.scene.mesh.point(hit.triangle, hit.weights, self.settings.normals);
         let side = if state.direction.dot(point.geometric_normal) < 0.0 { Side::Outside } else { Side::Inside };
         let object = self.objects[point.material as usize].as_ref();
         if object.is_some() && state.from.is_none() && state.inside.is_none() {
@@ -167,18 +167,18 @@ impl Renderer<'_> {
         light: &mut PathLight,
         counts: &mut Counts,
     ) -> bool {
-        let material = &self.scene.materials[point.material as usize];
+        let material = &self.input.scene.materials[point.material as usize];
         if material.emits() && (side == Side::Outside || material.double_sided) {
             light.add(state, Layer::Emission, material.emission);
         }
-        let bsdf = Surface::opaque(self.scene.color(hit.triangle, hit.weights).truncate());
+        let bsdf = Surface::opaque(self.input.scene.color(hit.triangle, hit.weights).truncate());
         if bsdf.is_specular() {
             let meeting = Meeting::new(point, bsdf, side, -state.direction, counts);
             return meeting.scatter(state, Lobe::Reflection, Layer::Specular, counts);
         }
         let view = View { normal: point.normal, direction: -state.direction, side };
         let xi = || [state.uniform(), state.uniform()];
-        let irradiance = all_light_at(&self.lights, self.rays, point, xi, &mut counts.shadow_rays);
+        let irradiance = all_light_at(&self.lights, self.input.rays, point, xi, &mut counts.shadow_rays);
         // A diffuse BSDF has one value for all directions, which the irradiance of all lights is multiplied by.
         light.add(state, Layer::Diffuse, bsdf.evaluate(&view, view.normal) * irradiance);
         false
@@ -207,13 +207,13 @@ impl Renderer<'_> {
                 let mut branch = PathState { dimension: state.dimension + BRANCH, events: state.events + 1, ..*state };
                 branch.throughput *= 1.0 - transmittance;
                 let follows = meeting.scatter(&mut branch, Lobe::Reflection, Layer::Specular, counts);
-                *mirrored = (follows && branch.events < self.max_depth).then_some(branch);
+                *mirrored = (follows && branch.events < self.settings.max_depth).then_some(branch);
                 counts.cut_by_depth += u64::from(follows && mirrored.is_none());
             }
             state.throughput *= transmittance;
             light.through = if object.is_dark() { 0.0 } else { transmittance };
         }
-        let emission = self.scene.materials[point.material as usize].emission;
+        let emission = self.input.scene.materials[point.material as usize].emission;
         light.add(state, Layer::Emission, emission);
         self.gather(state, object, point, meeting.view.normal, light, context);
         state.inside = Some(point.material);
@@ -246,10 +246,10 @@ impl Renderer<'_> {
     /// [`PathLight::through`] of a path along this ray.
     pub fn through(&self, origin: DVec3, direction: DVec3, counts: &mut Counts) -> f64 {
         counts.edge_rays += 1;
-        let Some(hit) = self.rays.closest(origin, direction, None) else {
+        let Some(hit) = self.input.rays.closest(origin, direction, None) else {
             return 0.0;
         };
-        let point = self.scene.mesh.point(hit.triangle, hit.weights, self.normals);
+        let point = self.input.scene.mesh.point(hit.triangle, hit.weights, self.settings.normals);
         let view = -direction;
         match &self.objects[point.material as usize] {
             Some(object) if view.dot(point.geometric_normal) > 0.0 && !object.is_dark() => {
@@ -261,14 +261,14 @@ impl Renderer<'_> {
 
     /// Normal, position and depth of what the ray meets first.
     pub fn guide(&self, origin: DVec3, direction: DVec3) -> Guide {
-        let Some(hit) = self.rays.closest(origin, direction, None) else {
+        let Some(hit) = self.input.rays.closest(origin, direction, None) else {
             return Guide::default();
         };
-        let point = self.scene.mesh.point(hit.triangle, hit.weights, self.normals);
+        let point = self.input.scene.mesh.point(hit.triangle, hit.weights, self.settings.normals);
         Guide {
             normal: point.normal,
-            position: point.position + self.scene.origin,
-            depth: hit.distance * direction.dot(self.camera.forward),
+            position: point.position + self.input.scene.origin,
+            depth: hit.distance * direction.dot(self.input.camera.forward),
         }
     }
 }

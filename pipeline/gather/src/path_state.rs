@@ -21,17 +21,13 @@ pub struct PathIndex {
 pub struct ThreadContext {
     pub counts: Counts,
     /// Of each material.
-    scratch: Vec<Scratch>,
+    pub scratch: Vec<Scratch>,
 }
 
 impl ThreadContext {
     /// The context for a scene with this number of materials.
     pub fn new(materials: usize) -> ThreadContext {
         ThreadContext { counts: Counts::default(), scratch: vec![Scratch::default(); materials] }
-    }
-
-    pub fn scratch(&mut self, material: usize) -> &mut Scratch {
-        &mut self.scratch[material]
     }
 }
 

@@ -28,7 +28,7 @@ impl Renderer<'_> {
         }
         let exit = |half: usize| Exit::new(point.position, normal, state.key.bits(2 * state.dimension + half as u64));
         let estimator = self.estimator_for(state.throughput.max_element());
-        let scratch = context.scratch(point.material as usize);
+        let scratch = &mut context.scratch[point.material as usize];
         let leaving = if self.gathers_by_shard() {
             object.summation.by_shard(estimator, state.half, state.turn, exit, scratch)
         } else {
@@ -42,7 +42,7 @@ impl Renderer<'_> {
 
     /// Whether each path of a pixel gathers from one half of one shard, round-robin, instead of from all samples.
     fn gathers_by_shard(&self) -> bool {
-        self.estimator.is_hierarchical() && self.paths_per_pixel > 1
+        self.settings.estimator.is_hierarchical() && self.paths_per_pixel > 1
     }
 
     /// The estimator of one sum, a `share` of which arrives at the camera. The errors of the sums of a pixel are
@@ -50,6 +50,6 @@ impl Renderer<'_> {
     pub fn estimator_for(&self, share: f64) -> Estimator {
         let sums =
             if self.gathers_by_shard() { f64::from(self.paths_per_pixel) } else { 2.0 * self.drawn.shards() as f64 };
-        self.estimator.map_accuracy(|accuracy| (accuracy * sums.sqrt() / share.max(1e-3)).min(MAX_ERROR))
+        self.settings.estimator.map_accuracy(|accuracy| (accuracy * sums.sqrt() / share.max(1e-3)).min(MAX_ERROR))
     }
 }
