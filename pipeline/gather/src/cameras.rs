@@ -1,7 +1,7 @@
 //! The cameras that images are rendered from: of a view file, or of the scene.
 
 use crate::settings::{CameraSource, Request};
-use cli::{Failure, Unclear, camera_names, the_one, word_for};
+use cli::{Failure, camera_names, the_one, word_for};
 use scene::{Camera, DVec3, Scene, View, ViewFile};
 use std::path::Path;
 
@@ -60,17 +60,12 @@ fn of_scene(word: Option<&str>, scene: &Scene, path: &Path, middle: DVec3) -> Re
         return Err(Failure::usage(format!("{path}: no camera; give one with --view FILE.json")));
     }
     let names = camera_names(scene);
-    let index = match word.map_or(Ok(0), |word| the_one(word, &names, true)) {
-        Ok(index) => index,
-        Err(unclear) => {
-            let word = word.unwrap_or_default();
-            return Err(Failure::usage(match unclear {
-                Unclear::Unknown { known } => format!("--camera: {path} has no `{word}`; it has {known}"),
-                Unclear::Several { choices } => {
-                    format!("--camera: `{word}` may be more than one camera of {path}: give one of {choices}")
-                }
-            }));
-        }
+    let index = match word {
+        None => 0,
+        Some(word) => the_one(word, &names, true).map_err(|unclear| {
+            let missing = format!("{path} has no `{word}`; it has");
+            Failure::usage(unclear.message("--camera", word, &missing, &format!("camera of {path}")))
+        })?,
     };
     Ok(Viewpoint {
         tag: None,

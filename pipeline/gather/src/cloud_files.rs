@@ -41,20 +41,20 @@ impl CloudFiles {
 
     /// Refuses clouds that were not sampled from this scene, read in this way, and says what differs.
     pub fn check_fit(&self, scene: &Scene, request: &Request) -> Result<(), Failure> {
-        let (how, options) = (&request.scene, &self.clouds[0].meta().options);
-        if let Some(differs) = self.difference(scene, how) {
-            let (cloud, scene) = (self.paths[0].display(), how.path.display());
+        let (settings, options) = (&request.scene, &self.clouds[0].meta().options);
+        if let Some(differs) = self.difference(scene, settings) {
+            let (cloud, scene) = (self.paths[0].display(), settings.path.display());
             let message = format!("{cloud}: this cloud is not of {scene}: {differs}; sample the scene again");
             return Err(Failure::usage(message));
         }
-        if how.normals != options.normals {
-            request.common.warn(format_args!("--normals is {}, the cloud's {}", how.normals, options.normals));
+        if settings.how.normals != options.normals {
+            request.common.warn(format_args!("--normals is {}, the cloud's {}", settings.how.normals, options.normals));
         }
         Ok(())
     }
 
     /// What differs between the first cloud, which stands for all, and the scene.
-    fn difference(&self, scene: &Scene, how: &SceneSettings) -> Option<String> {
+    fn difference(&self, scene: &Scene, settings: &SceneSettings) -> Option<String> {
         let meta = self.clouds[0].meta();
         let options = &meta.options;
         let option = |name: &str, here: &dyn Display, there: &dyn Display| {
@@ -63,9 +63,9 @@ impl CloudFiles {
         };
         let renamed =
             |m: &SampledMaterial| scene.materials.get(usize::from(m.index)).is_none_or(|own| own.name != m.name);
-        option("--metres-per-unit", &how.metres_per_unit, &options.metres_per_unit)
-            .or_else(|| option("--light-unit", &how.light_unit, &options.light_unit))
-            .or_else(|| option("--emission-unit", &how.emission_unit, &options.emission_unit))
+        option("--metres-per-unit", &settings.how.metres_per_unit, &options.metres_per_unit)
+            .or_else(|| option("--light-unit", &settings.how.light_unit, &options.light_unit))
+            .or_else(|| option("--emission-unit", &settings.emission_unit(), &options.emission_unit))
             .or_else(|| (scene.geometry_digest() != meta.geometry).then(|| "its mesh or materials differ".into()))
             .or_else(|| meta.materials.iter().any(renamed).then(|| "its materials differ".into()))
             .or_else(|| (scene.light_digest() != meta.lights).then(|| "its lights differ".into()))

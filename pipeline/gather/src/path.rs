@@ -3,8 +3,7 @@
 
 use crate::{
     counts::Counts,
-    path_light::{Guide, Layer, PathLight},
-    path_state::{PathIndex, PathState, ThreadContext},
+    path_state::{Guide, Layer, PathIndex, PathLight, PathState, ThreadContext, Trace},
     renderer::{Renderer, TranslucentObject},
     shards::ShardPick,
 };
@@ -34,14 +33,13 @@ impl Renderer<'_> {
             dimension: 0,
             key: self.gathers.item(item),
         };
-        let mut light = PathLight::default();
+        let mut trace = Trace::default();
         context.counts.paths += 1;
-        let mut mirrored = None;
-        self.follow(&mut state, &mut mirrored, &mut light, context);
-        if let Some(mut state) = mirrored {
-            self.follow(&mut state, &mut None, &mut light, context);
+        self.follow(&mut state, &mut trace, context);
+        if let Some(mut state) = trace.mirrored.take() {
+            self.follow(&mut state, &mut trace, context);
         }
-        light
+        trace.light
     }
 
     /// The shard that a path gathers from, chosen among the paths of its half that are added in the same pass.
@@ -54,15 +52,9 @@ impl Renderer<'_> {
         self.drawn.pick_shard(half as usize, index.path / 2 - start, end - start, random)
     }
 
-    /// Follows a branch until it ends; `mirrored` becomes the second one if it splits.
-    fn follow(
-        &self,
-        state: &mut PathState,
-        mirrored: &mut Option<PathState>,
-        light: &mut PathLight,
-        context: &mut ThreadContext,
-    ) {
-        while self.step(state, mirrored, light, context) {
+    /// Follows a branch until it ends.
+    fn follow(&self, state: &mut PathState, trace: &mut Trace, context: &mut ThreadContext) {
+        while self.step(state, trace, context) {
             state.events += 1;
             if state.events >= self.settings.max_depth {
                 context.counts.cut_by_depth += 1;
@@ -72,18 +64,12 @@ impl Renderer<'_> {
     }
 
     /// Follows the path to its next surface; false if it ends.
-    fn step(
-        &self,
-        state: &mut PathState,
-        mirrored: &mut Option<PathState>,
-        light: &mut PathLight,
-        context: &mut ThreadContext,
-    ) -> bool {
+    fn step(&self, state: &mut PathState, trace: &mut Trace, context: &mut ThreadContext) -> bool {
         context.counts.rays += 1;
         let free = self.free_path(state);
         let Some(hit) = self.input.rays.closest_within(state.origin, state.direction, free, state.from) else {
             if free == f64::INFINITY {
-                self.escape(state, light, &mut context.counts);
+                self.escape(state, &mut trace.light, &mut context.counts);
             }
             return false;
         };
@@ -99,7 +85,7 @@ impl Renderer<'_> {
         }
         let point = point.facing(-state.direction);
         match (object, side) {
-            (None, _) => self.meet_opaque(state, &point, side, &hit, light, &mut context.counts),
+            (None, _) => self.meet_opaque(state, &point, side, &hit, &mut trace.light, &mut context.counts),
             (Some(_), Side::Outside) if state.inside.is_some() => {
                 // The path is inside an object already and goes straight on. It starts a little beyond the surface, because
                 // two triangles at the same point of the ray would send it back and forth.
@@ -108,7 +94,7 @@ impl Renderer<'_> {
                 state.from = None;
                 true
             }
-            (Some(object), Side::Outside) => self.meet_from_outside(state, object, &point, mirrored, light, context),
+            (Some(object), Side::Outside) => self.meet_from_outside(state, object, &point, trace, context),
             (Some(object), Side::Inside) => self.meet_from_inside(state, object, &point, &mut context.counts),
         }
     }
@@ -191,8 +177,7 @@ impl Renderer<'_> {
         state: &mut PathState,
         object: &TranslucentObject,
         point: &SurfacePoint,
-        mirrored: &mut Option<PathState>,
-        light: &mut PathLight,
+        trace: &mut Trace,
         context: &mut ThreadContext,
     ) -> bool {
         let counts = &mut context.counts;
@@ -207,15 +192,15 @@ impl Renderer<'_> {
                 let mut branch = PathState { dimension: state.dimension + BRANCH, events: state.events + 1, ..*state };
                 branch.throughput *= 1.0 - transmittance;
                 let follows = meeting.scatter(&mut branch, Lobe::Reflection, Layer::Specular, counts);
-                *mirrored = (follows && branch.events < self.settings.max_depth).then_some(branch);
-                counts.cut_by_depth += u64::from(follows && mirrored.is_none());
+                trace.mirrored = (follows && branch.events < self.settings.max_depth).then_some(branch);
+                counts.cut_by_depth += u64::from(follows && trace.mirrored.is_none());
             }
             state.throughput *= transmittance;
-            light.through = if object.is_dark() { 0.0 } else { transmittance };
+            trace.light.through = if object.is_dark() { 0.0 } else { transmittance };
         }
         let emission = self.input.scene.materials[point.material as usize].emission;
-        light.add(state, Layer::Emission, emission);
-        self.gather(state, object, point, meeting.view.normal, light, context);
+        trace.light.add(state, Layer::Emission, emission);
+        self.gather(state, object, point, meeting.view.normal, &mut trace.light, context);
         state.inside = Some(point.material);
         // If only the interpolated normal lets light through, the path ends here.
         meeting.scatter(state, Lobe::Transmission, Layer::Transmission, &mut context.counts)

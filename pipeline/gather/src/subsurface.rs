@@ -1,8 +1,7 @@
 //! The light that leaves a translucent surface scattered: what a camera path gathers from the cloud.
 
 use crate::{
-    path_light::{Layer, PathLight},
-    path_state::{PathState, ThreadContext},
+    path_state::{Layer, PathLight, PathState, ThreadContext},
     renderer::{Renderer, TranslucentObject},
 };
 use scene::{DVec3, SurfacePoint};

@@ -123,6 +123,6 @@ impl Plan {
     /// The triangles to choose from.
     pub fn choice(&self, scene: &Scene, settings: &Settings) -> TriangleChoice {
         let rule = settings.options.choice;
-        TriangleChoice::with_shares(&scene.mesh, rule, |material| self.samples(material), &self.surfaces.shares)
+        TriangleChoice::new(&scene.mesh, rule, |material| self.samples(material), &self.surfaces.shares)
     }
 }
