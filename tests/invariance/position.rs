@@ -52,7 +52,7 @@ fn turned(figure: Figure, axis: DVec3, angle: f64) -> World {
 fn placed_as(original: &World, world: &World, shot: &Shot) -> Cloud {
     let (mesh, sampling) = (&original.scene.mesh, &shot.sampling);
     let facts = sampled_with(world, sampling, shot.normals).meta;
-    let choice = TriangleChoice::new(mesh, sampling.choice, |m| m == facts.materials[0].index);
+    let choice = TriangleChoice::new(mesh, sampling.choice, |m| m == facts.materials[0].index, &[]);
     let numbers = Numbers::new(sampling.pattern, sampling.seed, sampling.samples);
     let lights = LightTree::new(world.scene.lights());
     let bounce = Bounce::new(&world.scene, |m| m == facts.materials[0].index);

@@ -43,7 +43,7 @@ fn shares_are_kept_and_densities_follow() {
     let world = two();
     let mesh = &world.scene.mesh;
     for (rule, share) in [(Choice::Area, 0.9), (Choice::Area, 0.1), (Choice::Uniform, 0.3)] {
-        let choice = TriangleChoice::with_shares(mesh, rule, |_| true, &[(0, share)]);
+        let choice = TriangleChoice::new(mesh, rule, |_| true, &[(0, share)]);
         let (stream, draws) = (Stream::new(31, Purpose::Surface), 100_000 * EFFORT);
         let mut observed = vec![0; mesh.triangles.len()];
         let mut expected = vec![0.0; mesh.triangles.len()];

@@ -34,7 +34,7 @@ fn triangles_are_chosen_with_the_density_returned() {
         let world = world(&[Part::translucent(mesh)], &[], DVec3::ONE);
         let mesh = &world.scene.mesh;
         for (seed, rule) in [(1, Choice::Area), (2, Choice::Uniform)] {
-            let choice = TriangleChoice::new(mesh, rule, |_| true);
+            let choice = TriangleChoice::new(mesh, rule, |_| true, &[]);
             let mut observed = vec![0; mesh.triangles.len()];
             let mut density = vec![0.0; mesh.triangles.len()];
             for item in items(seed) {

@@ -20,7 +20,7 @@ const SEEDS: u64 = 60_000 * EFFORT;
 /// Position of one sample of each seed's cloud; `index` chooses it.
 fn points(world: &World, rule: Choice, samples: u64, index: impl Fn(u64) -> u64 + Sync) -> Vec<SamplePoint> {
     let mesh = &world.scene.mesh;
-    let choice = TriangleChoice::new(mesh, rule, |_| true);
+    let choice = TriangleChoice::new(mesh, rule, |_| true, &[]);
     let point = |seed: u64| {
         let numbers = Numbers::new(Pattern::Stratified, seed, samples);
         let (half, point) = numbers.points(&choice, index(seed)..index(seed) + 1).next().expect("one point");
@@ -73,7 +73,7 @@ fn samples_stand_for_the_area_they_are_drawn_from() {
     let mesh = &world.scene.mesh;
     for (rule, samples) in [Choice::Area, Choice::Uniform].into_iter().flat_map(|r| [2, 40, 301, 5000].map(|n| (r, n)))
     {
-        let choice = TriangleChoice::new(mesh, rule, |_| true);
+        let choice = TriangleChoice::new(mesh, rule, |_| true, &[]);
         let seeds = 400_000 * EFFORT / (samples + 100);
         let mut shares = vec![vec![0.0; seeds as usize]; mesh.triangles.len()];
         for seed in 0..seeds {
@@ -103,7 +103,7 @@ fn samples_stand_for_the_area_they_are_drawn_from() {
 fn ribbons_are_continuous() {
     let world = repository_scene("figure");
     let mesh = &world.scene.mesh;
-    let choice = TriangleChoice::new(mesh, Choice::Uniform, |_| true);
+    let choice = TriangleChoice::new(mesh, Choice::Uniform, |_| true, &[]);
     let steps = 40 * mesh.triangles.len();
     let longest = |triangle: u32| {
         let [a, b, c] = mesh.corners(triangle as usize);

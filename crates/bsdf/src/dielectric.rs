@@ -1,6 +1,6 @@
 //! The smooth boundary between two dielectrics: one reflected and one refracted direction.
 
-use crate::{Bsdf, Lobe, Sample, Side, View, fresnel};
+use crate::{Bsdf, Lobe, Sample, View, fresnel};
 use glam::DVec3;
 
 /// A smooth dielectric interface. It absorbs nothing.
@@ -15,16 +15,12 @@ impl SmoothDielectric {
     pub fn new(eta: f64) -> SmoothDielectric {
         SmoothDielectric { eta_ratios: [eta, 1.0 / eta] }
     }
-
-    fn eta_ratio(&self, side: Side) -> f64 {
-        self.eta_ratios[side as usize]
-    }
 }
 
 impl Bsdf for SmoothDielectric {
     /// Fresnel's power transmittance (docs/method.md 2.1).
     fn transmittance(&self, view: &View) -> f64 {
-        fresnel::transmittance(view.normal.dot(view.direction), self.eta_ratio(view.side))
+        fresnel::transmittance(view.normal.dot(view.direction), self.eta_ratios[view.side as usize])
     }
 
     fn is_specular(&self) -> bool {
@@ -43,7 +39,9 @@ impl Bsdf for SmoothDielectric {
     fn sample(&self, view: &View, lobe: Lobe, _xi: impl FnMut() -> [f64; 2]) -> Option<Sample> {
         let direction = match lobe {
             Lobe::Reflection => fresnel::reflect(view.normal, view.direction),
-            Lobe::Transmission => fresnel::enter(view.normal, view.direction, self.eta_ratio(view.side))?.direction,
+            Lobe::Transmission => {
+                fresnel::enter(view.normal, view.direction, self.eta_ratios[view.side as usize])?.direction
+            }
         };
         Some(Sample { direction, weight: DVec3::ONE })
     }
@@ -52,6 +50,7 @@ impl Bsdf for SmoothDielectric {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Side;
 
     /// Seen to catch: the same index from both sides.
     #[test]

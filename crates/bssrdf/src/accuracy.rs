@@ -6,16 +6,16 @@ pub const GOOD: f64 = 0.10;
 /// Reduced albedos that the errors are tabulated for.
 const ALBEDOS: [f64; 11] = [0.02, 0.1, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 0.999];
 
-/// Relative errors of a model's reflectance of a half-space under normal incidence, for the indices 1.3 and 1.5: a row
-/// for each of the reduced albedos 0.02, 0.1, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99 and 0.999. The reference are
-/// the random walks of `docs/reports/accuracy.md`.
-pub type ReflectanceErrors = [[f64; 2]; ALBEDOS.len()];
+/// Relative errors of a model's reflectance of a half-space under normal incidence: a row for each of the indices 1.3 and
+/// 1.5, whose columns are the reduced albedos 0.02, 0.1, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99 and 0.999. The reference
+/// are the random walks of `docs/reports/accuracy.md`.
+pub type ReflectanceErrors = [[f64; ALBEDOS.len()]; 2];
 
 /// The error at a reduced albedo and an index; beyond the ends of the table that of the end.
 pub fn interpolated(errors: &ReflectanceErrors, albedo: f64, eta: f64) -> f64 {
     let along = ((eta - 1.3) / 0.2).clamp(0.0, 1.0);
-    let at = |row: usize| {
-        let [low, high] = errors[row];
+    let at = |column: usize| {
+        let [low, high] = errors.map(|row| row[column]);
         low + along * (high - low)
     };
     match ALBEDOS.partition_point(|tabulated| *tabulated < albedo) {
@@ -33,8 +33,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_table_is_met_at_its_rows_and_between() {
-        let errors: ReflectanceErrors = ALBEDOS.map(|albedo| [1.0 / albedo, 2.0 / albedo]);
+    fn the_table_is_met_at_its_columns_and_between() {
+        let errors: ReflectanceErrors = [1.0, 2.0].map(|error| ALBEDOS.map(|albedo| error / albedo));
         let error = |albedo| interpolated(&errors, albedo, 1.3);
         assert!((error(0.9) - 1.0 / 0.9).abs() < 1e-9);
         assert!(error(0.85) > error(0.9) && error(0.85) < error(0.8));

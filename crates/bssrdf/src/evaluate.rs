@@ -42,7 +42,7 @@ pub trait Bssrdf: Sync {
 }
 
 /// The values of the BSSRDF at one pair of points, one channel (docs/method.md 1.1, 1.2).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Values {
     /// `S`, with the transmittances of entry and exit, 1/(m² sr).
     pub full: f64,
@@ -52,14 +52,10 @@ pub struct Values {
     pub bare: f64,
 }
 
-impl Values {
-    const ZERO: Values = Values { full: 0.0, gather: 0.0, bare: 0.0 };
-}
-
 /// `S`, `S_gather` and `S_bare` of one channel; all zero where no light can enter (docs/method.md 1.3).
 pub fn evaluate(model: &dyn Bssrdf, eta: f64, channel: usize, incident: &Incident, exitant: &Exitant) -> Values {
     let Some(entry) = fresnel::enter(incident.normal, incident.direction, eta) else {
-        return Values::ZERO;
+        return Values::default();
     };
     let separation = Separation {
         offset: exitant.position - incident.position,

@@ -27,7 +27,6 @@
 
 mod accuracy;
 mod albedo;
-mod error;
 mod evaluate;
 pub mod lanes;
 mod media;
@@ -38,11 +37,10 @@ mod model;
 pub use accuracy::GOOD;
 pub use albedo::single_scattering_albedo;
 pub use bsdf::fresnel;
-pub use error::MediumError;
 pub use evaluate::{Bssrdf, Exitant, Incident, Separation, Values, evaluate};
 pub use glam::DVec3;
 pub use media::{built_in, built_in_names};
 pub use medium::{Coefficients, ETA_MAX, ETA_MIN, Interface, Medium};
-pub use medium_file::{MediumFile, Optics, Unit};
+pub use medium_file::{MediumError, MediumFile, Optics, Unit};
 pub use model::{AnyLanes, BetterDipole, DirectionalDipole, LaneWork, Model, StandardDipole};
 pub use simd;

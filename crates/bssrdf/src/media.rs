@@ -1,6 +1,6 @@
 //! The media of `data/media`, built in by name.
 
-use crate::{error::MediumError, medium::Medium};
+use crate::{medium::Medium, medium_file::MediumError};
 
 macro_rules! media {
     ($($name:literal,)*) => {

@@ -1,9 +1,6 @@
 //! Optical coefficients of a medium and every quantity derived from them.
 
-use crate::{
-    error::MediumError,
-    medium_file::{MediumFile, Unit, check},
-};
+use crate::medium_file::{MediumError, MediumFile, Unit, check};
 use bsdf::fresnel;
 
 /// Smallest relative index the Fresnel fits hold for (exclusive): 1/η ≤ 2.5.
@@ -117,7 +114,7 @@ impl Medium {
         let channel =
             |c: usize| Coefficients { sigma_a: sigma_a[c] * scale, sigma_s: sigma_s[c] * scale, asymmetry: file.g[c] };
         let interface = Interface::new(file.eta);
-        let channels = [channel(0), channel(1), channel(2)];
+        let channels = [0, 1, 2].map(channel);
         Ok(Medium { name: file.name, source: file.source, channels, eta: file.eta, interface })
     }
 

@@ -19,6 +19,19 @@ pub enum Unclear {
     Several { choices: String },
 }
 
+impl Unclear {
+    /// The message about a `word` of an option: that something is `missing`, before the names that exist, or that the word
+    /// may be several of a `kind`.
+    pub fn message(&self, option: &str, word: &str, missing: &str, kind: &str) -> String {
+        match self {
+            Unclear::Unknown { known } => format!("{option}: {missing} {known}"),
+            Unclear::Several { choices } => {
+                format!("{option}: `{word}` may be more than one {kind}: give one of {choices}")
+            }
+        }
+    }
+}
+
 /// The prefix of a word that is an index and not a name.
 const INDEX: &str = "index:";
 

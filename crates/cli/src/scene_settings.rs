@@ -2,60 +2,43 @@
 
 use crate::{Common, Failure, Files, SceneArgs, environment::EnvironmentSource};
 use formats::cloud::{LightUnit, Normals};
-use scene::{DVec3, ImportOptions, MeshDefects, NormalKind, Scene, SceneError};
+use scene::{ImportOptions, MeshDefects, NormalKind, Scene, SceneError};
 use std::path::PathBuf;
 
-/// The file of a scene, and how to read it: the arguments, with the defaults of those that were left out.
+/// The file of a scene, and how to read it.
 #[derive(Clone, Debug)]
 pub struct SceneSettings {
     pub path: PathBuf,
-    environment: EnvironmentSource,
-    environment_scale: f64,
-    environment_rotation: f64,
-    pub normals: Normals,
-    pub metres_per_unit: f64,
-    pub light_unit: LightUnit,
-    pub emission_unit: LightUnit,
-    strict: bool,
-}
-
-impl SceneArgs {
-    /// The settings of the scene in this file.
-    pub fn settings(&self, path: PathBuf) -> SceneSettings {
-        SceneSettings {
-            path,
-            environment: self.environment.clone().unwrap_or(EnvironmentSource::Constant(DVec3::ZERO)),
-            environment_scale: self.environment_scale,
-            environment_rotation: self.environment_rotation,
-            normals: self.normals,
-            metres_per_unit: self.metres_per_unit,
-            light_unit: self.light_unit,
-            emission_unit: self.emission_unit.unwrap_or(self.light_unit),
-            strict: self.strict,
-        }
-    }
+    pub how: SceneArgs,
 }
 
 impl SceneSettings {
+    /// The unit of the file's emitting materials: that of its lights, unless one of their own was given.
+    pub fn emission_unit(&self) -> LightUnit {
+        self.how.emission_unit.unwrap_or(self.how.light_unit)
+    }
+
     /// Declares the files that the arguments name. Those that the scene's file names are known once it is read.
     pub fn declare(&self, files: &mut Files) -> Result<(), Failure> {
         files.reads("SCENE", &self.path)?;
-        match &self.environment {
-            EnvironmentSource::File(path) => files.reads("--environment", path),
-            EnvironmentSource::Constant(_) => Ok(()),
+        match &self.how.environment {
+            Some(EnvironmentSource::File(path)) => files.reads("--environment", path),
+            _ => Ok(()),
         }
     }
 
     /// Reads the scene and its environment, and prints the warnings of the import.
     pub fn import(&self, common: &Common) -> Result<Scene, Failure> {
         let options = ImportOptions {
-            metres_per_unit: self.metres_per_unit,
-            light_unit: of_scene(self.light_unit),
-            emission_unit: of_scene(self.emission_unit),
+            metres_per_unit: self.how.metres_per_unit,
+            light_unit: of_scene(self.how.light_unit),
+            emission_unit: of_scene(self.emission_unit()),
         };
         let mut scene = Scene::import(&self.path, &options).map_err(with_option)?;
         self.warn(&scene.warnings, common);
-        scene.environment = self.environment.read(self.environment_scale, self.environment_rotation, common)?;
+        if let Some(source) = &self.how.environment {
+            scene.environment = source.read(self.how.environment_scale, self.how.environment_rotation, common)?;
+        }
         Ok(scene)
     }
 
@@ -76,7 +59,7 @@ impl SceneSettings {
             return Ok(());
         }
         let line = format!("{}: the translucent surfaces have {defects}", self.path.display());
-        if self.strict {
+        if self.how.strict {
             return Err(Failure::usage(format!("{line}; repair the mesh, or leave out --strict")));
         }
         common.warn(format_args!("{line}; a medium needs a closed surface whose triangles are wound outwards"));

@@ -15,12 +15,14 @@ const _: () = assert!(LANES == TILE, "a tile is evaluated as one block");
 /// Samples whose light enters one medium.
 #[derive(Clone, Copy, Debug)]
 pub struct LitSamples<'a> {
-    tiles: &'a [Tile],
-    nodes: &'a [Node],
+    pub(crate) tiles: &'a [Tile],
+    /// The tree over the tiles, see [`Node`].
+    pub(crate) nodes: &'a [Node],
     len: usize,
     entry: EntryRefraction,
-    /// See [`LitSamples::scale`].
-    scale: f32,
+    /// The power of two that scales the total flux to about 1. Squares and sums of fluxes then neither overflow nor vanish
+    /// in float32, however strong or weak the light is, and a power of two rounds nothing.
+    pub(crate) scale: f32,
 }
 
 /// The exitant point of a sum.
@@ -72,13 +74,6 @@ impl<'a> LitSamples<'a> {
         LitSamples { tiles, nodes, len: len.min(tiles.len() * TILE), entry: EntryRefraction::new(eta), scale }
     }
 
-    /// The power of two that scales the total flux to about 1. Squares and sums of fluxes then neither overflow nor
-    /// vanish in float32, however strong or weak the light is, and a power of two rounds nothing.
-    #[inline(always)]
-    pub fn scale(&self) -> f32 {
-        self.scale
-    }
-
     /// The number of samples, without the fillers of the last tile.
     pub fn len(&self) -> usize {
         self.len
@@ -86,11 +81,6 @@ impl<'a> LitSamples<'a> {
 
     pub fn is_empty(&self) -> bool {
         self.len == 0
-    }
-
-    #[inline(always)]
-    pub fn tiles(&self) -> &'a [Tile] {
-        self.tiles
     }
 
     /// The positions of one tile, m.
@@ -104,12 +94,6 @@ impl<'a> LitSamples<'a> {
             }
         }
         positions
-    }
-
-    /// The tree over the tiles, see [`Node`].
-    #[inline(always)]
-    pub fn nodes(&self) -> &'a [Node] {
-        self.nodes
     }
 
     /// The samples of one tile as seen from `exit`, with their flux `T12 Φ`, W.

@@ -1,10 +1,7 @@
 //! Calibrates the cut for this camera and these media: its true error is measured at a few points of the image before
 //! the image is rendered, so that it meets the target.
 
-use crate::{
-    path_state::ThreadContext,
-    renderer::{Renderer, TranslucentObject},
-};
+use crate::{path_state::ThreadContext, renderer::Renderer};
 use glam::DVec2;
 use rayon::prelude::*;
 use scene::{
@@ -35,19 +32,17 @@ const DARKEST: f64 = 1e-6;
 /// whole sum.
 const RANGE: (f64, f64) = (0.01, 8.0);
 
-/// Measures the calibration of each object. `size` is that of the image, pixels.
-pub fn calibrate(renderer: &mut Renderer, size: DVec2, seed: u64) {
-    let Some(accuracy) = renderer.estimator_for(1.0).accuracy() else {
+/// Measures the calibration of each object.
+pub fn calibrate(renderer: &mut Renderer) {
+    if renderer.estimator_for(1.0).accuracy().is_none() {
         return;
-    };
-    let stream = Stream::new(seed, Purpose::Calibration);
-    let points = points(renderer, size, stream);
+    }
+    let stream = Stream::new(renderer.settings.seed, Purpose::Calibration);
+    let points = points(renderer, stream);
     for (material, points) in points.iter().enumerate() {
         let mut measured = Vec::new();
         for round in 0..ROUNDS {
-            if let Some(object) = &renderer.objects[material] {
-                measured.extend(measure(renderer, accuracy, object, material, points, stream, round));
-            }
+            measured.extend(measure(renderer, material, points, stream, round));
             if let Some(object) = &mut renderer.objects[material] {
                 object.summation.calibration = fit(&measured);
             }
@@ -73,16 +68,17 @@ fn fit(measured: &[Measured]) -> Calibration {
 }
 
 /// For each material, points that the camera sees, with their normals.
-fn points(renderer: &Renderer, size: DVec2, stream: Stream) -> Vec<Vec<(DVec3, DVec3)>> {
+fn points(renderer: &Renderer, stream: Stream) -> Vec<Vec<(DVec3, DVec3)>> {
+    let (input, size) = (&renderer.input, renderer.settings.size());
     let mut points = vec![Vec::new(); renderer.objects.len()];
     let spread = Sequence::new(stream.item(0), stream);
     for index in 0..RAYS {
         let [x, y, ..] = spread.point(index);
-        let (origin, direction) = renderer.camera.ray(DVec2::new(x, y) * size, size);
-        let Some(hit) = renderer.rays.closest(origin - renderer.scene.origin, direction, None) else {
+        let (origin, direction) = input.camera.ray(DVec2::new(x, y) * size, size);
+        let Some(hit) = input.rays.closest(origin - input.scene.origin, direction, None) else {
             continue;
         };
-        let point = renderer.scene.mesh.point(hit.triangle, hit.weights, renderer.normals);
+        let point = input.scene.mesh.point(hit.triangle, hit.weights, renderer.settings.normals);
         let own: &mut Vec<_> = &mut points[point.material as usize];
         if own.len() < POINTS && point.normal.dot(direction) < 0.0 {
             own.push((point.position, point.normal));
@@ -101,16 +97,18 @@ struct Measured {
     excess: f64,
 }
 
-/// Sums at each point, to the target error `accuracy`.
+/// Sums at each point of a material; none if it is opaque.
 fn measure(
     renderer: &Renderer,
-    accuracy: f64,
-    object: &TranslucentObject,
     material: usize,
     points: &[(DVec3, DVec3)],
     stream: Stream,
     round: u64,
 ) -> Vec<Measured> {
+    let estimator = renderer.estimator_for(1.0);
+    let (Some(object), Some(accuracy)) = (&renderer.objects[material], estimator.accuracy()) else {
+        return Vec::new();
+    };
     let summation = &object.summation;
     let at = |(index, (position, normal)): (usize, &(DVec3, DVec3))| {
         let mut context = ThreadContext::new(renderer.objects.len());
@@ -118,7 +116,7 @@ fn measure(
         let sum = |replicate: u64| {
             let exit = Exit::new(*position, *normal, item.bits(round * REPLICATES + replicate));
             let (half, shard) = (index % 2, index / 2 % summation.shards());
-            summation.sum(renderer.estimator_for(1.0), half, shard, &exit, context.scratch(material))
+            summation.sum(estimator, half, shard, &exit, &mut context.scratch[material])
         };
         let sums: Vec<Sum> = (0..REPLICATES).map(sum).collect();
         let (mean, variance) = moments(&sums);

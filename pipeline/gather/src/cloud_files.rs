@@ -10,7 +10,8 @@ use std::{fmt::Display, num::NonZeroUsize, path::PathBuf};
 /// The open clouds of a request, at least one, which are gathered as one.
 pub struct CloudFiles {
     paths: Vec<PathBuf>,
-    clouds: Vec<Cloud>,
+    /// In an order that does not depend on that of the arguments.
+    pub clouds: Vec<Cloud>,
 }
 
 impl CloudFiles {
@@ -20,11 +21,6 @@ impl CloudFiles {
         let files: Vec<(PathBuf, Cloud)> = paths.iter().map(open).collect::<Result<_, formats::Error>>()?;
         let (paths, clouds) = shards::join(files)?;
         Ok(CloudFiles { paths, clouds })
-    }
-
-    /// The clouds, in an order that does not depend on that of the arguments.
-    pub fn clouds(&self) -> &[Cloud] {
-        &self.clouds
     }
 
     /// Defects of the sampled surfaces, as phase one found them.
@@ -46,20 +42,20 @@ impl CloudFiles {
     /// Refuses clouds that were sampled from another scene or with other units or normals; the message says what
     /// differs.
     pub fn check_fit(&self, scene: &Scene, request: &Request) -> Result<(), Failure> {
-        let (how, options) = (&request.scene, &self.clouds[0].meta().options);
-        if let Some(differs) = self.difference(scene, how) {
-            let (cloud, scene) = (self.paths[0].display(), how.path.display());
+        let (settings, options) = (&request.scene, &self.clouds[0].meta().options);
+        if let Some(differs) = self.difference(scene, settings) {
+            let (cloud, scene) = (self.paths[0].display(), settings.path.display());
             let message = format!("{cloud}: this cloud is not of {scene}: {differs}; sample the scene again");
             return Err(Failure::usage(message));
         }
-        if how.normals != options.normals {
-            request.common.warn(format_args!("--normals is {}, the cloud's {}", how.normals, options.normals));
+        if settings.how.normals != options.normals {
+            request.common.warn(format_args!("--normals is {}, the cloud's {}", settings.how.normals, options.normals));
         }
         Ok(())
     }
 
     /// The first difference between the scene and the first cloud, which represents all clouds.
-    fn difference(&self, scene: &Scene, how: &SceneSettings) -> Option<String> {
+    fn difference(&self, scene: &Scene, settings: &SceneSettings) -> Option<String> {
         let meta = self.clouds[0].meta();
         let options = &meta.options;
         let option = |name: &str, here: &dyn Display, there: &dyn Display| {
@@ -68,9 +64,9 @@ impl CloudFiles {
         };
         let renamed =
             |m: &SampledMaterial| scene.materials.get(usize::from(m.index)).is_none_or(|own| own.name != m.name);
-        option("--metres-per-unit", &how.metres_per_unit, &options.metres_per_unit)
-            .or_else(|| option("--light-unit", &how.light_unit, &options.light_unit))
-            .or_else(|| option("--emission-unit", &how.emission_unit, &options.emission_unit))
+        option("--metres-per-unit", &settings.how.metres_per_unit, &options.metres_per_unit)
+            .or_else(|| option("--light-unit", &settings.how.light_unit, &options.light_unit))
+            .or_else(|| option("--emission-unit", &settings.emission_unit(), &options.emission_unit))
             .or_else(|| (scene.geometry_digest() != meta.geometry).then(|| "its mesh or materials differ".into()))
             .or_else(|| meta.materials.iter().any(renamed).then(|| "its materials differ".into()))
             .or_else(|| (scene.light_digest() != meta.lights).then(|| "its lights differ".into()))

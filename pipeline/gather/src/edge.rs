@@ -7,7 +7,7 @@
 //! a pixel takes its `c` from the other half, and has rays of its own. A pixel may become slightly negative; clamping
 //! it would bias the mean.
 
-use crate::path_light::{Layer, PathLight};
+use crate::path_state::{Layer, PathLight};
 use scene::DVec3;
 
 /// A pixel is at an edge if `g` differs by more than this between its corners.

@@ -4,7 +4,7 @@ use crate::{
     Crop,
     edge::Edge,
     freedom::{self, Cells},
-    path_light::{Guide, LAYERS, Layer, Layers, PathLight},
+    path_state::{Guide, LAYERS, Layer, Layers, PathLight},
 };
 use formats::{Channel, Image, Window};
 use scene::DVec3;

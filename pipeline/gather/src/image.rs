@@ -3,6 +3,7 @@
 use crate::{counts::Counts, crop::Crop, estimator::Estimator, film::Pixel};
 use bssrdf::{Medium, Model};
 use formats::cloud::Cloud;
+use glam::DVec2;
 use scene::{Camera, NormalKind, Rays, Scene};
 
 /// How paths are spread over a pixel.
@@ -27,6 +28,7 @@ impl Filter {
 }
 
 /// The input of an image.
+#[derive(Clone, Copy)]
 pub struct Input<'a> {
     pub scene: &'a Scene,
     pub rays: &'a Rays<'a>,
@@ -55,6 +57,11 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// Width and height of the whole image, pixels.
+    pub fn size(&self) -> DVec2 {
+        DVec2::new(self.width as f64, self.height as f64)
+    }
+
     /// The part of the image that is rendered.
     pub fn part(&self) -> Crop {
         self.crop.unwrap_or(Crop { x: 0, y: 0, width: self.width, height: self.height })

@@ -2,7 +2,7 @@
 //! its own.
 
 use crate::{
-    cameras::{Viewpoint, Viewpoints, viewpoints},
+    cameras::{Viewpoint, tag, viewpoints},
     inputs::Inputs,
     settings::{ImageNames, Request},
 };
@@ -36,12 +36,10 @@ pub struct ImageJob {
 
 /// All images of a request. Refuses those that cannot be rendered, before any work is done.
 pub fn image_jobs(request: &Request, inputs: &Inputs) -> Result<Vec<ImageJob>, Failure> {
-    let jobs = match viewpoints(request, &inputs.scene, || inputs.middle())? {
-        Viewpoints::One(viewpoint) => turntable(request, &viewpoint)?,
-        Viewpoints::List(views) => {
-            views.into_iter().enumerate().map(|(k, view)| listed(request, k, view)).collect::<Result<_, _>>()?
-        }
-    };
+    let mut jobs = Vec::new();
+    for viewpoint in viewpoints(request, &inputs.scene, || inputs.middle())? {
+        jobs.extend(turntable(request, &viewpoint)?);
+    }
     warn_of_aspects(&jobs, &request.common);
     jobs.iter().try_for_each(|job| check_memory(&job.settings).map_err(|e| job.failure(e)))?;
     Ok(jobs)
@@ -49,21 +47,15 @@ pub fn image_jobs(request: &Request, inputs: &Inputs) -> Result<Vec<ImageJob>, F
 
 /// The images of one camera: one, or as many as a turntable has steps.
 fn turntable(request: &Request, viewpoint: &Viewpoint) -> Result<Vec<ImageJob>, Failure> {
-    let (count, settings) = (request.orbit.unwrap_or(1), settings(request, viewpoint)?);
+    let settings = settings(request, viewpoint).map_err(|e| named(e, viewpoint.tag.as_deref()))?;
+    let count = request.orbit.unwrap_or(1);
     let job = |index: u32| {
         let degrees = 360.0 * f64::from(index) / f64::from(count);
         let camera = turned(&viewpoint.camera, viewpoint.target, degrees);
-        let tag = request.orbit.map(|_| tag(None, index as usize));
+        let tag = viewpoint.tag.clone().or_else(|| request.orbit.map(|_| tag(None, index as usize)));
         ImageJob { camera, settings: settings.clone(), degrees, argument: viewpoint.argument.clone(), tag }
     };
     Ok((0..count).map(job).collect())
-}
-
-/// The image of a view in a list.
-fn listed(request: &Request, index: usize, view: Viewpoint) -> Result<ImageJob, Failure> {
-    let tag = tag(view.name.as_deref(), index);
-    let settings = settings(request, &view).map_err(|e| e.within(label(&tag)))?;
-    Ok(ImageJob { camera: view.camera, settings, degrees: 0.0, argument: view.argument, tag: Some(tag) })
 }
 
 /// The files of the images that the output becomes, in their order.
@@ -95,7 +87,7 @@ fn settings(request: &Request, viewpoint: &Viewpoint) -> Result<Settings, Failur
         filter: request.filter,
         estimator: request.estimator,
         model: request.model,
-        normals: cli::normal_kind(request.scene.normals),
+        normals: cli::normal_kind(request.scene.how.normals),
         max_depth: request.max_depth,
         seed: request.common.seed,
     })
@@ -151,10 +143,7 @@ fn warn_of_aspects(jobs: &[ImageJob], common: &Common) {
 impl ImageJob {
     /// A failure of this image, which names the image if there are several.
     pub fn failure(&self, failure: Failure) -> Failure {
-        match &self.tag {
-            Some(tag) => failure.within(label(tag)),
-            None => failure,
-        }
+        named(failure, self.tag.as_deref())
     }
 
     /// A line about this image, which names the image if there are several.
@@ -184,9 +173,12 @@ fn turned(camera: &Camera, target: DVec3, degrees: f64) -> Camera {
     }
 }
 
-/// The tag of an image: the name of its view, or else its index.
-fn tag(name: Option<&str>, index: usize) -> String {
-    name.map_or_else(|| format!("{index:04}"), str::to_owned)
+/// The failure of an image, with its name if it has one.
+fn named(failure: Failure, tag: Option<&str>) -> Failure {
+    match tag {
+        Some(tag) => failure.within(label(tag)),
+        None => failure,
+    }
 }
 
 /// The name of an image in messages.

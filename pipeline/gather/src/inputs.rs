@@ -30,7 +30,7 @@ impl Inputs {
         let mut scene = import(request)?;
         scene.files.iter().try_for_each(|path| files.reads("a file that SCENE names", path))?;
         cloud_files.check_fit(&scene, request)?;
-        let (sampled, defects) = (shards::materials(cloud_files.clouds()), cloud_files.defects());
+        let (sampled, defects) = (shards::materials(&cloud_files.clouds), cloud_files.defects());
         let is_sampled = |material| sampled.iter().any(|m| m.index == material);
         request.scene.check_mesh(&mut scene, is_sampled, defects, &request.common)?;
         let media = media::assign(&request.media, sampled, &scene.materials)?;
@@ -38,7 +38,7 @@ impl Inputs {
     }
 
     pub fn clouds(&self) -> &[Cloud] {
-        self.cloud_files.clouds()
+        &self.cloud_files.clouds
     }
 
     /// The triangles of the scene, prepared for rays.

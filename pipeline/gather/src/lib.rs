@@ -44,7 +44,6 @@ mod freedom;
 mod image;
 mod passes;
 mod path;
-pub mod path_light;
 pub mod path_state;
 pub mod preview;
 pub mod renderer;

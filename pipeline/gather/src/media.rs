@@ -12,10 +12,8 @@ pub enum AssignError {
     Missing,
     #[error("--medium: material `{0}` of the cloud has no medium; add --medium {0}=NAME")]
     MissingFor(String),
-    #[error("--medium: the cloud has no material `{name}`; it has {known}")]
-    UnknownMaterial { name: String, known: String },
-    #[error("--medium: `{name}` may be more than one material of the cloud: give one of {choices}")]
-    SeveralMaterials { name: String, choices: String },
+    #[error("{0}")]
+    UnclearMaterial(String),
     #[error("--medium: given twice for the same material: `{0}` and `{1}`")]
     Twice(String, String),
     #[error("--medium: {0}")]
@@ -37,7 +35,7 @@ pub fn assign(
     for argument in arguments {
         let (slot, medium) = match split(argument, &names) {
             Some((name, medium)) => {
-                let index = the_one(name, &names, false).map_err(|unclear| unclear_material(name, unclear))?;
+                let index = the_one(name, &names, false).map_err(|unclear| unclear_material(name, &unclear))?;
                 let own = for_one.iter_mut().zip(sampled).find(|(_, m)| usize::from(m.index) == index);
                 (own.map_or(&mut for_all, |(slot, _)| slot), medium)
             }
@@ -67,12 +65,9 @@ fn material_names(sampled: &[SampledMaterial]) -> Vec<Candidate<'_>> {
     sampled.iter().map(|m| Candidate { index: m.index.into(), names: vec![&m.name], detail: detail(m) }).collect()
 }
 
-fn unclear_material(name: &str, unclear: Unclear) -> AssignError {
-    let name = name.to_owned();
-    match unclear {
-        Unclear::Unknown { known } => AssignError::UnknownMaterial { name, known },
-        Unclear::Several { choices } => AssignError::SeveralMaterials { name, choices },
-    }
+fn unclear_material(name: &str, unclear: &Unclear) -> AssignError {
+    let missing = format!("the cloud has no material `{name}`; it has");
+    AssignError::UnclearMaterial(unclear.message("--medium", name, &missing, "material of the cloud"))
 }
 
 /// Splits `MATERIAL=MEDIUM`. The name of a material may contain an equals sign; the longest name that exists is taken.

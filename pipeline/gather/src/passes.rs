@@ -31,7 +31,6 @@ const CLEARANCE: f64 = 1e-9;
 /// An image to which paths are added in passes.
 pub struct Passes<'a> {
     renderer: Renderer<'a>,
-    settings: Settings,
     /// The part of the image that is rendered. Its pixels are indexed row by row.
     part: Crop,
     sums: Vec<PixelSum>,
@@ -51,26 +50,21 @@ impl<'a> Passes<'a> {
     /// Prepares an image; the cut is as accurate as `settings.paths_per_pixel` paths need.
     pub fn new(input: &Input<'a>, settings: &Settings) -> Self {
         let mut renderer = Renderer {
-            scene: input.scene,
-            rays: input.rays,
+            input: *input,
+            settings: settings.clone(),
             lights: LightTree::new(input.scene.lights()),
-            camera: input.camera,
             objects: objects(input, settings),
-            normals: settings.normals,
-            estimator: settings.estimator,
             drawn: DrawnCounts::of(input.clouds),
             paths_per_pixel: settings.paths_per_pixel,
             pass: 0..settings.paths_per_pixel,
-            max_depth: settings.max_depth,
             clearance: CLEARANCE * input.scene.mesh.diagonal(),
             paths: Stream::new(settings.seed, Purpose::CameraPath),
             gathers: Stream::new(settings.seed, Purpose::Gather),
             shard_picks: Stream::new(settings.seed, Purpose::ShardPick),
         };
-        calibration::calibrate(&mut renderer, size(settings), settings.seed);
+        calibration::calibrate(&mut renderer);
         let mut passes = Passes {
             renderer,
-            settings: settings.clone(),
             edges: vec![None; settings.part().pixels()],
             sums: vec![PixelSum::default(); settings.part().pixels()],
             part: settings.part(),
@@ -87,7 +81,8 @@ impl<'a> Passes<'a> {
     /// which has no second half to estimate the factor of the control variate from, nor with rays through pixel
     /// centers, which are all the same.
     fn find_edges(&mut self) {
-        if self.settings.paths_per_pixel == 1 || self.settings.filter == Filter::Point {
+        let settings = &self.renderer.settings;
+        if settings.paths_per_pixel == 1 || settings.filter == Filter::Point {
             return;
         }
         let Crop { x: left, y: upper, width, height } = self.part;
@@ -131,23 +126,25 @@ impl<'a> Passes<'a> {
 
     /// The ray through a point of the image, pixels.
     fn ray_at(&self, point: DVec2) -> (DVec3, DVec3) {
-        let (origin, direction) = self.renderer.camera.ray(point, size(&self.settings));
-        (origin - self.renderer.scene.origin, direction)
+        let Renderer { input, settings, .. } = &self.renderer;
+        let (origin, direction) = input.camera.ray(point, settings.size());
+        (origin - input.scene.origin, direction)
     }
 
     /// The sums of a pixel with more paths.
     fn add_paths(&self, index: usize, paths: Range<u32>, context: &mut ThreadContext) -> Sums {
         // The random numbers of a pixel do not depend on what part of the image is rendered.
         let [x, y] = self.part.pixel(index);
-        let pixel = (y * self.settings.width + x) as u64;
+        let settings = &self.renderer.settings;
+        let pixel = (y * settings.width + x) as u64;
         // Even and odd paths are independent: each half is spread by a sequence of its own.
         let spread_by = |stream: Stream| [0, 1].map(|half| Sequence::new(stream.item(2 * pixel + half), stream));
         let spread = spread_by(self.pixel_stream);
         let mut edge = self.edges[index].clone().map(|edge| (edge, spread_by(self.edge_stream)));
-        let alone = self.settings.paths_per_pixel == 1;
+        let alone = settings.paths_per_pixel == 1;
         let mut sum = self.sums[index];
         for path in paths {
-            let offset = match self.settings.filter {
+            let offset = match settings.filter {
                 Filter::Point => DVec2::splat(0.5),
                 Filter::Box => {
                     let [x, y, ..] = spread[path as usize % 2].point(path / 2);
@@ -179,7 +176,7 @@ impl<'a> Passes<'a> {
     /// call.
     pub fn pass(&mut self, paths: u32, progress: impl Fn(u64) + Sync) {
         let range = self.paths..self.paths.saturating_add(paths);
-        self.renderer.paths_per_pixel = self.settings.paths_per_pixel.max(range.end);
+        self.renderer.paths_per_pixel = self.renderer.settings.paths_per_pixel.max(range.end);
         self.renderer.pass = range.clone();
         let tile = |tile: usize| {
             let mut context = ThreadContext::new(self.renderer.objects.len());
@@ -215,11 +212,6 @@ pub fn render(input: &Input, settings: &Settings, progress: impl Fn(u64) + Sync)
     let mut passes = Passes::new(input, settings);
     passes.pass(settings.paths_per_pixel, progress);
     passes.finish()
-}
-
-/// Width and height of the whole image, pixels.
-fn size(settings: &Settings) -> DVec2 {
-    DVec2::new(settings.width as f64, settings.height as f64)
 }
 
 /// The translucent objects by the materials of the scene; none for opaque ones.

@@ -3,8 +3,7 @@
 
 use crate::{
     counts::Counts,
-    path_light::{Guide, Layer, PathLight},
-    path_state::{PathIndex, PathState, ThreadContext},
+    path_state::{Guide, Layer, PathIndex, PathLight, PathState, ThreadContext, Trace},
     renderer::{Renderer, TranslucentObject},
     shards::ShardPick,
 };
@@ -34,14 +33,13 @@ impl Renderer<'_> {
             dimension: 0,
             key: self.gathers.item(item),
         };
-        let mut light = PathLight::default();
+        let mut trace = Trace::default();
         context.counts.paths += 1;
-        let mut mirrored = None;
-        self.follow(&mut state, &mut mirrored, &mut light, context);
-        if let Some(mut state) = mirrored {
-            self.follow(&mut state, &mut None, &mut light, context);
+        self.follow(&mut state, &mut trace, context);
+        if let Some(mut state) = trace.mirrored.take() {
+            self.follow(&mut state, &mut trace, context);
         }
-        light
+        trace.light
     }
 
     /// Picks the shard that a path gathers from. Shards alternate over the paths of one half and one pass.
@@ -54,17 +52,11 @@ impl Renderer<'_> {
         self.drawn.pick_shard(half as usize, index.path / 2 - start, end - start, random)
     }
 
-    /// Follows a branch until it ends; `mirrored` becomes the second one if it splits.
-    fn follow(
-        &self,
-        state: &mut PathState,
-        mirrored: &mut Option<PathState>,
-        light: &mut PathLight,
-        context: &mut ThreadContext,
-    ) {
-        while self.step(state, mirrored, light, context) {
+    /// Follows a branch until it ends.
+    fn follow(&self, state: &mut PathState, trace: &mut Trace, context: &mut ThreadContext) {
+        while self.step(state, trace, context) {
             state.events += 1;
-            if state.events >= self.max_depth {
+            if state.events >= self.settings.max_depth {
                 context.counts.cut_by_depth += 1;
                 break;
             }
@@ -72,22 +64,16 @@ impl Renderer<'_> {
     }
 
     /// Follows the path to its next surface; false if it ends.
-    fn step(
-        &self,
-        state: &mut PathState,
-        mirrored: &mut Option<PathState>,
-        light: &mut PathLight,
-        context: &mut ThreadContext,
-    ) -> bool {
+    fn step(&self, state: &mut PathState, trace: &mut Trace, context: &mut ThreadContext) -> bool {
         context.counts.rays += 1;
         let free = self.free_path(state);
-        let Some(hit) = self.rays.closest_within(state.origin, state.direction, free, state.from) else {
+        let Some(hit) = self.input.rays.closest_within(state.origin, state.direction, free, state.from) else {
             if free == f64::INFINITY {
-                self.escape(state, light, &mut context.counts);
+                self.escape(state, &mut trace.light, &mut context.counts);
             }
             return false;
         };
-        let point = self.scene.mesh.point(hit.triangle, hit.weights, self.normals);
+        let point = self.input.scene.mesh.point(hit.triangle, hit.weights, self.settings.normals);
         let side = if state.direction.dot(point.geometric_normal) < 0.0 { Side::Outside } else { Side::Inside };
         let object = self.objects[point.material as usize].as_ref();
         if object.is_some() && state.from.is_none() && state.inside.is_none() {
@@ -99,7 +85,7 @@ impl Renderer<'_> {
         }
         let point = point.facing(-state.direction);
         match (object, side) {
-            (None, _) => self.meet_opaque(state, &point, side, &hit, light, &mut context.counts),
+            (None, _) => self.meet_opaque(state, &point, side, &hit, &mut trace.light, &mut context.counts),
             (Some(_), Side::Outside) if state.inside.is_some() => {
                 // The path is inside another object already and goes straight on. It starts a little beyond the
                 // surface, because two triangles at the same point of the ray would send it back and forth.
@@ -108,7 +94,7 @@ impl Renderer<'_> {
                 state.from = None;
                 true
             }
-            (Some(object), Side::Outside) => self.meet_from_outside(state, object, &point, mirrored, light, context),
+            (Some(object), Side::Outside) => self.meet_from_outside(state, object, &point, trace, context),
             (Some(object), Side::Inside) => self.meet_from_inside(state, object, &point, &mut context.counts),
         }
     }
@@ -169,18 +155,18 @@ impl Renderer<'_> {
         light: &mut PathLight,
         counts: &mut Counts,
     ) -> bool {
-        let material = &self.scene.materials[point.material as usize];
+        let material = &self.input.scene.materials[point.material as usize];
         if material.emits() && (side == Side::Outside || material.double_sided) {
             light.add(state, Layer::Emission, material.emission);
         }
-        let bsdf = Surface::opaque(self.scene.color(hit.triangle, hit.weights).truncate());
+        let bsdf = Surface::opaque(self.input.scene.color(hit.triangle, hit.weights).truncate());
         if bsdf.is_specular() {
             let meeting = Meeting::new(point, bsdf, side, -state.direction, counts);
             return meeting.scatter(state, Lobe::Reflection, Layer::Specular, counts);
         }
         let view = View { normal: point.normal, direction: -state.direction, side };
         let xi = || [state.uniform(), state.uniform()];
-        let irradiance = all_light_at(&self.lights, self.rays, point, xi, &mut counts.shadow_rays);
+        let irradiance = all_light_at(&self.lights, self.input.rays, point, xi, &mut counts.shadow_rays);
         // A diffuse BSDF has one value for all directions, which the irradiance of all lights is multiplied by.
         light.add(state, Layer::Diffuse, bsdf.evaluate(&view, view.normal) * irradiance);
         false
@@ -193,8 +179,7 @@ impl Renderer<'_> {
         state: &mut PathState,
         object: &TranslucentObject,
         point: &SurfacePoint,
-        mirrored: &mut Option<PathState>,
-        light: &mut PathLight,
+        trace: &mut Trace,
         context: &mut ThreadContext,
     ) -> bool {
         let counts = &mut context.counts;
@@ -209,15 +194,15 @@ impl Renderer<'_> {
                 let mut branch = PathState { dimension: state.dimension + BRANCH, events: state.events + 1, ..*state };
                 branch.throughput *= 1.0 - transmittance;
                 let follows = meeting.scatter(&mut branch, Lobe::Reflection, Layer::Specular, counts);
-                *mirrored = (follows && branch.events < self.max_depth).then_some(branch);
-                counts.cut_by_depth += u64::from(follows && mirrored.is_none());
+                trace.mirrored = (follows && branch.events < self.settings.max_depth).then_some(branch);
+                counts.cut_by_depth += u64::from(follows && trace.mirrored.is_none());
             }
             state.throughput *= transmittance;
-            light.through = if object.is_dark() { 0.0 } else { transmittance };
+            trace.light.through = if object.is_dark() { 0.0 } else { transmittance };
         }
-        let emission = self.scene.materials[point.material as usize].emission;
-        light.add(state, Layer::Emission, emission);
-        self.gather(state, object, point, meeting.view.normal, light, context);
+        let emission = self.input.scene.materials[point.material as usize].emission;
+        trace.light.add(state, Layer::Emission, emission);
+        self.gather(state, object, point, meeting.view.normal, &mut trace.light, context);
         state.inside = Some(point.material);
         // If only the interpolated normal lets light through, the path ends here.
         meeting.scatter(state, Lobe::Transmission, Layer::Transmission, &mut context.counts)
@@ -248,10 +233,10 @@ impl Renderer<'_> {
     /// [`PathLight::through`] of a path along this ray.
     pub fn through(&self, origin: DVec3, direction: DVec3, counts: &mut Counts) -> f64 {
         counts.edge_rays += 1;
-        let Some(hit) = self.rays.closest(origin, direction, None) else {
+        let Some(hit) = self.input.rays.closest(origin, direction, None) else {
             return 0.0;
         };
-        let point = self.scene.mesh.point(hit.triangle, hit.weights, self.normals);
+        let point = self.input.scene.mesh.point(hit.triangle, hit.weights, self.settings.normals);
         let view = -direction;
         match &self.objects[point.material as usize] {
             Some(object) if view.dot(point.geometric_normal) > 0.0 && !object.is_dark() => {
@@ -263,14 +248,14 @@ impl Renderer<'_> {
 
     /// Normal, position and depth of what the ray meets first.
     pub fn guide(&self, origin: DVec3, direction: DVec3) -> Guide {
-        let Some(hit) = self.rays.closest(origin, direction, None) else {
+        let Some(hit) = self.input.rays.closest(origin, direction, None) else {
             return Guide::default();
         };
-        let point = self.scene.mesh.point(hit.triangle, hit.weights, self.normals);
+        let point = self.input.scene.mesh.point(hit.triangle, hit.weights, self.settings.normals);
         Guide {
             normal: point.normal,
-            position: point.position + self.scene.origin,
-            depth: hit.distance * direction.dot(self.camera.forward),
+            position: point.position + self.input.scene.origin,
+            depth: hit.distance * direction.dot(self.input.camera.forward),
         }
     }
 }

@@ -1,11 +1,6 @@
-//! The state of one camera path, and the memory of its thread.
+//! The state of one camera path, the light that it gathers, and the memory of its thread.
 
-use crate::{
-    counts::Counts,
-    estimator::Scratch,
-    path_light::{Layer, PathLight},
-    shards::ShardPick,
-};
+use crate::{counts::Counts, estimator::Scratch, shards::ShardPick};
 use scene::{DVec3, SurfacePoint, random::Item};
 
 /// The index of a path.
@@ -21,7 +16,7 @@ pub struct PathIndex {
 pub struct ThreadContext {
     pub counts: Counts,
     /// The buffers of the cut, for each material.
-    scratch: Vec<Scratch>,
+    pub scratch: Vec<Scratch>,
 }
 
 impl ThreadContext {
@@ -29,10 +24,13 @@ impl ThreadContext {
     pub fn new(materials: usize) -> ThreadContext {
         ThreadContext { counts: Counts::default(), scratch: vec![Scratch::default(); materials] }
     }
+}
 
-    pub fn scratch(&mut self, material: usize) -> &mut Scratch {
-        &mut self.scratch[material]
-    }
+/// The light of a path that is followed, and the branch that is left to follow after a split.
+#[derive(Default)]
+pub struct Trace {
+    pub light: PathLight,
+    pub mirrored: Option<PathState>,
 }
 
 /// A path between two surfaces.
@@ -73,6 +71,49 @@ impl PathState {
         self.from = Some(point.triangle);
         self.layer.get_or_insert(event);
     }
+}
+
+/// The layer of a path's light is its first event.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(usize)]
+pub enum Layer {
+    /// Light sources and the environment, seen directly or through the first interface.
+    Emission = 0,
+    /// Light that crosses the first interface and leaves again without being scattered.
+    Transmission = 1,
+    /// Light that is scattered below the first interface.
+    Subsurface = 2,
+    /// Light that the first interface mirrors.
+    Specular = 3,
+    /// Light that an opaque surface reflects.
+    Diffuse = 4,
+}
+
+/// The names of the layers in the channels of an image.
+pub const LAYERS: [&str; 5] = ["emission", "transmission", "subsurface", "specular", "diffuse"];
+
+/// Light of one path, by layer, W/(m² sr).
+pub type Layers = [DVec3; 5];
+
+/// Light of one path, W/(m² sr).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PathLight {
+    pub layers: Layers,
+    /// The sum of the layers as each half of the cloud alone estimates it; without scattered light for a half that the path
+    /// did not gather from.
+    pub halves: [DVec3; 2],
+    /// Transmittance of the first interface for scattered light; 0 without such an interface.
+    pub through: f64,
+}
+
+/// The first surface that the ray through a pixel's center meets; zero where there is none.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Guide {
+    pub normal: DVec3,
+    /// World position, m.
+    pub position: DVec3,
+    /// Distance along the view direction, m.
+    pub depth: f64,
 }
 
 impl PathLight {

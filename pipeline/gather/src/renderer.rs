@@ -1,28 +1,28 @@
 //! The data that all camera paths of an image share: the scene, and translucent objects with their media and samples.
 
-use crate::{estimator::Estimator, shards::DrawnCounts};
+use crate::{
+    image::{Input, Settings},
+    shards::DrawnCounts,
+};
 use bsdf::Surface;
 use bssrdf::Medium;
-use scene::{Camera, NormalKind, Rays, Scene, light::LightTree, random::Stream};
+use scene::{light::LightTree, random::Stream};
 use std::ops::Range;
 use sums::Summation;
 
 /// The data of an image, shared by all threads.
 pub struct Renderer<'a> {
-    pub scene: &'a Scene,
-    pub rays: &'a Rays<'a>,
+    pub input: Input<'a>,
+    pub settings: Settings,
     pub lights: LightTree<'a>,
-    pub camera: &'a Camera,
     /// The translucent object of each material; none for opaque materials.
     pub objects: Vec<Option<TranslucentObject<'a>>>,
-    pub normals: NormalKind,
-    pub estimator: Estimator,
     /// Samples of each cloud, the unlit ones included.
     pub drawn: DrawnCounts,
+    /// Paths of each pixel by the end of the current pass, or of the last one that is expected.
     pub paths_per_pixel: u32,
     /// Paths of each pixel that the current pass adds.
     pub pass: Range<u32>,
-    pub max_depth: u32,
     /// Distance beyond a surface at which a ray continues that crosses it straight, m.
     pub clearance: f64,
     pub paths: Stream,

@@ -22,9 +22,7 @@ impl<'a> Facts<'a> {
         let settings = Settings { paths_per_pixel: rendered.paths_per_pixel, ..job.settings.clone() };
         Facts { request, inputs, job, settings, rendered }
     }
-}
 
-impl Facts<'_> {
     /// Attributes of the image's header. None depends on the machine or the threads, and only `capDate` on the time, by
     /// SOURCE_DATE_EPOCH.
     pub fn attributes(&self) -> BTreeMap<String, Attribute> {
@@ -90,7 +88,7 @@ impl Facts<'_> {
             s.max_depth,
             s.seed,
             self.inputs.scene.environment.identity(),
-            self.request.scene.normals,
+            self.request.scene.how.normals,
         )
     }
 

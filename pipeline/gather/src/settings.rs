@@ -89,7 +89,7 @@ impl Task {
                 return Ok(Task::ListFiles { scene });
             }
             return Ok(Task::ListScene(SceneLists {
-                scene: arguments.scene_args.settings(scene),
+                scene: SceneSettings { path: scene, how: arguments.scene_args },
                 cameras: arguments.list_cameras,
                 materials: arguments.list_materials,
                 common: arguments.common,
@@ -110,7 +110,7 @@ fn request(arguments: Arguments, scene: PathBuf, image: PathBuf) -> Result<Reque
     Ok(Request {
         estimator: estimator(&arguments)?,
         clouds: arguments.files,
-        scene: arguments.scene_args.settings(scene),
+        scene: SceneSettings { path: scene, how: arguments.scene_args },
         camera: arguments.view.map_or(CameraSource::Scene(arguments.camera), CameraSource::View),
         orbit: arguments.orbit,
         size: [arguments.width, arguments.height],

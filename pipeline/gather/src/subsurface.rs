@@ -1,8 +1,7 @@
 //! The light that leaves a translucent surface scattered: what a camera path gathers from the cloud.
 
 use crate::{
-    path_light::{Layer, PathLight},
-    path_state::{PathState, ThreadContext},
+    path_state::{Layer, PathLight, PathState, ThreadContext},
     renderer::{Renderer, TranslucentObject},
 };
 use scene::{DVec3, SurfacePoint};
@@ -28,7 +27,7 @@ impl Renderer<'_> {
         }
         let exit = |half: usize| Exit::new(point.position, normal, state.key.bits(2 * state.dimension + half as u64));
         let estimator = self.estimator_for(state.throughput.max_element());
-        let scratch = context.scratch(point.material as usize);
+        let scratch = &mut context.scratch[point.material as usize];
         let leaving = if self.gathers_by_shard() {
             object.summation.by_shard(estimator, state.half, state.shard_pick, exit, scratch)
         } else {
@@ -42,7 +41,7 @@ impl Renderer<'_> {
 
     /// Whether each path of a pixel gathers from one half of one shard, round-robin, instead of from all samples.
     fn gathers_by_shard(&self) -> bool {
-        self.estimator.is_hierarchical() && self.paths_per_pixel > 1
+        self.settings.estimator.is_hierarchical() && self.paths_per_pixel > 1
     }
 
     /// The estimator of one sum, of whose light a `share` arrives at the camera. The errors of a pixel's sums are
@@ -50,6 +49,6 @@ impl Renderer<'_> {
     pub fn estimator_for(&self, share: f64) -> Estimator {
         let sums =
             if self.gathers_by_shard() { f64::from(self.paths_per_pixel) } else { 2.0 * self.drawn.shards() as f64 };
-        self.estimator.map_accuracy(|accuracy| (accuracy * sums.sqrt() / share.max(1e-3)).min(MAX_ERROR))
+        self.settings.estimator.map_accuracy(|accuracy| (accuracy * sums.sqrt() / share.max(1e-3)).min(MAX_ERROR))
     }
 }

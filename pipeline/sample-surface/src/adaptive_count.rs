@@ -9,8 +9,7 @@
 //! all trials has no larger error.
 
 use crate::{
-    error::SampleError,
-    plan::{Plan, Settings},
+    plan::{Plan, SampleError, Settings},
     points::{Goal, Points, relative_error},
     portions::{Sampled, sample},
     trials::{TRIALS, Trials},
@@ -67,37 +66,6 @@ const GAIN: f64 = 0.5;
 /// A cloud whose error exceeds the bound from trials by this factor has found light that the trials had not.
 const SURPRISE: f64 = 1.5;
 
-/// Draws clouds of more and more samples until one meets the target; `tell` is called after each round.
-pub fn sample_enough(
-    scene: &Scene,
-    rays: &Rays,
-    settings: &Settings,
-    plan: &Plan,
-    goal: &Goal,
-    tell: impl Fn(&Round) + Sync,
-) -> Result<SufficientCloud, SampleError> {
-    let search = Search { scene, rays, settings, plan, goal, tell: &tell };
-    let mut trials = search.trials(FIRST.min(goal.max_samples))?;
-    loop {
-        let samples = trials.all();
-        let error = match trials.mean {
-            None => return Ok(SufficientCloud { sampled: search.cloud(samples)?, estimate: None }),
-            Some(mean) if trials.freedom < MANY && mean.safe() <= goal.error => {
-                return Ok(SufficientCloud { sampled: search.cloud(samples)?, estimate: Some(mean) });
-            }
-            Some(mean) => mean.safe(),
-        };
-        trials = if trials.freedom < MANY {
-            search.trials(search.more(samples, error, TRIALS_GROW)?)?
-        } else {
-            match search.by_halves(trials)? {
-                Found::Sufficient(cloud) => return Ok(*cloud),
-                Found::Few(trials) => trials,
-            }
-        };
-    }
-}
-
 /// The outcome of clouds whose error their halves estimate.
 enum Found {
     Sufficient(Box<SufficientCloud>),
@@ -105,16 +73,41 @@ enum Found {
     Few(Trials),
 }
 
-struct Search<'a> {
-    scene: &'a Scene,
-    rays: &'a Rays<'a>,
-    settings: &'a Settings,
-    plan: &'a Plan,
-    goal: &'a Goal<'a>,
-    tell: &'a (dyn Fn(&Round) + Sync),
+/// A search for the number of samples that meets a goal.
+pub struct Search<'a> {
+    pub scene: &'a Scene,
+    pub rays: &'a Rays<'a>,
+    pub settings: &'a Settings,
+    pub plan: &'a Plan,
+    pub goal: &'a Goal<'a>,
+    /// Called with each round.
+    pub tell: &'a (dyn Fn(&Round) + Sync),
 }
 
 impl Search<'_> {
+    /// Draws clouds of more and more samples until one meets the target.
+    pub fn run(&self) -> Result<SufficientCloud, SampleError> {
+        let mut trials = self.trials(FIRST.min(self.goal.max_samples))?;
+        loop {
+            let samples = trials.all();
+            let error = match trials.mean {
+                None => return Ok(SufficientCloud { sampled: self.cloud(samples)?, estimate: None }),
+                Some(mean) if trials.freedom < MANY && mean.safe() <= self.goal.error => {
+                    return Ok(SufficientCloud { sampled: self.cloud(samples)?, estimate: Some(mean) });
+                }
+                Some(mean) => mean.safe(),
+            };
+            trials = if trials.freedom < MANY {
+                self.trials(self.more(samples, error, TRIALS_GROW)?)?
+            } else {
+                match self.by_halves(trials)? {
+                    Found::Sufficient(cloud) => return Ok(*cloud),
+                    Found::Few(trials) => trials,
+                }
+            };
+        }
+    }
+
     fn cloud(&self, samples: u64) -> Result<Sampled, SampleError> {
         let settings = Settings { samples, ..self.settings.clone() };
         sample(self.scene, self.rays, &settings, self.plan, |_| ())

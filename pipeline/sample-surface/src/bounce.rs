@@ -1,11 +1,23 @@
-//! Light that reaches a sample after one reflection by an opaque surface.
+//! The surface that is sampled, and light that reaches it after one reflection by an opaque surface.
 
-use crate::lit_surface::LitSurface;
-use scene::{DVec3, Scene, SurfacePoint, light::all_light_at, random::Item, warp};
+use scene::{
+    DVec3, Mesh, NormalKind, Rays, Scene, SurfacePoint,
+    light::{LightTree, all_light_at},
+    random::Item,
+    warp,
+};
 
 /// The share of samples that are lit this way where there are opaque surfaces. For a head on an evenly lit floor, which
 /// gets a third as much light from the floor as from the lamps, the variance is least at 0.27.
 pub const SHARE: f64 = 0.25;
+
+/// A surface and its light.
+pub struct LitSurface<'a> {
+    pub mesh: &'a Mesh,
+    pub rays: &'a Rays<'a>,
+    pub lights: LightTree<'a>,
+    pub normals: NormalKind,
+}
 
 /// The opaque surfaces of a scene.
 pub struct Bounce<'a> {

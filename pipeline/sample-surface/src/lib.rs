@@ -3,7 +3,7 @@
 //! [`Plan`] decides which surfaces are sampled and what the cloud's identity is; [`sample()`] draws the samples: a
 //! triangle ([`TriangleChoice`]), a point on it, a direction towards the light, and the flux that arrives ([`draw`]).
 //! [`hierarchy`] orders them and builds the tree over them. The samples depend on no camera and no medium, so that one
-//! cloud serves all of them; only [`sample_enough`] knows a medium, and uses it to choose the number of samples.
+//! cloud serves all of them; only [`Search`] knows a medium, and uses it to choose the number of samples.
 //!
 //! ```
 //! use formats::cloud::{Choice, LightUnit, Normals, Options, Pattern, Shard};
@@ -39,10 +39,8 @@
 mod adaptive_count;
 mod bounce;
 mod choice;
-mod error;
 pub mod hierarchy;
 mod hilbert;
-mod lit_surface;
 mod pattern;
 mod plan;
 mod points;
@@ -51,13 +49,11 @@ mod ribbon;
 mod sample;
 mod trials;
 
-pub use adaptive_count::{Round, SufficientCloud, sample_enough};
-pub use bounce::Bounce;
+pub use adaptive_count::{Round, Search, SufficientCloud};
+pub use bounce::{Bounce, LitSurface};
 pub use choice::{Choice, Chosen, TriangleChoice};
-pub use error::SampleError;
-pub use lit_surface::LitSurface;
 pub use pattern::{Numbers, Pattern, SamplePoint};
-pub use plan::{Plan, Settings, Surfaces};
+pub use plan::{Plan, SampleError, Settings, Surfaces};
 pub use points::Goal;
 pub use portions::{Sampled, sample};
 pub use sample::{SampleOutcome, draw};

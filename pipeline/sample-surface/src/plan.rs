@@ -1,9 +1,27 @@
 //! The surfaces and settings of a cloud, and the identity of the cloud that results.
 
-use crate::{choice::TriangleChoice, error::SampleError};
+use crate::choice::TriangleChoice;
 use bssrdf::Medium;
+use cli::{count, count_up};
 use formats::cloud::{Options, version};
 use scene::{MeshDefects, NormalKind, Scene, random};
+
+/// Why a scene cannot be sampled.
+#[derive(Debug, thiserror::Error)]
+pub enum SampleError {
+    #[error("the scene has no light")]
+    NoLight,
+    #[error(transparent)]
+    Lost(#[from] scene::LostVolumes),
+    #[error("no surface to sample: all of them emit")]
+    NoSurface,
+    #[error("shares of {sum} in all; {wanted}")]
+    ShareSum { sum: f64, wanted: &'static str },
+    #[error("{} samples have an error of {error:.2e}; the target needs about {}, there is room for {}", count(*samples), count_up(*next as f64), count(*max_samples))]
+    TooMany { samples: u64, error: f64, next: u64, max_samples: u64 },
+    #[error("{} samples have a flux that is no finite number: are light intensities or sizes absurd?", count(*samples))]
+    NotFinite { samples: u64 },
+}
 
 /// The settings of sampling.
 #[derive(Clone, Debug)]
@@ -105,6 +123,6 @@ impl Plan {
     /// The triangles to choose from.
     pub fn choice(&self, scene: &Scene, settings: &Settings) -> TriangleChoice {
         let rule = settings.options.choice;
-        TriangleChoice::with_shares(&scene.mesh, rule, |material| self.samples(material), &self.surfaces.shares)
+        TriangleChoice::new(&scene.mesh, rule, |material| self.samples(material), &self.surfaces.shares)
     }
 }

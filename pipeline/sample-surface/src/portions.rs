@@ -1,13 +1,11 @@
 //! Draws the samples in portions, in parallel, and joins them in their order.
 
 use crate::{
-    bounce::Bounce,
+    bounce::{Bounce, LitSurface},
     choice::TriangleChoice,
-    error::SampleError,
     hierarchy,
-    lit_surface::LitSurface,
     pattern::{Numbers, Pattern, SamplePoint},
-    plan::{Plan, Settings},
+    plan::{Plan, SampleError, Settings},
     sample::{SampleOutcome, draw},
 };
 use formats::cloud::{Content, Group, Meta, Record, SampledMaterial};

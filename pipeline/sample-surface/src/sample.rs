@@ -1,8 +1,7 @@
 //! One sample: position, direction to the light, flux.
 
 use crate::{
-    bounce::{Bounce, SHARE},
-    lit_surface::LitSurface,
+    bounce::{Bounce, LitSurface, SHARE},
     pattern::SamplePoint,
 };
 use formats::cloud::Sample;

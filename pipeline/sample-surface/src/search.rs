@@ -2,7 +2,7 @@
 
 use crate::{inputs::Inputs, settings::Request};
 use cli::count;
-use sample_surface::{Goal, Round, SampleError, Sampled, SufficientCloud, TRIALS, sample_enough};
+use sample_surface::{Goal, Round, SampleError, Sampled, Search, SufficientCloud, TRIALS};
 use scene::Rays;
 use sums::confidence::{Estimate, percent};
 
@@ -10,8 +10,8 @@ use sums::confidence::{Estimate, percent};
 pub fn search(request: &Request, inputs: &Inputs, rays: &Rays, goal: &Goal) -> Result<Sampled, SampleError> {
     let (common, medium) = (&request.common, &goal.medium.name);
     let tell = |round: &Round| common.say(describe(round, medium));
-    let SufficientCloud { sampled, estimate } =
-        sample_enough(&inputs.scene, rays, &inputs.settings, &inputs.plan, goal, tell)?;
+    let Inputs { scene, settings, plan, .. } = inputs;
+    let SufficientCloud { sampled, estimate } = Search { scene, rays, settings, plan, goal, tell: &tell }.run()?;
     match estimate {
         Some(estimate) => common.say(met(&sampled, &estimate, medium)),
         None => common.warn(dark(&sampled, medium)),

@@ -36,7 +36,7 @@ pub struct Request {
 impl Task {
     /// The task that the arguments describe.
     pub fn of(arguments: Arguments) -> Result<Task, Failure> {
-        let scene = arguments.scene_args.settings(arguments.scene);
+        let scene = SceneSettings { path: arguments.scene, how: arguments.scene_args };
         let common = arguments.common;
         if arguments.list_materials {
             return Ok(Task::ListMaterials { scene, common });
@@ -67,10 +67,10 @@ impl Request {
             choice: self.choice,
             pattern: self.pattern,
             shares: self.shares.clone(),
-            normals: self.scene.normals,
-            metres_per_unit: self.scene.metres_per_unit,
-            light_unit: self.scene.light_unit,
-            emission_unit: self.scene.emission_unit,
+            normals: self.scene.how.normals,
+            metres_per_unit: self.scene.how.metres_per_unit,
+            light_unit: self.scene.how.light_unit,
+            emission_unit: self.scene.emission_unit(),
             environment: environment.identity(),
         };
         Settings { samples: self.samples, options }

@@ -62,13 +62,7 @@ fn shares(words: &[(String, f64)], scene: &Scene, sampled: &[u16]) -> Result<Vec
 
 /// The material that a word of an option means; no `surface` has a material that it does not mean.
 fn material(word: &str, candidates: &[Candidate], option: &str, surface: &str) -> Result<u16, Failure> {
-    match the_one(word, candidates, false) {
-        Ok(index) => Ok(index as u16),
-        Err(Unclear::Unknown { known }) => {
-            Err(Failure::usage(format!("{option}: no {surface} has a material called `{word}`; there are {known}")))
-        }
-        Err(Unclear::Several { choices }) => {
-            Err(Failure::usage(format!("{option}: `{word}` may be more than one material: give one of {choices}")))
-        }
-    }
+    let missing = format!("no {surface} has a material called `{word}`; there are");
+    let unclear = |e: Unclear| Failure::usage(e.message(option, word, &missing, "material"));
+    the_one(word, candidates, false).map(|index| index as u16).map_err(unclear)
 }

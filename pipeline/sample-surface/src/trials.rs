@@ -8,8 +8,7 @@
 //! `ν`, and the smaller one counts.
 
 use crate::{
-    error::SampleError,
-    plan::{Plan, Settings},
+    plan::{Plan, SampleError, Settings},
     points::{Goal, Points},
     portions::sample,
 };

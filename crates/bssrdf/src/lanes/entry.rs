@@ -40,16 +40,6 @@ pub struct Entered {
     pub transmittance: Lane,
 }
 
-/// The dot products of sixteen pairs of vectors.
-struct Products {
-    /// `m = N·D`.
-    cosine: Integers,
-    /// `N²`.
-    normal: Integers,
-    /// `D²`.
-    direction: Integers,
-}
-
 impl EntryRefraction {
     /// The interface of relative index `eta`, inside over outside.
     pub fn new(eta: f64) -> EntryRefraction {
@@ -60,14 +50,15 @@ impl EntryRefraction {
     /// `T12 = 0` where nothing enters: light from behind, or totally reflected.
     #[inline(always)]
     pub fn enter(&self, normal: &Directions, direction: &Directions) -> Entered {
-        let products = Products::of(normal, direction);
-        let root = self.root(&products);
-        let transmittance = each(|i| self.transmittance(products.cosine[i] as f32, root[i]));
+        let m = dot(normal, direction); // N·D
+        let (normal2, direction2) = (dot(normal, normal), dot(direction, direction)); // N², D²
+        let w = self.root(&m, &normal2, &direction2);
+        let transmittance = each(|i| self.transmittance(m[i] as f32, w[i]));
         let mut entered = Entered { normal: [[0.0; LANES]; 3], refracted: [[0.0; LANES]; 3], transmittance };
         for i in 0..LANES {
-            let inverse = 1.0 / (products.normal[i] as f32).sqrt();
-            let outer = self.inverse / (products.direction[i] as f32).sqrt();
-            let along = (products.cosine[i] as f32 - root[i]) * (inverse * inverse);
+            let inverse = 1.0 / (normal2[i] as f32).sqrt();
+            let outer = self.inverse / (direction2[i] as f32).sqrt();
+            let along = (m[i] as f32 - w[i]) * (inverse * inverse);
             for c in 0..3 {
                 entered.normal[c][i] = normal[c][i] as f32 * inverse;
                 entered.refracted[c][i] = (along * normal[c][i] as f32 - direction[c][i] as f32) * outer;
@@ -76,13 +67,12 @@ impl EntryRefraction {
         entered
     }
 
-    /// `w`; 0 for total reflection. The sum is in float64, for its terms cancel at the critical angle.
+    /// `w` of `m`, `N²` and `D²`; 0 for total reflection. The sum is in float64, for its terms cancel at the critical angle.
     #[inline(always)]
-    fn root(&self, products: &Products) -> Lane {
+    fn root(&self, m: &Integers, normal2: &Integers, direction2: &Integers) -> Lane {
         let squared = each(|i| {
-            let cosine = f64::from(products.cosine[i]);
-            let lengths = f64::from(products.normal[i]) * f64::from(products.direction[i]);
-            (cosine * cosine + self.excess * lengths) as f32
+            let m = f64::from(m[i]);
+            (m * m + self.excess * (f64::from(normal2[i]) * f64::from(direction2[i]))) as f32
         });
         each(|i| if squared[i] > 0.0 { squared[i].sqrt() } else { 0.0 })
     }
@@ -96,13 +86,6 @@ impl EntryRefraction {
         let sum = parallel * parallel + self.squared * perpendicular * perpendicular;
         let value = (2.0 * m * w * inverse) * (sum * inverse);
         if m > 0.0 { value } else { 0.0 }
-    }
-}
-
-impl Products {
-    #[inline(always)]
-    fn of(normal: &Directions, direction: &Directions) -> Products {
-        Products { cosine: dot(normal, direction), normal: dot(normal, normal), direction: dot(direction, direction) }
     }
 }
 

@@ -10,17 +10,8 @@ use std::f64::consts::PI;
 
 /// Relative error of this model's reflectance, see [`ReflectanceErrors`].
 pub const REFLECTANCE_ERRORS: ReflectanceErrors = [
-    [-1.00, -1.00],
-    [-0.90, -0.89],
-    [-0.72, -0.70],
-    [-0.54, -0.53],
-    [-0.37, -0.37],
-    [-0.27, -0.29],
-    [-0.17, -0.18],
-    [-0.09, -0.12],
-    [-0.04, -0.06],
-    [-0.02, -0.03],
-    [-0.00, -0.00],
+    [-1.00, -0.90, -0.72, -0.54, -0.37, -0.27, -0.17, -0.09, -0.04, -0.02, -0.00],
+    [-1.00, -0.89, -0.70, -0.53, -0.37, -0.29, -0.18, -0.12, -0.06, -0.03, -0.00],
 ];
 
 /// The constants of one channel (docs/method.md 4.1, 4.2).
@@ -39,16 +30,14 @@ struct Channel {
     prefactor: f64,
 }
 
-/// The better dipole of one medium.
+/// The better dipole of one medium, channel by channel.
 #[derive(Clone, Debug)]
-pub struct BetterDipole {
-    channels: [Channel; 3],
-}
+pub struct BetterDipole([Channel; 3]);
 
 impl BetterDipole {
     pub fn new(medium: &Medium) -> Self {
         let boundary = &medium.interface;
-        let channels = medium.channels.map(|c| {
+        BetterDipole(medium.channels.map(|c| {
             let diffusion = c.grosjean_diffusion();
             let real_depth = 1.0 / c.reduced_extinction();
             Channel {
@@ -59,15 +48,14 @@ impl BetterDipole {
                 vector: boundary.c_e,
                 prefactor: c.reduced_albedo().powi(2) / (4.0 * PI) / (PI * boundary.exit_norm),
             }
-        });
-        BetterDipole { channels }
+        }))
     }
 }
 
 impl Bssrdf for BetterDipole {
     /// `R_d(r)/(4π C_φ(1/η))` (docs/method.md 4.3, 4.5).
     fn bare(&self, channel: usize, separation: &Separation) -> f64 {
-        let c = &self.channels[channel];
+        let c = &self.0[channel];
         if c.prefactor == 0.0 {
             return 0.0; // σ_s' = 0: nothing scatters, and a vacuum has no depth
         }
@@ -84,6 +72,6 @@ impl Bssrdf for BetterDipole {
     }
 
     fn transport(&self) -> [f64; 3] {
-        self.channels.map(|c| c.transport)
+        self.0.map(|c| c.transport)
     }
 }

@@ -31,16 +31,14 @@ struct Channel {
     prefactor: f32,
 }
 
-/// The better dipole of one medium.
+/// The better dipole of one medium, channel by channel.
 #[derive(Clone, Debug)]
-pub struct BetterLanes {
-    channels: [Channel; 3],
-}
+pub struct BetterLanes([Channel; 3]);
 
 impl LaneModel for BetterLanes {
     fn new(medium: &Medium) -> Self {
         let boundary = &medium.interface;
-        let channels = medium.channels.map(|c| {
+        BetterLanes(medium.channels.map(|c| {
             let reduced = c.reduced_extinction();
             let scatters = c.scatters();
             // Where the prefactor is 0, the other constants may have any finite value.
@@ -56,13 +54,12 @@ impl LaneModel for BetterLanes {
                 vector: boundary.c_e as f32,
                 prefactor: (c.reduced_albedo().powi(2) * reduced * reduced / (4.0 * PI) / norm) as f32,
             }
-        });
-        BetterLanes { channels }
+        }))
     }
 
     #[inline(always)]
     fn bare(&self, block: &Block, _normal_out: [f32; 3]) -> [Lane; 3] {
-        by_distance(block, self.channels, Channel::bare)
+        by_distance(block, self.0, Channel::bare)
     }
 }
 

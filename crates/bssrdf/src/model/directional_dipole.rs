@@ -14,17 +14,8 @@ use std::f64::consts::PI;
 
 /// Relative error of this model's reflectance, see [`ReflectanceErrors`].
 pub const REFLECTANCE_ERRORS: ReflectanceErrors = [
-    [91.67, 101.50],
-    [17.46, 18.68],
-    [5.12, 5.44],
-    [2.54, 2.68],
-    [1.36, 1.38],
-    [0.97, 0.94],
-    [0.63, 0.57],
-    [0.48, 0.40],
-    [0.37, 0.30],
-    [0.33, 0.26],
-    [0.27, 0.22],
+    [91.67, 17.46, 5.12, 2.54, 1.36, 0.97, 0.63, 0.48, 0.37, 0.33, 0.27],
+    [101.50, 18.68, 5.44, 2.68, 1.38, 0.94, 0.57, 0.40, 0.30, 0.26, 0.22],
 ];
 
 /// Below this length rounding has taken the direction of a projected unit vector (docs/method.md 5.6).

@@ -15,7 +15,7 @@ pub use standard_dipole::StandardDipole;
 pub use standard_lanes::StandardLanes;
 
 use crate::{
-    accuracy::{GOOD, ReflectanceErrors, interpolated},
+    accuracy::{GOOD, interpolated},
     evaluate::Bssrdf,
     lanes::block::{Block, Lane, LaneModel},
     medium::{Coefficients, Medium},
@@ -72,17 +72,14 @@ impl Model {
         })
     }
 
-    fn reflectance_errors(self) -> &'static ReflectanceErrors {
-        match self {
+    /// Relative error of this model's reflectance of a half-space under normal incidence, for one channel.
+    pub fn reflectance_error(self, channel: &Coefficients, eta: f64) -> f64 {
+        let errors = match self {
             Model::DirectionalDipole => &directional_dipole::REFLECTANCE_ERRORS,
             Model::BetterDipole => &better_dipole::REFLECTANCE_ERRORS,
             Model::StandardDipole => &standard_dipole::REFLECTANCE_ERRORS,
-        }
-    }
-
-    /// Relative error of this model's reflectance of a half-space under normal incidence, for one channel.
-    pub fn reflectance_error(self, channel: &Coefficients, eta: f64) -> f64 {
-        interpolated(self.reflectance_errors(), channel.reduced_albedo(), eta)
+        };
+        interpolated(errors, channel.reduced_albedo(), eta)
     }
 
     /// The errors of the three channels if that of any channel which scatters exceeds [`GOOD`].

@@ -13,17 +13,8 @@ use std::f64::consts::PI;
 
 /// Relative error of this model's reflectance, see [`ReflectanceErrors`].
 pub const REFLECTANCE_ERRORS: ReflectanceErrors = [
-    [0.13, 0.60],
-    [0.11, 0.50],
-    [0.12, 0.50],
-    [0.10, 0.46],
-    [0.06, 0.34],
-    [0.02, 0.24],
-    [-0.04, 0.09],
-    [-0.06, -0.01],
-    [-0.08, -0.08],
-    [-0.08, -0.10],
-    [-0.07, -0.10],
+    [0.13, 0.11, 0.12, 0.10, 0.06, 0.02, -0.04, -0.06, -0.08, -0.08, -0.07],
+    [0.60, 0.50, 0.50, 0.46, 0.34, 0.24, 0.09, -0.01, -0.08, -0.10, -0.10],
 ];
 
 /// The constants of one channel (docs/method.md 3.2).
@@ -38,16 +29,14 @@ struct Channel {
     prefactor: f64,
 }
 
-/// The standard dipole of one medium.
+/// The standard dipole of one medium, channel by channel.
 #[derive(Clone, Debug)]
-pub struct StandardDipole {
-    channels: [Channel; 3],
-}
+pub struct StandardDipole([Channel; 3]);
 
 impl StandardDipole {
     pub fn new(medium: &Medium) -> Self {
         let reflection = medium.interface.reflection_egan;
-        let channels = medium.channels.map(|c| {
+        StandardDipole(medium.channels.map(|c| {
             let real_depth = 1.0 / c.reduced_extinction();
             Channel {
                 transport: c.transport(),
@@ -55,8 +44,7 @@ impl StandardDipole {
                 virtual_depth: real_depth + 4.0 * reflection * c.diffusion(),
                 prefactor: c.reduced_albedo() / (4.0 * PI * PI),
             }
-        });
-        StandardDipole { channels }
+        }))
     }
 }
 
@@ -70,7 +58,7 @@ fn source(distance_squared: f64, depth: f64, transport: f64) -> f64 {
 impl Bssrdf for StandardDipole {
     /// `R_d(r)/π` (docs/method.md 3.4, 3.6).
     fn bare(&self, channel: usize, separation: &Separation) -> f64 {
-        let c = &self.channels[channel];
+        let c = &self.0[channel];
         if c.prefactor == 0.0 {
             return 0.0; // σ_s' = 0: nothing scatters, and a vacuum has no depth
         }
@@ -79,6 +67,6 @@ impl Bssrdf for StandardDipole {
     }
 
     fn transport(&self) -> [f64; 3] {
-        self.channels.map(|c| c.transport)
+        self.0.map(|c| c.transport)
     }
 }

@@ -23,15 +23,13 @@ struct Channel {
     prefactor: f32,
 }
 
-/// The standard dipole of one medium.
+/// The standard dipole of one medium, channel by channel.
 #[derive(Clone, Debug)]
-pub struct StandardLanes {
-    channels: [Channel; 3],
-}
+pub struct StandardLanes([Channel; 3]);
 
 impl LaneModel for StandardLanes {
     fn new(medium: &Medium) -> Self {
-        let channels = medium.channels.map(|c| {
+        StandardLanes(medium.channels.map(|c| {
             let reduced = c.reduced_extinction();
             let transport = if c.scatters() { c.transport() / reduced } else { 0.0 };
             Channel {
@@ -41,13 +39,12 @@ impl LaneModel for StandardLanes {
                 virtual_depth: (1.0 + 4.0 / 3.0 * medium.interface.reflection_egan) as f32,
                 prefactor: (c.reduced_albedo() * reduced * reduced / (4.0 * PI * PI)) as f32,
             }
-        });
-        StandardLanes { channels }
+        }))
     }
 
     #[inline(always)]
     fn bare(&self, block: &Block, _normal_out: [f32; 3]) -> [Lane; 3] {
-        by_distance(block, self.channels, Channel::bare)
+        by_distance(block, self.0, Channel::bare)
     }
 }
 

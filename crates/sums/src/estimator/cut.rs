@@ -25,7 +25,7 @@ use formats::cloud::{Node, TILE, first_leaf};
 struct Closed {
     id: u32,
     /// The predicted standard deviation of its contribution, summed over channels, in W/(m² sr) times
-    /// [`LitSamples::scale`].
+    /// `scale` of [`LitSamples`].
     error: f32,
     /// Its predicted contribution, in the same unit.
     value: f32,
@@ -105,7 +105,7 @@ impl<M: LaneModel> Cut<'_, M> {
         self.scratch.frontier.push(1);
         let mut visited = self.sweep(Criterion::Wide);
         let mut added = self.add_open(0, sum);
-        let scale = self.samples.scale();
+        let scale = self.samples.scale;
         let unit = 1.0 / f64::from(scale);
         let rough = self.scratch.closed.iter().fold(of_open(sum, scale), |sum, c| sum + c.max_value);
         let target = self.accuracy * self.calibration.factor(f64::from(rough) * unit);
@@ -150,8 +150,8 @@ impl<M: LaneModel> Cut<'_, M> {
     /// Opens nodes of the frontier until each is closed or is an open leaf; returns the number of visited nodes.
     #[inline(always)]
     fn sweep(&mut self, criterion: Criterion) -> u64 {
-        let (leaves, scale) = (Leaves::of(self.samples), self.samples.scale());
-        let nodes = self.samples.nodes();
+        let (leaves, scale) = (Leaves::of(self.samples), self.samples.scale);
+        let nodes = self.samples.nodes;
         let Scratch { frontier, closed, open, .. } = &mut *self.scratch;
         let mut visited = 0;
         while !frontier.is_empty() {
@@ -181,7 +181,7 @@ impl<M: LaneModel> Cut<'_, M> {
     /// Picks one sample of each closed node.
     #[inline(always)]
     fn pick(&mut self) {
-        let first_leaf = first_leaf(self.samples.tiles().len() as u64);
+        let first_leaf = first_leaf(self.samples.tiles.len() as u64);
         let Scratch { closed, picks, .. } = &mut *self.scratch;
         picks.clear();
         for node in closed.iter() {
@@ -246,7 +246,7 @@ struct Leaves {
 impl Leaves {
     #[inline(always)]
     fn of(samples: &LitSamples) -> Leaves {
-        let tiles = samples.tiles().len();
+        let tiles = samples.tiles.len();
         Leaves { first: first_leaf(tiles as u64) as u32, tiles: tiles as u32 }
     }
 
@@ -295,14 +295,14 @@ fn predict(tables: &FalloffTables, exit: &Exit, nodes: &[Node], scale: f32, ids:
         let far2 = offset[0][i] * offset[0][i] + offset[1][i] * offset[1][i] + offset[2][i] * offset[2][i];
         let near = (far2.sqrt() - radius[i]).max(0.0);
         let near2 = near * near;
-        let by_position = tables.slope(near2) * spread[i];
-        let by_direction = tables.scatter(near2) * direction_deviation[i] * (1.0 / DIFFUSE_DEVIATION);
+        let by_position = tables.slope.at(near2) * spread[i];
+        let by_direction = tables.scatter.at(near2) * direction_deviation[i] * (1.0 / DIFFUSE_DEVIATION);
         // The squared radius of a disc is twice the mean squared distance from its center.
         let disc2 = 2.0 * spread[i] * spread[i];
-        let value = if far2 > disc2 { tables.value(far2) } else { tables.disc(disc2) };
+        let value = if far2 > disc2 { tables.value.at(far2) } else { tables.disc.at(disc2) };
         // The mean of an exponential over a node is close to the geometric mean of its values at the center and at the
         // near end.
-        let near_value = (value * tables.value(near2)).sqrt();
+        let near_value = (value * tables.value.at(near2)).sqrt();
         let by_flux = value * flux_deviation[i];
         predicted.error[i] =
             flux[i] * (by_position * by_position + by_direction * by_direction + by_flux * by_flux).sqrt();

@@ -20,7 +20,7 @@ impl<M: LaneModel> Kernel for Exhaustive<'_, M> {
     #[inline(always)]
     fn run(self) -> Sum {
         let mut sum = Accumulator::new();
-        for index in 0..self.samples.tiles().len() {
+        for index in 0..self.samples.tiles.len() {
             let (block, flux) = self.samples.block(index, self.exit);
             sum.add(&self.model.bare(&block, self.exit.normal), &flux, &[1.0; LANES]);
         }

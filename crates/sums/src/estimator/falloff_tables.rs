@@ -15,14 +15,25 @@ const ENTRIES: usize = 1 << (32 - 1 - SHIFT);
 #[derive(Clone, Debug)]
 pub struct FalloffTables {
     /// Mean of `S_bare`, 1/(m² sr).
-    value: Box<[f32; ENTRIES]>,
+    pub value: Table,
     /// Mean of `value` over a disc of this squared radius around the exitant point, 1/(m² sr).
-    disc: Box<[f32; ENTRIES]>,
-    /// Standard deviation over samples, divided by the root mean square of their distances from their mean, 1/(m³ sr).
-    /// It never grows with the distance.
-    slope: Box<[f32; ENTRIES]>,
+    pub disc: Table,
+    /// Standard deviation over samples, divided by the root mean square of their distances from their mean, 1/(m³ sr). It
+    /// never grows with the distance.
+    pub slope: Table,
     /// Standard deviation over diffuse directions of light, 1/(m² sr).
-    scatter: Box<[f32; ENTRIES]>,
+    pub scatter: Table,
+}
+
+/// A number for each step of the squared distance.
+#[derive(Clone, Debug)]
+pub struct Table(Box<[f32; ENTRIES]>);
+
+impl Table {
+    #[inline(always)]
+    pub fn at(&self, distance_squared: f32) -> f32 {
+        self.0[(distance_squared.to_bits() >> SHIFT) as usize & (ENTRIES - 1)]
+    }
 }
 
 /// The entries of the tables at one distance.
@@ -37,7 +48,7 @@ impl FalloffTables {
     /// `size` is that of the surface, m: over shorter distances it is nearly a plane. A surface of infinite size is
     /// one.
     pub fn new(medium: &Medium, model: &dyn Bssrdf, size: f64) -> FalloffTables {
-        let table = || -> Box<[f32; ENTRIES]> { Box::new([0.0; ENTRIES]) };
+        let table = || Table(Box::new([0.0; ENTRIES]));
         let mut tables = FalloffTables { value: table(), disc: table(), slope: table(), scatter: table() };
         let (nearest, farthest) = distances(medium, model);
         let variations = variations(model, &directions(medium.eta), nearest, farthest, size);
@@ -49,8 +60,8 @@ impl FalloffTables {
             }
             let here = interpolate(&variations, (distance / nearest).ln() / STEP.ln());
             slope = slope.max(here.slope);
-            (tables.value[k], tables.scatter[k]) = (here.value as f32, here.scatter as f32);
-            tables.slope[k] = slope as f32;
+            (tables.value.0[k], tables.scatter.0[k]) = (here.value as f32, here.scatter as f32);
+            tables.slope.0[k] = slope as f32;
         }
         tables.average();
         tables
@@ -62,36 +73,11 @@ impl FalloffTables {
         for k in 0..ENTRIES {
             let (from, to) = (f64::from(start(k)), f64::from(start(k + 1)));
             if to.is_finite() && to > 0.0 {
-                sum += f64::from(self.value[k]) * (to - from);
-                self.disc[k] = (sum / to) as f32;
+                sum += f64::from(self.value.0[k]) * (to - from);
+                self.disc.0[k] = (sum / to) as f32;
             }
         }
     }
-
-    #[inline(always)]
-    pub fn value(&self, distance_squared: f32) -> f32 {
-        self.value[index(distance_squared)]
-    }
-
-    #[inline(always)]
-    pub fn disc(&self, radius_squared: f32) -> f32 {
-        self.disc[index(radius_squared)]
-    }
-
-    #[inline(always)]
-    pub fn slope(&self, distance_squared: f32) -> f32 {
-        self.slope[index(distance_squared)]
-    }
-
-    #[inline(always)]
-    pub fn scatter(&self, distance_squared: f32) -> f32 {
-        self.scatter[index(distance_squared)]
-    }
-}
-
-#[inline(always)]
-fn index(distance_squared: f32) -> usize {
-    (distance_squared.to_bits() >> SHIFT) as usize & (ENTRIES - 1)
 }
 
 /// The squared distance where a table's step begins.

@@ -110,7 +110,7 @@ impl<M: LaneModel> Roulette<'_, M> {
     fn scan<const N: usize>(&self, acceptance: &Acceptance<N>) -> Sum {
         let mut accepted = Accepted::default();
         let mut sum = Accumulator::new();
-        for block in 0..self.samples.tiles().len() {
+        for block in 0..self.samples.tiles.len() {
             let positions = self.samples.positions(block);
             let (p, bits, mut proposed) = self.propose(acceptance, block, &positions);
             while proposed != 0 {

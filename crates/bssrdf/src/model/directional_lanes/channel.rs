@@ -64,30 +64,15 @@ pub(super) struct Decay {
 }
 
 impl Channel {
-    /// A channel that scatters nothing.
-    const NOTHING: Channel = Channel {
-        reduced: 1.0,
-        reduced2: 1.0,
-        k_reduced: 1.0,
-        transport: 0.0,
-        exponent: 0.0,
-        extrapolation2: 1.0,
-        four_extrapolation2: 1.0,
-        mirror: 1.0,
-        mirror2: 1.0,
-        minus_k_mirror: 1.0,
-        back_lit_depth2: 0.1,
-        prefactor: 0.0,
-    };
-
     pub fn new(c: &Coefficients, boundary: &Interface, k: f64) -> Channel {
-        if !c.scatters() {
-            return Channel::NOTHING;
-        }
+        // Where nothing scatters the prefactor is 0, and the lengths of any medium do.
+        let scatters = c.scatters();
+        let c = if scatters { c } else { &Coefficients { sigma_a: 1.0, sigma_s: 1.0, asymmetry: 0.0 } };
         let reduced = c.reduced_extinction();
         let extrapolation = 2.131 / 3.0 / c.reduced_albedo().sqrt();
         let mirror = 2.0 * boundary.reflection * extrapolation;
         let transport = c.transport() / reduced;
+        let prefactor = 3.0 * boundary.c_phi * reduced * reduced / (4.0 * PI * PI * boundary.exit_norm);
         Channel {
             reduced: reduced as f32,
             reduced2: (reduced * reduced) as f32,
@@ -100,7 +85,7 @@ impl Channel {
             mirror2: (mirror * mirror) as f32,
             minus_k_mirror: (-k * mirror) as f32,
             back_lit_depth2: (reduced / (3.0 * c.extinction())).powi(2) as f32,
-            prefactor: (3.0 * boundary.c_phi * reduced * reduced / (4.0 * PI * PI * boundary.exit_norm)) as f32,
+            prefactor: if scatters { prefactor as f32 } else { 0.0 },
         }
     }
 
