@@ -2,8 +2,7 @@
 
 use crate::{
     environment::{EnvironmentSource, parse_environment},
-    numbers::{parse_finite, parse_non_negative, parse_positive},
-    words::one_of,
+    values::{one_of, parse_finite, parse_non_negative, parse_positive},
 };
 use clap::Args;
 use formats::cloud::{LightUnit, Normals};

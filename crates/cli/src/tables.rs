@@ -34,8 +34,8 @@ pub fn camera_table(scene: &Scene) -> String {
     let mut table = Table::new(&["index", "name", "kind", "field of view", "aspect", "position, m", "node"]);
     for (index, camera) in scene.cameras.iter().enumerate() {
         let (kind, view) = match camera.projection {
-            Projection::Perspective { .. } => {
-                ("perspective", format!("yfov {:.2} degrees", camera.yfov_degrees().unwrap_or_default()))
+            Projection::Perspective { tangent } => {
+                ("perspective", format!("yfov {:.2} degrees", 2.0 * tangent.atan().to_degrees()))
             }
             Projection::Orthographic { half_height } => ("orthographic", format!("height {:.4e} m", 2.0 * half_height)),
         };
@@ -98,9 +98,8 @@ pub fn material_table(scene: &Scene) -> Result<String, Failure> {
             Ok(medium) => medium.map_or_else(|| "-".into(), text),
             Err(fault) => fault.to_string(),
         };
-        let row = [index.to_string(), material.name.clone(), kind.into(), counts[index].to_string()];
-        let tail = [format!("{:.4e}", areas[index]), medium];
-        table.0.push(row.into_iter().chain(tail).collect());
+        let (count, area) = (counts[index].to_string(), format!("{:.4e}", areas[index]));
+        table.0.push(vec![index.to_string(), material.name.clone(), kind.into(), count, area, medium]);
     }
     Ok(table.text())
 }

@@ -52,19 +52,14 @@ impl Output {
 
     /// Flushes the buffer and renames the file to its target.
     pub fn commit(mut self) -> Result<(), Error> {
-        let path = self.target.clone();
-        self.finish().map_err(|source| Error::write(&path, source))
+        let renamed = self.settle().and_then(|()| self.rename());
+        renamed.map_err(|source| Error::write(&self.target, source))
     }
 
     /// Flushes the buffer, and returns the path at which the file can be read until it is committed.
     pub fn written(&mut self) -> Result<&Path, Error> {
         self.settle().map_err(|source| Error::write(&self.target, source))?;
         Ok(self.temporary.as_deref().unwrap_or(&self.target))
-    }
-
-    fn finish(&mut self) -> io::Result<()> {
-        self.settle()?;
-        self.rename()
     }
 
     /// Writes all bytes to the disk.

@@ -45,22 +45,12 @@ impl Image {
 
     /// Reads an OpenEXR file as [`Image::decode`] does; errors name the file.
     pub fn read(path: &Path) -> Result<Image, ImageError> {
-        Image::read_with(path, NonZeroUsize::MIN)
+        let read = || {
+            let is_file = std::fs::metadata(path)?.is_file();
+            if is_file { Image::decode(&std::fs::read(path)?) } else { Err(ImageError::NotAFile) }
+        };
+        read().map_err(|e: ImageError| e.of_file(path))
     }
-
-    /// As [`Image::read`], with the same result for any number of threads.
-    ///
-    /// While it reads, it holds the file, the samples, and 4 MiB or one block for each thread.
-    pub fn read_with(path: &Path, threads: NonZeroUsize) -> Result<Image, ImageError> {
-        read_file(path, threads).map_err(|source| ImageError::File { path: path.to_owned(), source: Box::new(source) })
-    }
-}
-
-fn read_file(path: &Path, threads: NonZeroUsize) -> Result<Image, ImageError> {
-    if !std::fs::metadata(path)?.is_file() {
-        return Err(ImageError::NotAFile);
-    }
-    decode::decode(&std::fs::read(path)?, threads)
 }
 
 #[cfg(test)]

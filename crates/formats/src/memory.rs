@@ -1,11 +1,12 @@
-//! Checks that there is memory for the size that a file states.
+//! Memory for the size that a file states.
 
 use memmap2::MmapMut;
 
-/// Whether the system would grant `bytes` of memory now. The system itself is asked, because a program's allocator may
-/// end the process instead of returning an error.
-pub(crate) fn has_room(bytes: u64) -> bool {
-    usize::try_from(bytes).is_ok_and(|bytes| MmapMut::map_anon(bytes.max(1)).is_ok())
+/// `count` zeros, if the system would grant the memory for them now. The system itself is asked, because a program's allocator
+/// may end the process instead of returning an error.
+pub(crate) fn zeros<T: Clone + Default>(count: usize) -> Option<Vec<T>> {
+    let bytes = count.saturating_mul(size_of::<T>()).max(1);
+    MmapMut::map_anon(bytes).is_ok().then(|| vec![T::default(); count])
 }
 
 #[cfg(test)]
@@ -14,7 +15,7 @@ mod tests {
 
     #[test]
     fn little_memory_is_granted_and_all_is_not() {
-        assert!(has_room(0) && has_room(1 << 20));
-        assert!(!has_room(u64::MAX) && !has_room(1 << 60));
+        assert!(zeros::<u8>(0).is_some() && zeros::<u8>(1 << 20).is_some());
+        assert!(zeros::<u64>(usize::MAX).is_none() && zeros::<u8>(1 << 60).is_none());
     }
 }

@@ -1,6 +1,6 @@
 //! Errors of scenes and views.
 
-use crate::unhonoured::{quoted, rest};
+use crate::unhonoured::{first_of, quoted};
 use std::path::PathBuf;
 
 /// A scene or view that cannot be used. The message names the file and the field and, where the file can be mended,
@@ -29,8 +29,7 @@ impl LostVolumes {
 
     /// The materials of these names, at least one, lost `count` triangles without area, `rounded` of them by rounding.
     pub(crate) fn new(names: &[&str], count: u64, rounded: u64) -> LostVolumes {
-        let first: Vec<String> = names.iter().take(Self::NAMED).map(|name| quoted(name)).collect();
-        let names = format!("{}{}", first.join(", "), rest(names.len() - first.len()));
+        let names = first_of(names.iter().map(|name| quoted(name)), Self::NAMED);
         let why = match (count, rounded) {
             (0, _) => "it has no triangles; give it some".into(),
             (_, 0) => format!("all {count} triangles have no area (scale 0?); repair the mesh and export again"),

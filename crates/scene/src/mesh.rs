@@ -110,22 +110,17 @@ impl Mesh {
         self.colors.get(vertex as usize).copied().unwrap_or([1.0; 4])
     }
 
-    fn interpolated<T: Add<Output = T> + Mul<f64, Output = T>>(
-        &self,
-        triangle: u32,
-        weights: [f64; 3],
-        of: impl Fn(u32) -> T,
-    ) -> T {
+    fn interpolated<T>(&self, triangle: u32, weights: [f64; 3], of: impl Fn(u32) -> T) -> T
+    where
+        T: Add<Output = T> + Mul<f64, Output = T>,
+    {
         let [a, b, c] = self.triangles[triangle as usize].vertices.map(of);
         a * weights[0] + b * weights[1] + c * weights[2]
     }
 
     /// Smallest and largest coordinates of the triangles, m.
     pub fn bounds(&self) -> (DVec3, DVec3) {
-        let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        let corners = self.triangles.iter().flat_map(|t| t.vertices.map(|i| self.positions[i as usize]));
-        let (low, high) = corners.fold(start, |(low, high), p| (low.min(p), high.max(p)));
-        (low.as_dvec3(), high.as_dvec3())
+        bounds((0..self.triangles.len()).flat_map(|k| self.corners(k)))
     }
 
     /// Length of the diagonal of the bounding box, m.
@@ -133,6 +128,11 @@ impl Mesh {
         let (low, high) = self.bounds();
         (high - low).length()
     }
+}
+
+/// Smallest and largest coordinates of points.
+pub(crate) fn bounds(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
+    points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
 }
 
 /// `A_j = ½ ‖(v₁−v₀) × (v₂−v₀)‖`.

@@ -8,7 +8,7 @@ use crate::{
     unhonoured::Unhonoured,
     view::Camera,
 };
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::PathBuf,
@@ -80,6 +80,14 @@ impl Scene {
         let triangles = self.mesh.triangles.iter().enumerate();
         triangles.for_each(|(k, t)| areas[usize::from(t.material)] += self.mesh.area(k));
         areas
+    }
+
+    /// Diffuse albedo of an opaque surface, and alpha, at the point of a triangle with these barycentric weights.
+    pub fn color(&self, triangle: u32, weights: [f64; 3]) -> DVec4 {
+        let material = &self.materials[self.mesh.triangles[triangle as usize].material as usize];
+        let texture = material.base_texture.as_ref();
+        let texel = texture.map_or(DVec4::ONE, |t| t.at(self.mesh.coordinates(triangle, weights)));
+        material.base_color * texel * self.mesh.color(triangle, weights)
     }
 
     fn lost(&self, materials: &[u16]) -> LostVolumes {

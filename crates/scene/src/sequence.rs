@@ -19,7 +19,7 @@ const COLUMNS: [[u32; 32]; DIMENSIONS - 1] =
 
 /// The columns of a primitive polynomial of `degree` with inner coefficients `inner` and initial numbers `m`.
 const fn columns(degree: usize, inner: u32, m: [u32; 3]) -> [u32; 32] {
-    let mut v = [0u32; 32];
+    let (mut v, mut reversed) = ([0u32; 32], [0; 32]);
     let mut k = 0;
     while k < 32 {
         if k < degree {
@@ -34,11 +34,6 @@ const fn columns(degree: usize, inner: u32, m: [u32; 3]) -> [u32; 32] {
                 j += 1;
             }
         }
-        k += 1;
-    }
-    let mut reversed = [0; 32];
-    k = 0;
-    while k < 32 {
         reversed[k] = v[k].reverse_bits();
         k += 1;
     }

@@ -33,7 +33,9 @@ pub(crate) fn cut(text: &str, bytes: usize) -> String {
     if text.len() <= bytes { text.to_owned() } else { format!("{}…", &text[..text.floor_char_boundary(bytes)]) }
 }
 
-/// The end of a list of names from which `count` were left out.
-pub(crate) fn rest(count: usize) -> String {
-    if count == 0 { String::new() } else { format!(" and {count} more") }
+/// At most `max` of these names, and how many more there are.
+pub(crate) fn first_of(names: impl ExactSizeIterator<Item = String>, max: usize) -> String {
+    let left_out = names.len().saturating_sub(max);
+    let named = names.take(max).collect::<Vec<_>>().join(", ");
+    if left_out == 0 { named } else { format!("{named} and {left_out} more") }
 }

@@ -1,7 +1,7 @@
 //! Cameras: of the glTF file, or of a view file.
 
 use crate::{error::SceneError, import::files};
-use glam::{DMat4, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 use serde::Deserialize;
 use serde_json::Value;
 use std::{collections::HashSet, path::Path};
@@ -32,14 +32,6 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Vertical field of view in degrees, or none for an orthographic camera.
-    pub fn yfov_degrees(&self) -> Option<f64> {
-        match self.projection {
-            Projection::Perspective { tangent } => Some(2.0 * tangent.atan().to_degrees()),
-            Projection::Orthographic { .. } => None,
-        }
-    }
-
     /// Origin (world, m) and unit direction of the ray through `point` of an image of `size` pixels; the top left
     /// corner is (0, 0).
     pub fn ray(&self, point: DVec2, size: DVec2) -> (DVec3, DVec3) {
@@ -57,10 +49,8 @@ impl Camera {
 
     /// `worldToCamera` in OpenEXR's row-vector convention, row-major: the camera looks along −Z, Y is up.
     pub fn world_to_camera(&self) -> [f32; 16] {
-        let back = -self.forward;
-        let columns = [self.right, self.up, back];
         let mut m = [0.0f32; 16];
-        for (c, axis) in columns.iter().enumerate() {
+        for (c, axis) in [self.right, self.up, -self.forward].iter().enumerate() {
             for r in 0..3 {
                 m[4 * r + c] = axis[r] as f32;
             }
@@ -70,27 +60,16 @@ impl Camera {
         m
     }
 
-    /// The camera of a node, whatever its scale.
-    pub(crate) fn of_node(
-        names: (String, String),
-        transform: &DMat4,
+    /// The camera that looks along a unit vector; none if the vector upwards is parallel to it.
+    pub(crate) fn looking(
+        (name, node): (String, String),
+        position: DVec3,
+        [forward, up]: [DVec3; 2],
         projection: Projection,
         aspect: Option<f64>,
     ) -> Option<Camera> {
-        let axis = |v: DVec3| transform.transform_vector3(v).try_normalize();
-        let forward = axis(-DVec3::Z)?;
-        let right = forward.cross(axis(DVec3::Y)?).try_normalize()?;
-        let position = transform.transform_point3(DVec3::ZERO);
-        Some(Camera {
-            name: names.0,
-            node: names.1,
-            position,
-            right,
-            up: right.cross(forward),
-            forward,
-            projection,
-            aspect,
-        })
+        let right = forward.cross(up).try_normalize()?;
+        Some(Camera { name, node, position, right, up: right.cross(forward), forward, projection, aspect })
     }
 }
 
@@ -123,11 +102,7 @@ impl View {
     }
 
     fn with_camera(self, name: &str) -> Result<(View, Camera), String> {
-        let camera = self.camera(self.name.as_deref().unwrap_or(name).to_owned())?;
-        Ok((self, camera))
-    }
-
-    fn camera(&self, name: String) -> Result<Camera, String> {
+        let name = self.name.as_deref().unwrap_or(name).to_owned();
         let [eye, target, up] = [self.eye, self.target, self.up].map(DVec3::from_array);
         if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
             return Err("fields `eye`, `target`, `up` must be finite numbers".into());
@@ -136,23 +111,14 @@ impl View {
             return Err(format!("field `yfov`: {} is outside (0, 180) degrees", self.yfov));
         }
         let forward = (target - eye).try_normalize().ok_or("fields `eye` and `target` are the same point")?;
-        let right = forward.cross(up).try_normalize().ok_or("field `up` is zero or along the line of sight")?;
         let tangent = (0.5 * self.yfov).to_radians().tan();
         let projection = Projection::Perspective { tangent };
         let aspect = match (self.width, self.height) {
             (Some(w), Some(h)) if w > 0 && h > 0 => Some(f64::from(w) / f64::from(h)),
             _ => None,
         };
-        Ok(Camera {
-            node: name.clone(),
-            name,
-            position: eye,
-            right,
-            up: right.cross(forward),
-            forward,
-            projection,
-            aspect,
-        })
+        let camera = Camera::looking((name.clone(), name), eye, [forward, up], projection, aspect);
+        Ok((self, camera.ok_or("field `up` is zero or along the line of sight")?))
     }
 }
 
@@ -270,7 +236,7 @@ mod tests {
 
     fn view(json: &str) -> Result<Camera, String> {
         let view: View = serde_json::from_str(json).map_err(|e| e.to_string())?;
-        view.camera("test".into())
+        view.with_camera("test").map(|(_, camera)| camera)
     }
 
     #[test]

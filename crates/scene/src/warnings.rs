@@ -2,7 +2,7 @@
 
 use crate::{
     scene::Scene,
-    unhonoured::{Holder, quoted, rest},
+    unhonoured::{Holder, first_of, quoted},
 };
 use std::collections::HashMap;
 
@@ -27,11 +27,8 @@ impl Scene {
             found[index].1.extend(&one.holder);
         }
         if !found.is_empty() {
-            let named: Vec<String> =
-                found.iter().take(MAX_PROPERTIES).map(|(p, holders)| self.named(p, holders)).collect();
-            let more = rest(found.len() - named.len());
-            let named = named.join(", ");
-            self.warnings.push(format!("not honoured: {named}{more}; docs/scenes.md says what is"));
+            let named = first_of(found.iter().map(|(p, holders)| self.named(p, holders)), MAX_PROPERTIES);
+            self.warnings.push(format!("not honoured: {named}; docs/scenes.md says what is"));
         }
     }
 
@@ -65,8 +62,7 @@ impl Scene {
             Holder::Named(name) => quoted(name),
             Holder::Numbered(k) => k.to_string(),
         };
-        let first: Vec<String> = holders.iter().take(MAX_HOLDERS).map(name).collect();
-        format!("{property} ({}{})", first.join(", "), rest(holders.len() - first.len()))
+        format!("{property} ({})", first_of(holders.iter().map(name), MAX_HOLDERS))
     }
 }
 

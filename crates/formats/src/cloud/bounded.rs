@@ -3,11 +3,8 @@
 //! The decoder's limit bounds what it reads, but serde reserves memory for a list, and the decoder for a text, before
 //! the first byte of it is read. Here a list grows with its elements, and a text is copied after all of it was read.
 
-use serde::{
-    Deserialize, Deserializer,
-    de::{SeqAccess, Visitor},
-};
-use std::{collections::BTreeMap, fmt, marker::PhantomData};
+use serde::{Deserialize, Deserializer};
+use std::collections::{BTreeMap, LinkedList};
 
 pub(super) fn text<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
     <&str>::deserialize(from).map(str::to_owned)
@@ -24,25 +21,8 @@ pub(super) fn shares<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(String, 
 }
 
 pub(super) fn list<'de, D: Deserializer<'de>, T: Deserialize<'de>>(from: D) -> Result<Vec<T>, D::Error> {
-    from.deserialize_seq(Elements(PhantomData))
-}
-
-struct Elements<T>(PhantomData<T>);
-
-impl<'de, T: Deserialize<'de>> Visitor<'de> for Elements<T> {
-    type Value = Vec<T>;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("a list")
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, mut from: A) -> Result<Vec<T>, A::Error> {
-        let mut list = Vec::new();
-        while let Some(element) = from.next_element()? {
-            list.push(element);
-        }
-        Ok(list)
-    }
+    // Serde reserves no memory for a linked list.
+    LinkedList::deserialize(from).map(Vec::from_iter)
 }
 
 #[cfg(test)]

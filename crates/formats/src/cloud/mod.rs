@@ -146,16 +146,13 @@ impl Cloud {
         if now.len() == self.bytes() && now.modified().ok() == self.modified {
             return Ok(());
         }
-        let written = |_| Error::invalid(path, "written to while it was read; rename a new cloud over it instead");
+        let written = || Error::invalid(path, "written to while it was read; rename a new cloud over it instead");
         if now.len() != self.bytes() {
-            return Err(written(String::new()));
+            return Err(written());
         }
-        let content = layout::decode(&self.map, &SECTIONS).and_then(|header| read_meta(&self.map, &header));
-        match content {
-            Ok(meta) if meta.content == self.meta.content => self.verify(path),
-            Ok(_) => Err(written(String::new())),
-            Err(what) => Err(written(what)),
-        }
+        let header = layout::decode(&self.map, &SECTIONS);
+        let now = header.and_then(|header| read_meta(&self.map, &header)).map_err(|_| written())?;
+        if now.content == self.meta.content { self.verify(path) } else { Err(written()) }
     }
 
     pub fn meta(&self) -> &Meta {

@@ -18,7 +18,7 @@ use exr::prelude::f16;
 use super::header;
 use super::parallel::parallel;
 use super::types::{Channel, Image, ImageError, MAX_SAMPLES, Window};
-use crate::memory::has_room;
+use crate::memory::zeros;
 
 /// First bytes of every OpenEXR file.
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
@@ -41,17 +41,15 @@ pub struct Dimensions {
     pub height: usize,
     /// Channels of all parts.
     pub channels: usize,
-    /// Largest memory of [`Image::read`], including the file. Each further thread of [`Image::read_with`] takes 12 MiB
-    /// or three blocks more.
+    /// Largest memory of [`Image::read`], including the file. Each further thread of [`Image::decode_with`] takes 12 MiB or three
+    /// blocks more.
     pub reading_bytes: u64,
 }
 
 impl Image {
     /// Reads the header of an OpenEXR file. Refuses what [`Image::read`] refuses because of its size or kind.
     pub fn dimensions(path: &Path) -> Result<Dimensions, ImageError> {
-        let outline = outline_of_file(path);
-        let outline = outline.map_err(|source| ImageError::File { path: path.to_owned(), source: Box::new(source) })?;
-        Ok(outline.dimensions)
+        outline_of_file(path).map(|outline| outline.dimensions).map_err(|e| e.of_file(path))
     }
 }
 
@@ -301,37 +299,24 @@ impl Part {
     }
 }
 
-/// `count` zeros, if there is memory for them.
-fn zeros<T: Clone + Default>(count: usize) -> Option<Vec<T>> {
-    has_room((count as u64).saturating_mul(size_of::<T>() as u64)).then(|| vec![T::default(); count])
-}
-
 /// Converts one row of one channel, in the byte order of this machine, to float32. False if a value is not exact.
 fn convert(kind: SampleType, line: &[u8], target: &mut [f32]) -> bool {
     match kind {
-        SampleType::F16 => {
-            for (value, bytes) in target.iter_mut().zip(line.as_chunks().0) {
-                *value = f16::from_ne_bytes(*bytes).to_f32();
-            }
-        }
-        SampleType::F32 => {
-            for (value, bytes) in target.iter_mut().zip(line.as_chunks().0) {
-                *value = f32::from_ne_bytes(*bytes);
-            }
-        }
+        SampleType::F16 => fill(target, line, |bytes| f16::from_ne_bytes(bytes).to_f32()),
+        SampleType::F32 => fill(target, line, f32::from_ne_bytes),
         SampleType::U32 => {
-            for (value, bytes) in target.iter_mut().zip(line.as_chunks().0) {
-                let whole = u32::from_ne_bytes(*bytes);
-                *value = whole as f32;
-                // The comparison is in float64, which represents both: in uint32 the largest value would saturate and
-                // look equal.
-                if f64::from(*value) != f64::from(whole) {
-                    return false;
-                }
-            }
+            fill(target, line, |bytes| u32::from_ne_bytes(bytes) as f32);
+            // The comparison is in float64, which represents both: in uint32 the largest value would saturate and look equal.
+            let mut pairs = target.iter().zip(line.as_chunks().0);
+            return pairs.all(|(value, bytes)| f64::from(*value) == f64::from(u32::from_ne_bytes(*bytes)));
         }
     }
     true
+}
+
+/// Sets each number from its bytes.
+fn fill<const N: usize>(target: &mut [f32], line: &[u8], value: impl Fn([u8; N]) -> f32) {
+    target.iter_mut().zip(line.as_chunks().0).for_each(|(target, bytes)| *target = value(*bytes));
 }
 
 /// The error of a file, with the names of compressions that are newer than the library.

@@ -75,21 +75,17 @@ fn describe(image: &Image, channels: &[&Channel]) -> Header {
         quantize_linearly: false,
         sampling: Vec2(1, 1),
     });
-    let position = Vec2(image.window[0], image.window[1]);
-    let size = Vec2(image.width, image.height);
-    let display =
-        image.display.map_or(IntegerBounds::new(position, size), |Window { position: [x, y], size: [w, h] }| {
-            IntegerBounds::new(Vec2(x, y), Vec2(w, h))
-        });
+    let bounds = |Window { position: [x, y], size: [w, h] }| IntegerBounds::new(Vec2(x, y), Vec2(w, h));
+    let data = bounds(Window { position: image.window, size: [image.width, image.height] });
     let others = image.attributes.iter().filter(|(name, _)| !REQUIRED.contains(&name.as_str()));
     let attributes = LayerAttributes {
-        layer_position: position,
+        layer_position: data.position,
         other: others.map(|(name, value)| (text(name), attribute(value))).collect::<HashMap<_, _>>(),
         ..LayerAttributes::default()
     };
-    let mut header = Header::new(text(""), size, list.collect())
+    let mut header = Header::new(text(""), data.size, list.collect())
         .with_encoding(Compression::ZIP16, BlockDescription::ScanLines, LineOrder::Increasing)
-        .with_display_window(display)
+        .with_display_window(image.display.map_or(data, bounds))
         .with_attributes(attributes);
     require(&mut header, image);
     header
@@ -140,21 +136,15 @@ fn attribute(value: &Attribute) -> AttributeValue {
 }
 
 fn check(image: &Image) -> Result<(), ImageError> {
-    let samples =
-        [image.width, image.height, image.channels.len()].iter().try_fold(1_u64, |n, m| n.checked_mul(*m as u64));
+    let (width, height, channels) = (image.width, image.height, image.channels.len());
+    let samples = [width, height, channels].iter().try_fold(1_u64, |n, m| n.checked_mul(*m as u64));
     if samples.is_none_or(|samples| samples > MAX_SAMPLES) {
-        let (width, height, channels) = (image.width, image.height, image.channels.len());
         return Err(ImageError::TooLarge { width, height, channels, limit: format!("{MAX_SAMPLES} samples") });
     }
     if samples == Some(0) {
-        return unwritable(format!(
-            "{} x {} pixels with {} channels are empty",
-            image.width,
-            image.height,
-            image.channels.len()
-        ));
+        return unwritable(format!("{width} x {height} pixels with {channels} channels are empty"));
     }
-    check_window("data", Window { position: image.window, size: [image.width, image.height] })?;
+    check_window("data", Window { position: image.window, size: [width, height] })?;
     image.display.map_or(Ok(()), |display| check_window("display", display))?;
     check_channels(image)?;
     image.attributes.iter().try_for_each(|(name, value)| check_attribute(name, value))

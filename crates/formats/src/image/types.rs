@@ -1,6 +1,9 @@
 //! An image as plain data, and what can be wrong with one.
 
-use std::{collections::BTreeMap, path::PathBuf};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
 
 /// Most samples (pixels times channels) of an image that is read or written: 8 GiB as float32.
 pub(super) const MAX_SAMPLES: u64 = 1 << 31;
@@ -122,6 +125,12 @@ pub enum ImageError {
     /// A file cannot hold the image.
     #[error("image cannot be written: {0}")]
     Unwritable(String),
+}
+
+impl ImageError {
+    pub(super) fn of_file(self, path: &Path) -> ImageError {
+        ImageError::File { path: path.to_owned(), source: Box::new(self) }
+    }
 }
 
 impl Image {

@@ -1,6 +1,6 @@
 //! The pixels of a panorama, and their limits.
 
-use crate::memory::has_room;
+use crate::memory::zeros;
 
 /// An environment map in linear Rec. 709. Numbers of the file that are no radiance, negative or not finite, are kept.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +39,6 @@ pub(super) fn check_size([width, height]: [usize; 2]) -> Result<(), String> {
 
 /// Black pixels, if there is memory for them.
 pub(super) fn black(width: usize, height: usize) -> Result<Vec<[f32; 3]>, String> {
-    let room = has_room(PIXEL_BYTES.saturating_mul((width * height) as u64));
     let scarce = || format!("not enough memory for {width} x {height} pixels; scale the picture down");
-    room.then(|| vec![[0.0; 3]; width * height]).ok_or_else(scarce)
+    zeros(width * height).ok_or_else(scarce)
 }

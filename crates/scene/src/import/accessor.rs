@@ -1,9 +1,8 @@
-//! Accessors. Their ranges are checked before any element is read.
+//! Accessors and their little-endian numbers. Ranges are checked before any element is read.
 
 use super::{
     container::{Document, part},
-    fault::{Fault, get},
-    number::Number,
+    fault::{Fault, Result, get},
 };
 use gltf::json::{
     Accessor, Index,
@@ -45,68 +44,47 @@ impl<'a> Elements<'a> {
 
 impl<'a> CheckedAccessor<'a> {
     /// A list of vectors of float32 or quantized (KHR_mesh_quantization).
-    pub fn vectors(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self, Fault> {
-        CheckedAccessor::of_vectors(document, index, (Type::Vec3, 3), field)
+    pub fn vectors(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self> {
+        let expected = "VEC3 of 32-bit float, or of 8 or 16-bit integers";
+        CheckedAccessor::new(document, index, field, Number::of_vector, &[Type::Vec3], expected)
     }
 
     /// A list of texture coordinates of float32 or integers.
-    pub fn coordinates(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self, Fault> {
-        CheckedAccessor::of_vectors(document, index, (Type::Vec2, 2), field)
-    }
-
-    fn of_vectors(
-        document: &'a Document,
-        index: &Index<Accessor>,
-        (kind, width): (Type, usize),
-        field: String,
-    ) -> Result<Self, Fault> {
-        let accessor = get(&document.root.accessors, index, &field)?;
-        let number = component(accessor).and_then(|c| Number::of_vector(c, accessor.normalized));
-        match number {
-            Some(number) if accessor.type_ == Checked::Valid(kind) => {
-                CheckedAccessor::new(document, accessor, number, width, field)
-            }
-            _ => Err(format!("{field}: the accessor must hold VEC{width} of 32-bit float, or of 8 or 16-bit integers")),
-        }
+    pub fn coordinates(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self> {
+        let expected = "VEC2 of 32-bit float, or of 8 or 16-bit integers";
+        CheckedAccessor::new(document, index, field, Number::of_vector, &[Type::Vec2], expected)
     }
 
     /// A list of colors with or without alpha, of float32 or normalized integers.
-    pub fn colors(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self, Fault> {
-        let accessor = get(&document.root.accessors, index, &field)?;
-        let number = component(accessor).and_then(|c| Number::of_color(c, accessor.normalized));
-        match (number, &accessor.type_) {
-            (Some(number), Checked::Valid(Type::Vec3)) => CheckedAccessor::new(document, accessor, number, 3, field),
-            (Some(number), Checked::Valid(Type::Vec4)) => CheckedAccessor::new(document, accessor, number, 4, field),
-            _ => Err(format!(
-                "{field}: the accessor must hold VEC3 or VEC4 of 32-bit float, or of normalized 8 or 16-bit unsigned \
-                 integers"
-            )),
-        }
+    pub fn colors(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self> {
+        let expected = "VEC3 or VEC4 of 32-bit float, or of normalized 8 or 16-bit unsigned integers";
+        CheckedAccessor::new(document, index, field, Number::of_color, &[Type::Vec3, Type::Vec4], expected)
     }
 
     /// A list of vertex indices.
-    pub fn indices(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self, Fault> {
-        let accessor = get(&document.root.accessors, index, &field)?;
-        let number = component(accessor).and_then(Number::of_index);
-        match number {
-            Some(number) if accessor.type_ == Checked::Valid(Type::Scalar) && !accessor.normalized => {
-                CheckedAccessor::new(document, accessor, number, 1, field)
-            }
-            _ => Err(format!("{field}: the accessor must hold SCALAR unsigned integers, not normalized")),
-        }
+    pub fn indices(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self> {
+        let expected = "SCALAR unsigned integers, not normalized";
+        CheckedAccessor::new(document, index, field, Number::of_index, &[Type::Scalar], expected)
     }
 
-    /// Elements of `width` numbers.
+    /// Elements of one of these shapes, of numbers that `number` accepts: what is `expected`.
     fn new(
         document: &'a Document,
-        accessor: &Accessor,
-        number: Number,
-        width: usize,
+        index: &Index<Accessor>,
         field: String,
-    ) -> Result<Self, Fault> {
+        number: fn(ComponentType, bool) -> Option<Number>,
+        shapes: &[Type],
+        expected: &str,
+    ) -> Result<Self> {
+        let accessor = get(&document.root.accessors, index, &field)?;
+        let number = component(accessor).and_then(|c| number(c, accessor.normalized));
+        let shape = shapes.iter().find(|shape| accessor.type_ == Checked::Valid(**shape));
+        let (Some(number), Some(shape)) = (number, shape) else {
+            return Err(format!("{field}: the accessor must hold {expected}"));
+        };
         let fault = |e: Fault| format!("{field}: {e}");
         let (count, unit) = (accessor.count.0, number.size());
-        let size = width * unit;
+        let size = shape.multiplicity() * unit;
         let elements = match &accessor.buffer_view {
             Some(view) => {
                 let offset = accessor.byte_offset.map_or(0, |o| o.0);
@@ -128,7 +106,7 @@ impl<'a> CheckedAccessor<'a> {
     }
 
     /// The elements. Every number is finite, and components that the accessor lacks are 1.
-    pub fn read_reals<const N: usize>(&self) -> Result<Vec<[f32; N]>, Fault> {
+    pub fn read_reals<const N: usize>(&self) -> Result<Vec<[f32; N]>> {
         let (number, size) = (self.number, self.number.size());
         let list = self.read(|bytes| {
             let mut numbers = bytes.chunks_exact(size).map(|b| number.real(b));
@@ -142,7 +120,7 @@ impl<'a> CheckedAccessor<'a> {
     }
 
     /// The indices, each below `vertices`.
-    pub fn read_indices(&self, vertices: usize) -> Result<Vec<u32>, Fault> {
+    pub fn read_indices(&self, vertices: usize) -> Result<Vec<u32>> {
         let indices = self.read(Number::unsigned)?;
         match indices.iter().enumerate().find(|(_, i)| **i as usize >= vertices) {
             Some((k, _)) => {
@@ -152,7 +130,7 @@ impl<'a> CheckedAccessor<'a> {
         }
     }
 
-    fn read<T>(&self, decode: impl Fn(&[u8]) -> T) -> Result<Vec<T>, Fault> {
+    fn read<T>(&self, decode: impl Fn(&[u8]) -> T) -> Result<Vec<T>> {
         let mut list: Vec<T> = self.elements.iter().map(&decode).collect();
         let Some(changes) = &self.changes else { return Ok(list) };
         for (at, (index, value)) in changes.indices.iter().zip(changes.values.iter()).enumerate() {
@@ -165,16 +143,15 @@ impl<'a> CheckedAccessor<'a> {
 }
 
 impl<'a> Changes<'a> {
-    /// The changes of an accessor of `all` elements. There are at most as many, so that a short accessor is not slow to
-    /// read.
-    fn new(document: &'a Document, sparse: &Sparse, all: u64, size: usize, unit: usize) -> Result<Self, Fault> {
+    /// The changes of an accessor of `all` elements. There are at most as many, so that a short accessor is not slow to read.
+    fn new(document: &'a Document, sparse: &Sparse, all: u64, size: usize, unit: usize) -> Result<Self> {
         let count = sparse.count.0;
         if count > all {
             return Err(format!("count {count} exceeds the {all} elements of the accessor"));
         }
         let (indices, values) = (&sparse.indices, &sparse.values);
         let index_size = match &indices.component_type {
-            Checked::Valid(c) => Number::of_index(c.0).map(Number::size),
+            Checked::Valid(c) => Number::of_index(c.0, false).map(Number::size),
             Checked::Invalid => None,
         };
         let index_size = index_size.ok_or("the indices must be unsigned integers")?;
@@ -197,7 +174,7 @@ struct Run<'a> {
 
 impl Run<'_> {
     /// The elements, if all lie within view and buffer.
-    fn elements<'a>(&self, document: &'a Document) -> Result<Elements<'a>, Fault> {
+    fn elements<'a>(&self, document: &'a Document) -> Result<Elements<'a>> {
         let view = get(&document.root.buffer_views, self.view, "accessor.bufferView")?;
         let (size, count) = (self.size, self.count);
         let stride = view.byte_stride.map_or(size, |s| s.0);
@@ -218,9 +195,9 @@ impl Run<'_> {
 /// Fewest bytes of a vertex in a file: an aligned position of 8-bit integers.
 const MIN_BYTES_PER_VERTEX: u64 = 4;
 
-/// The zeros that a sparse accessor without a buffer view changes. They take no bytes of the file, but other attributes
-/// of the same vertices do; without this limit, a short file could need any memory.
-fn zeros(count: u64, size: usize, longest: usize) -> Result<Elements<'static>, Fault> {
+/// The zeros that a sparse accessor without a buffer view changes. They take no bytes of the file, but other attributes of the
+/// same vertices do; without this limit, a short file could need any memory.
+fn zeros(count: u64, size: usize, longest: usize) -> Result<Elements<'static>> {
     const ZEROS: [u8; 16] = [0; 16];
     let limit = longest as u64 / MIN_BYTES_PER_VERTEX;
     if count > limit {
@@ -233,5 +210,58 @@ fn component(accessor: &Accessor) -> Option<ComponentType> {
     match &accessor.component_type {
         Checked::Valid(c) => Some(c.0),
         Checked::Invalid => None,
+    }
+}
+
+/// The type of a number.
+#[derive(Clone, Copy)]
+struct Number {
+    component: ComponentType,
+    /// Integers represent 0 to 1, or -1 to 1.
+    normalized: bool,
+}
+
+impl Number {
+    /// The type of a component of a position or normal: float32, or an integer of 8 or 16 bits (KHR_mesh_quantization).
+    fn of_vector(component: ComponentType, normalized: bool) -> Option<Number> {
+        let refused = matches!((component, normalized), (ComponentType::U32, _) | (ComponentType::F32, true));
+        (!refused).then_some(Number { component, normalized })
+    }
+
+    /// The type of a component of a color: float32, or an integer of 8 or 16 bits that represents 0 to 1.
+    fn of_color(component: ComponentType, normalized: bool) -> Option<Number> {
+        use ComponentType::{F32, U8, U16};
+        let allowed = matches!((component, normalized), (F32, false) | (U8 | U16, true));
+        allowed.then_some(Number { component, normalized })
+    }
+
+    /// The type of a vertex index.
+    fn of_index(component: ComponentType, normalized: bool) -> Option<Number> {
+        let allowed = matches!(component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32) && !normalized;
+        allowed.then_some(Number { component, normalized })
+    }
+
+    /// Size, bytes.
+    fn size(self) -> usize {
+        self.component.size()
+    }
+
+    /// The value of its bytes.
+    fn real(self, bytes: &[u8]) -> f32 {
+        let bits = Number::unsigned(bytes);
+        let (value, largest) = match self.component {
+            ComponentType::I8 => (f32::from(bits as u8 as i8), 127.0),
+            ComponentType::U8 => (f32::from(bits as u8), 255.0),
+            ComponentType::I16 => (f32::from(bits as u16 as i16), 32767.0),
+            ComponentType::U16 => (f32::from(bits as u16), 65535.0),
+            ComponentType::U32 | ComponentType::F32 => return f32::from_bits(bits),
+        };
+        // The smallest integer is a little below -1.
+        if self.normalized { (value / largest).max(-1.0) } else { value }
+    }
+
+    /// The value of up to four bytes as an unsigned integer.
+    fn unsigned(bytes: &[u8]) -> u32 {
+        bytes.iter().rev().fold(0, |sum, b| sum << 8 | u32::from(*b))
     }
 }

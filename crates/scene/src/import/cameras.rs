@@ -1,10 +1,11 @@
 //! Import of cameras.
 
 use super::{
-    fault::{Fault, get},
+    fault::{Fault, Result, get},
     nodes::SceneNode,
 };
 use crate::view::{Camera, Projection};
+use glam::DVec3;
 use gltf::json::{self, camera::Type, validation::Checked};
 use std::f64::consts::PI;
 
@@ -12,7 +13,7 @@ use std::f64::consts::PI;
 const MAX_NAME_BYTES: usize = 1 << 24;
 
 /// One camera for each node that carries one, in the order of the nodes.
-pub(super) fn read(root: &json::Root, nodes: &[SceneNode], metres_per_unit: f64) -> Result<Vec<Camera>, Fault> {
+pub(super) fn read(root: &json::Root, nodes: &[SceneNode], metres_per_unit: f64) -> Result<Vec<Camera>> {
     let mut cameras = Vec::new();
     let mut room = MAX_NAME_BYTES;
     for placed in nodes {
@@ -27,7 +28,7 @@ pub(super) fn read(root: &json::Root, nodes: &[SceneNode], metres_per_unit: f64)
     Ok(cameras)
 }
 
-fn of_node(placed: &SceneNode, camera: &json::Camera, metres_per_unit: f64) -> Result<Camera, Fault> {
+fn of_node(placed: &SceneNode, camera: &json::Camera, metres_per_unit: f64) -> Result<Camera> {
     let (projection, aspect) = match (&camera.type_, &camera.perspective, &camera.orthographic) {
         (Checked::Valid(Type::Perspective), Some(p), _) => {
             (perspective(f64::from(p.yfov))?, p.aspect_ratio.map(f64::from))
@@ -44,12 +45,17 @@ fn of_node(placed: &SceneNode, camera: &json::Camera, metres_per_unit: f64) -> R
     if let Some(a) = aspect.filter(|a| !(*a > 0.0 && a.is_finite())) {
         return Err(format!("its aspect ratio {a} must be positive"));
     }
+    // Whatever the scale of the node.
+    let axis = |v: DVec3| placed.transform.transform_vector3(v).try_normalize();
     let name = camera.name.clone().unwrap_or_else(|| placed.name.clone());
-    Camera::of_node((name, placed.name.clone()), &placed.transform, projection, aspect)
-        .ok_or_else(|| "its node's matrix has no direction (scale 0?)".into())
+    let position = placed.transform.transform_point3(DVec3::ZERO);
+    let camera = axis(-DVec3::Z).zip(axis(DVec3::Y)).and_then(|(forward, up)| {
+        Camera::looking((name, placed.name.clone()), position, [forward, up], projection, aspect)
+    });
+    camera.ok_or_else(|| "its node's matrix has no direction (scale 0?)".into())
 }
 
-fn perspective(yfov: f64) -> Result<Projection, Fault> {
+fn perspective(yfov: f64) -> Result<Projection> {
     let tangent = (0.5 * yfov).tan();
     // Beyond pi, the tangent is that of another angle.
     if !(yfov > 0.0 && yfov < PI && tangent.is_finite()) {

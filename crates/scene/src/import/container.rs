@@ -1,7 +1,7 @@
 //! The container, .glb or .gltf, and its buffers.
 
 use super::{
-    fault::{Fault, get},
+    fault::{Result, get},
     files::{self, Files},
     survey::Survey,
     transform::NodeTransform,
@@ -55,7 +55,7 @@ impl Document {
         Document::parse(bytes, path).map_err(|what| SceneError::Invalid { path: path.to_owned(), what })
     }
 
-    fn parse(bytes: Vec<u8>, path: &Path) -> Result<Document, Fault> {
+    fn parse(bytes: Vec<u8>, path: &Path) -> Result<Document> {
         let whole = 0..bytes.len();
         let (text, chunk) = if bytes.starts_with(b"glTF") { split_glb(&bytes)? } else { (whole, None) };
         let text = &bytes[text];
@@ -94,7 +94,7 @@ impl Document {
     }
 
     /// The bytes of a buffer view.
-    pub fn view(&self, index: &Index<View>) -> Result<&[u8], Fault> {
+    pub fn view(&self, index: &Index<View>) -> Result<&[u8]> {
         let view = get(&self.root.buffer_views, index, "bufferView")?;
         let buffer = view.buffer.value();
         let data = self.buffer(buffer).ok_or_else(|| format!("bufferView.buffer {buffer} is out of range"))?;
@@ -112,7 +112,7 @@ pub(super) fn part(data: &[u8], start: u64, length: u64) -> Option<&[u8]> {
     data.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?)
 }
 
-fn check_version(asset: &json::Asset) -> Result<(), Fault> {
+fn check_version(asset: &json::Asset) -> Result<()> {
     if !asset.version.starts_with("2.") {
         return Err(format!("asset.version is `{}`; only glTF 2 is supported", asset.version));
     }
@@ -123,7 +123,7 @@ fn check_version(asset: &json::Asset) -> Result<(), Fault> {
 }
 
 /// Finds the bytes of buffer `k`, and checks their number.
-fn locate(k: usize, buffer: &json::Buffer, chunk: Option<Range<usize>>, files: &mut Files) -> Result<Buffer, Fault> {
+fn locate(k: usize, buffer: &json::Buffer, chunk: Option<Range<usize>>, files: &mut Files) -> Result<Buffer> {
     let wanted = buffer.byte_length.0;
     let enough = |have: usize| match usize::try_from(wanted) {
         Ok(wanted) if wanted <= have => Ok(wanted),
@@ -143,14 +143,8 @@ fn locate(k: usize, buffer: &json::Buffer, chunk: Option<Range<usize>>, files: &
     }
 }
 
-/// A chunk of a .glb: its kind and the range of its content.
-struct Chunk {
-    kind: [u8; 4],
-    content: Range<usize>,
-}
-
 /// The ranges of the JSON chunk and of the binary chunk, which is the second one if there is any.
-fn split_glb(bytes: &[u8]) -> Result<(Range<usize>, Option<Range<usize>>), Fault> {
+fn split_glb(bytes: &[u8]) -> Result<(Range<usize>, Option<Range<usize>>)> {
     let version = word(bytes, 4)?;
     if version != 2 {
         return Err(format!("the .glb has version {version}; only version 2 is supported"));
@@ -159,30 +153,31 @@ fn split_glb(bytes: &[u8]) -> Result<(Range<usize>, Option<Range<usize>>), Fault
     let Some(bytes) = bytes.get(..length) else {
         return Err(format!("the .glb is truncated: {} of {length} bytes are there", bytes.len()));
     };
-    let text = chunk_at(bytes, 12)?;
-    if &text.kind != b"JSON" {
-        return Err(format!("the first chunk of the .glb is `{}`, not `JSON`", text.kind.escape_ascii()));
+    let (kind, text) = chunk_at(bytes, 12)?;
+    if &kind != b"JSON" {
+        return Err(format!("the first chunk of the .glb is `{}`, not `JSON`", kind.escape_ascii()));
     }
-    let second = text.content.end.next_multiple_of(4);
+    let second = text.end.next_multiple_of(4);
     if second >= length {
-        return Ok((text.content, None));
+        return Ok((text, None));
     }
-    let binary = chunk_at(bytes, second)?;
+    let (kind, binary) = chunk_at(bytes, second)?;
     // glTF says that chunks of other kinds are ignored.
-    Ok((text.content, (&binary.kind == b"BIN\0").then_some(binary.content)))
+    Ok((text, (&kind == b"BIN\0").then_some(binary)))
 }
 
-fn chunk_at(bytes: &[u8], at: usize) -> Result<Chunk, Fault> {
+/// The kind of the chunk at a byte of a .glb, and the range of its content.
+fn chunk_at(bytes: &[u8], at: usize) -> Result<([u8; 4], Range<usize>)> {
     let size = word(bytes, at)? as usize;
     let kind = word(bytes, at + 4)?.to_le_bytes();
     let (start, left) = (at + 8, bytes.len() - (at + 8));
     if size > left {
         return Err(format!("the .glb chunk at byte {at} has {size} bytes, {left} are left; is the file truncated?"));
     }
-    Ok(Chunk { kind, content: start..start + size })
+    Ok((kind, start..start + size))
 }
 
-fn word(bytes: &[u8], at: usize) -> Result<u32, Fault> {
+fn word(bytes: &[u8], at: usize) -> Result<u32> {
     let four = bytes.get(at..at.saturating_add(4)).and_then(|b| b.try_into().ok());
     four.map(u32::from_le_bytes).ok_or_else(|| "the .glb header is truncated".into())
 }

@@ -1,6 +1,11 @@
 //! Copies of triangles, each of which would transmit or emit light of its own.
 
-use crate::{material::Material, mesh::Mesh};
+use super::geometry::retain;
+use crate::{
+    material::Material,
+    mesh::{Mesh, Triangle},
+    random::mix,
+};
 use std::collections::BTreeMap;
 
 /// Drops triangles with the three positions of an earlier one of the same material, in any winding. Returns their
@@ -12,18 +17,9 @@ pub(super) fn drop_duplicates(mesh: &mut Mesh, materials: &[Material]) -> BTreeM
     let later = later_copies(mesh, |material| {
         materials.get(usize::from(material)).is_some_and(|m| m.emits() && !m.double_sided)
     });
-    if later.is_empty() {
-        return dropped;
-    }
-    let (mut index, mut later) = (0, later.into_iter().peekable());
-    mesh.triangles.retain(|triangle| {
-        let keep = later.next_if_eq(&index).is_none();
-        index += 1;
-        if !keep {
-            *dropped.entry(triangle.material).or_default() += 1;
-        }
-        keep
-    });
+    let (mut indices, mut later) = (0.., later.into_iter().peekable());
+    let is_first = |_: &Triangle| indices.next().is_some_and(|index| later.next_if_eq(&index).is_none());
+    retain(&mut mesh.triangles, &mut dropped, is_first);
     dropped
 }
 
@@ -83,13 +79,6 @@ fn hash(mesh: &Mesh, triangle: u32) -> u64 {
     mix(corners(mesh, triangle).into_iter().map(corner).fold(material, u64::wrapping_add)) >> 32
 }
 
-/// The finalizer of SplitMix64: every output bit depends on every input bit.
-fn mix(x: u64) -> u64 {
-    let x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    x ^ x >> 31
-}
-
 fn key(mesh: &Mesh, triangle: u32, has_sides: impl Fn(u16) -> bool) -> Key {
     let [a, b, c] = corners(mesh, triangle);
     let mut positions = [a, b, c];
@@ -103,7 +92,6 @@ fn key(mesh: &Mesh, triangle: u32, has_sides: impl Fn(u16) -> bool) -> Key {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Triangle;
     use glam::Vec3;
 
     /// Triangles that share a hash are distinguished, and copies are found among them.

@@ -5,6 +5,9 @@ use gltf::json::Index;
 /// A fault of the file, not yet with the file's name.
 pub(super) type Fault = String;
 
+/// The result of reading a part of the file.
+pub(super) type Result<T, E = Fault> = std::result::Result<T, E>;
+
 /// Why a file makes no scene.
 pub(super) enum Refusal {
     Invalid(Fault),
@@ -19,7 +22,7 @@ impl From<Fault> for Refusal {
 }
 
 /// The element of a list of the file at an index that the file gives.
-pub(super) fn get<'a, T>(list: &'a [T], index: &Index<T>, field: &str) -> Result<&'a T, Fault> {
+pub(super) fn get<'a, T>(list: &'a [T], index: &Index<T>, field: &str) -> Result<&'a T> {
     let i = index.value();
     list.get(i).ok_or_else(|| format!("{field}: index {i} is out of range, there are {}", list.len()))
 }

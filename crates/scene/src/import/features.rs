@@ -1,7 +1,7 @@
 //! Features that are not supported: an error where the image would be wrong, else a warning.
 
-use super::{container::Document, fault::Fault, honoured, nodes::SceneNode};
-use crate::unhonoured::{Holder, Unhonoured, quoted, rest};
+use super::{container::Document, fault::Result, honoured, nodes::SceneNode};
+use crate::unhonoured::{Holder, Unhonoured, first_of, quoted};
 use gltf::json;
 use std::collections::BTreeSet;
 
@@ -29,7 +29,7 @@ const GEOMETRY: &[(&str, &str)] = &[
 ];
 
 /// Refuses required extensions that are unknown, and used ones that change the geometry, declared or not.
-pub(super) fn check(document: &Document) -> Result<(), Fault> {
+pub(super) fn check(document: &Document) -> Result<()> {
     let root = &document.root;
     for name in &root.extensions_required {
         if !SUPPORTED.contains(&name.as_str()) {
@@ -66,7 +66,7 @@ pub(super) fn undeclared_effects(document: &Document) -> Vec<Unhonoured> {
 const NAMED: usize = 3;
 
 /// Refuses poses that are not baked into the mesh: skins, morph targets, and animations of a mesh or its ancestors.
-pub(super) fn check_nodes(root: &json::Root, nodes: &[SceneNode], warnings: &mut Vec<String>) -> Result<(), Fault> {
+pub(super) fn check_nodes(root: &json::Root, nodes: &[SceneNode], warnings: &mut Vec<String>) -> Result<()> {
     const BAKE: &str = "apply the pose to the mesh and export again";
     // Once for each mesh, for any number of nodes.
     let morphs = |p: &json::mesh::Primitive| p.targets.as_ref().is_some_and(|t| !t.is_empty());
@@ -93,9 +93,8 @@ pub(super) fn check_nodes(root: &json::Root, nodes: &[SceneNode], warnings: &mut
         unused.push(name);
     }
     if !unused.is_empty() {
-        let first: Vec<String> = unused.iter().take(NAMED).map(|name| quoted(name)).collect();
-        let (names, more) = (first.join(", "), rest(unused.len() - first.len()));
-        warnings.push(format!("animations are not used, and cameras and lights stay at rest: {names}{more}"));
+        let names = first_of(unused.iter().map(|name| quoted(name)), NAMED);
+        warnings.push(format!("animations are not used, and cameras and lights stay at rest: {names}"));
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! The files of a scene: its own, data URIs, and files in its folder.
 
-use super::fault::Fault;
+use super::fault::Result;
 use base64::{
     Engine, alphabet,
     engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig},
@@ -32,7 +32,7 @@ pub(super) struct Files {
     /// By canonical path. A file that many buffers name is read once, while one of them holds it.
     known: HashMap<PathBuf, Weak<Vec<u8>>>,
     /// Paths of all files that were read, the scene's own first.
-    read: Vec<PathBuf>,
+    pub read: Vec<PathBuf>,
 }
 
 impl Files {
@@ -41,21 +41,16 @@ impl Files {
         Files { folder, known: HashMap::new(), read: vec![scene.to_owned()] }
     }
 
-    /// Paths of all files that were read, each once and in the order of reading, the scene's own first.
-    pub fn read(&self) -> &[PathBuf] {
-        &self.read
-    }
-
-    /// The path of a URI, and its canonical path. A link to its own folder gives a file any number of paths, but one
-    /// canonical path.
-    pub fn locate(&self, uri: &str) -> Result<(PathBuf, PathBuf), Fault> {
+    /// The path of a URI, and its canonical path. A link to its own folder gives a file any number of paths, but one canonical
+    /// path.
+    pub fn locate(&self, uri: &str) -> Result<(PathBuf, PathBuf)> {
         let path = self.folder.join(relative_path(uri)?);
         let canonical = path.canonicalize().unwrap_or_else(|_| path.clone());
         Ok((path, canonical))
     }
 
     /// The bytes of a data URI, or of a file in the scene's folder or below.
-    pub fn resolve(&mut self, uri: &str) -> Result<Rc<Vec<u8>>, Fault> {
+    pub fn resolve(&mut self, uri: &str) -> Result<Rc<Vec<u8>>> {
         if let Some(data) = uri.strip_prefix("data:") {
             let encoded = data.split_once(";base64,").ok_or("a data URI without `;base64,` is not supported")?.1;
             return BASE64.decode(encoded).map(Rc::new).map_err(|e| format!("the data URI is not base64: {e}"));
@@ -75,7 +70,7 @@ impl Files {
 }
 
 /// The relative path of a URI, without `.` components. Refuses a path that leads out of the folder.
-fn relative_path(uri: &str) -> Result<PathBuf, Fault> {
+fn relative_path(uri: &str) -> Result<PathBuf> {
     let decoded =
         percent_encoding::percent_decode_str(uri).decode_utf8().map_err(|_| format!("`{uri}` is not UTF-8"))?;
     let outside = || format!("`{decoded}` is not a file in the scene's folder; copy it there and export again");

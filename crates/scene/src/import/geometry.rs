@@ -2,11 +2,11 @@
 
 use super::{
     accessor::CheckedAccessor,
-    fault::{Fault, Refusal},
+    fault::{Fault, Refusal, Result},
     nodes::SceneNode,
     primitive::{CheckedMesh, CheckedPrimitive},
 };
-use crate::mesh::{Mesh, Triangle, area};
+use crate::mesh::{Mesh, Triangle, area, bounds};
 use glam::{DMat3, DVec3, Vec3};
 use memmap2::MmapMut;
 use std::collections::BTreeMap;
@@ -64,7 +64,7 @@ struct Builder {
 
 impl Builder {
     /// Counts all vertices and triangles, checks the limits, and reserves the memory.
-    fn reserve(&mut self, instances: &[Instance]) -> Result<(), Fault> {
+    fn reserve(&mut self, instances: &[Instance]) -> Result<()> {
         let total = |of: fn(&CheckedMesh) -> u64| instances.iter().map(|i| of(i.parts)).fold(0, u64::saturating_add);
         let counts = [
             (total(|p| p.triangles), MAX_TRIANGLES, "triangles"),
@@ -90,7 +90,7 @@ impl Builder {
     }
 
     /// Adds a primitive on a node.
-    fn add(&mut self, part: &CheckedPrimitive, placed: &SceneNode) -> Result<(), Fault> {
+    fn add(&mut self, part: &CheckedPrimitive, placed: &SceneNode) -> Result<()> {
         let vectors =
             |column: &CheckedAccessor| Ok::<_, Fault>(column.read_reals()?.into_iter().map(Vec3::from_array).collect());
         let positions: Vec<Vec3> = vectors(&part.positions)?;
@@ -116,7 +116,7 @@ impl Builder {
     }
 
     /// Adds texture coordinates and colors of the next vertices.
-    fn add_colors(&mut self, part: &CheckedPrimitive) -> Result<(), Fault> {
+    fn add_colors(&mut self, part: &CheckedPrimitive) -> Result<()> {
         if let Some((column, transform)) = &part.coordinates {
             self.coordinates.resize(self.positions.len(), [0.0; 2]);
             self.coordinates.extend(column.read_reals()?.into_iter().map(|uv| transform.apply(uv)));
@@ -130,7 +130,7 @@ impl Builder {
     }
 
     /// Adds vertices in world space. True if the transform is a reflection, which reverses the winding.
-    fn add_vertices(&mut self, positions: &[Vec3], normals: &[Vec3], placed: &SceneNode) -> Result<bool, Fault> {
+    fn add_vertices(&mut self, positions: &[Vec3], normals: &[Vec3], placed: &SceneNode) -> Result<bool> {
         let linear = DMat3::from_mat4(placed.transform);
         let determinant = linear.determinant();
         let normal_matrix = if determinant == 0.0 { DMat3::ZERO } else { linear.inverse().transpose() };
@@ -149,8 +149,7 @@ impl Builder {
     /// Center of the box around all triangles.
     fn center(&self) -> Result<DVec3, Refusal> {
         let corners = self.triangles.iter().flat_map(|t| t.vertices.map(|i| self.positions[i as usize]));
-        let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        let (low, high) = corners.fold(start, |(low, high), p| (low.min(p), high.max(p)));
+        let (low, high) = bounds(corners);
         let size = high - low;
         if size.length() > MAX_DIAGONAL {
             return Err(Refusal::TooLarge);
@@ -182,21 +181,18 @@ impl Builder {
         }
         let count = self.triangles.len();
         let (mut degenerate, mut rounded) = (BTreeMap::new(), BTreeMap::new());
-        drop_degenerate(
-            &mut self.triangles,
-            |corners| area_alone(corners.map(|i| self.positions[i as usize])),
-            &mut degenerate,
-        );
-        // Dropping a triangle can move the center, so this repeats until none is dropped. A dropped triangle is 2^24
-        // times smaller than the mesh, so that there are few iterations.
+        let has_area = |t: &Triangle| area_alone(t.vertices.map(|i| self.positions[i as usize])) > 0.0;
+        retain(&mut self.triangles, &mut degenerate, has_area);
+        // Dropping a triangle can move the center, so this repeats until none is dropped. A dropped triangle is 2^24 times smaller
+        // than the mesh, so that there are few iterations.
         let (origin, positions) = loop {
             if self.triangles.is_empty() {
                 return Err(format!("all {count} triangles have no area (scale 0?)").into());
             }
             let origin = self.center()?;
             let (positions, before) = (self.relative_to(origin)?, self.triangles.len());
-            let rounded_area = |corners: [u32; 3]| area(corners.map(|i| positions[i as usize].as_dvec3()));
-            drop_degenerate(&mut self.triangles, rounded_area, &mut rounded);
+            let has_area = |t: &Triangle| area(t.vertices.map(|i| positions[i as usize].as_dvec3())) > 0.0;
+            retain(&mut self.triangles, &mut rounded, has_area);
             if self.triangles.len() == before {
                 break (origin, positions);
             }
@@ -209,12 +205,16 @@ impl Builder {
     }
 }
 
-/// Drops triangles without area and counts them by material.
-fn drop_degenerate(triangles: &mut Vec<Triangle>, area: impl Fn([u32; 3]) -> f64, degenerate: &mut BTreeMap<u16, u64>) {
+/// Drops the triangles that `keep` refuses, and counts them by material.
+pub(super) fn retain(
+    triangles: &mut Vec<Triangle>,
+    dropped: &mut BTreeMap<u16, u64>,
+    mut keep: impl FnMut(&Triangle) -> bool,
+) {
     triangles.retain(|triangle| {
-        let keep = area(triangle.vertices) > 0.0;
+        let keep = keep(triangle);
         if !keep {
-            *degenerate.entry(triangle.material).or_default() += 1;
+            *dropped.entry(triangle.material).or_default() += 1;
         }
         keep
     });

@@ -1,7 +1,7 @@
 //! Checks that a JPEG file is complete: decoders silently pad missing data with gray. All coded coefficients of every
 //! scan are decoded, and their values are dropped (ITU-T T.81, annexes B, F and G).
 
-use huffman::{Bits, DAMAGED, EARLY, Table, next_marker};
+use huffman::{Bits, DAMAGED, EARLY, Result, Table, next_marker};
 use std::array;
 
 mod huffman;
@@ -10,7 +10,7 @@ mod huffman;
 const MAX_SCANS: usize = 100;
 
 /// Refuses a file whose data ends early or is damaged. Files without Huffman coding are left to the decoder.
-pub(super) fn check(bytes: &[u8]) -> Result<(), &'static str> {
+pub(super) fn check(bytes: &[u8]) -> Result<()> {
     let mut file = File::default();
     let mut rest = bytes.strip_prefix(&[0xff, 0xd8]).ok_or(DAMAGED)?;
     let mut scans = 0;
@@ -129,7 +129,7 @@ impl File {
     }
 
     /// Decodes the data of a scan, and returns the bytes after it.
-    fn walk<'a>(&mut self, scan: &Scan, data: &'a [u8]) -> Result<&'a [u8], &'static str> {
+    fn walk<'a>(&mut self, scan: &Scan, data: &'a [u8]) -> Result<&'a [u8]> {
         let mut bits = Bits::new(data);
         let mcus = self.mcus(scan);
         let mut run = 0;
@@ -168,7 +168,7 @@ impl File {
         [dc, ac]: [usize; 2],
         [x, y]: [usize; 2],
         run: &mut u32,
-    ) -> Result<(), &'static str> {
+    ) -> Result<()> {
         let table = |class: usize, number: usize| self.tables[class].get(number)?.as_ref();
         if scan.first == 0 {
             let size = if scan.refines { 1 } else { u32::from(bits.decode(table(0, dc))?) };
@@ -188,7 +188,7 @@ impl File {
 }
 
 /// Decodes the other coefficients of a block (F.2.2.2).
-fn sequential(bits: &mut Bits, table: Option<&Table>) -> Result<(), &'static str> {
+fn sequential(bits: &mut Bits, table: Option<&Table>) -> Result<()> {
     let mut k = 1;
     while k < 64 {
         let symbol = u32::from(bits.decode(table)?);
@@ -209,13 +209,7 @@ fn sequential(bits: &mut Bits, table: Option<&Table>) -> Result<(), &'static str
 }
 
 /// Decodes the first bits of the coefficients of a block; `run` counts blocks without any (G.1.2.2).
-fn first_pass(
-    bits: &mut Bits,
-    table: Option<&Table>,
-    scan: &Scan,
-    nonzero: &mut u64,
-    run: &mut u32,
-) -> Result<(), &'static str> {
+fn first_pass(bits: &mut Bits, table: Option<&Table>, scan: &Scan, nonzero: &mut u64, run: &mut u32) -> Result<()> {
     if *run > 0 {
         *run -= 1;
         return Ok(());
@@ -244,13 +238,7 @@ fn first_pass(
 }
 
 /// Decodes one more bit of the nonzero coefficients, and those that become nonzero (G.1.2.3).
-fn refine(
-    bits: &mut Bits,
-    table: Option<&Table>,
-    scan: &Scan,
-    nonzero: &mut u64,
-    run: &mut u32,
-) -> Result<(), &'static str> {
+fn refine(bits: &mut Bits, table: Option<&Table>, scan: &Scan, nonzero: &mut u64, run: &mut u32) -> Result<()> {
     let mut k = scan.first;
     while *run == 0 && k <= scan.last {
         let symbol = u32::from(bits.decode(table)?);

@@ -1,7 +1,7 @@
 //! Import of lights.
 
 use super::{
-    fault::{Fault, get},
+    fault::{Fault, Result, get},
     nodes::SceneNode,
     options::ImportOptions,
 };
@@ -31,46 +31,41 @@ pub(super) fn emitters(mesh: &Mesh, materials: &[Material]) -> Vec<Box<dyn Light
     lights.map(|light| Box::new(light) as Box<dyn Light>).collect()
 }
 
-/// The light of a node.
-fn light_of(light: &Punctual, pose: &Pose, power: DVec3, metres_per_unit: f64) -> Result<Box<dyn Light>, Fault> {
+/// The light of a node, with its position relative to `origin`.
+fn light_of(
+    light: &Punctual,
+    node: &SceneNode,
+    power: DVec3,
+    origin: DVec3,
+    metres_per_unit: f64,
+) -> Result<Box<dyn Light>> {
+    // Unit vector along which the light shines.
+    let axis = || {
+        let axis = node.transform.transform_vector3(DVec3::NEG_Z).try_normalize();
+        axis.ok_or_else(|| Fault::from("its node's matrix has no direction (scale 0?)"))
+    };
     match light.type_ {
-        Checked::Valid(Type::Directional) => {
-            Ok(Box::new(DirectionalLight { direction: -pose.axis()?, irradiance: power }))
-        }
+        Checked::Valid(Type::Directional) => Ok(Box::new(DirectionalLight { direction: -axis()?, irradiance: power })),
         Checked::Valid(kind) => {
-            let cone = if kind == Type::Spot { Some((pose.axis()?, angles_of(light)?)) } else { None };
+            let cone = if kind == Type::Spot { Some((axis()?, angles_of(light)?)) } else { None };
             let spot = cone.map(|(axis, [inner, outer])| Spot::new(axis, inner, outer));
             let range = range_of(light, metres_per_unit)?;
-            Ok(Box::new(PointLight { position: pose.position, intensity: power, spot, range }))
+            let position = node.transform.transform_point3(DVec3::ZERO) - origin;
+            Ok(Box::new(PointLight { position, intensity: power, spot, range }))
         }
         Checked::Invalid => Err("its type is not directional, point or spot".into()),
     }
 }
 
-/// Position and orientation of a light.
-struct Pose<'a> {
-    node: &'a SceneNode<'a>,
-    /// m, relative to the scene's origin.
-    position: DVec3,
-}
-
-impl Pose<'_> {
-    /// Unit vector along which the light shines.
-    fn axis(&self) -> Result<DVec3, Fault> {
-        let axis = self.node.transform.transform_vector3(DVec3::NEG_Z).try_normalize();
-        axis.ok_or_else(|| "its node's matrix has no direction (scale 0?)".into())
-    }
-}
-
-/// The directional, point and spot lights of the nodes, with positions relative to `origin`. A light shines along the
-/// −Z axis of its node, whose scale does not matter.
+/// The directional, point and spot lights of the nodes, with positions relative to `origin`. A light shines along the −Z axis of
+/// its node, whose scale does not matter.
 pub(super) fn punctual(
     root: &Root,
     nodes: &[SceneNode],
     options: &ImportOptions,
     origin: DVec3,
     warnings: &mut Vec<String>,
-) -> Result<Vec<Box<dyn Light>>, Fault> {
+) -> Result<Vec<Box<dyn Light>>> {
     let mut lights = Vec::new();
     let defined = root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
     for node in nodes {
@@ -85,14 +80,13 @@ pub(super) fn punctual(
             warnings.push(fault("its intensity is 0".into()));
             continue;
         }
-        let position = node.transform.transform_point3(DVec3::ZERO) - origin;
-        lights.push(light_of(light, &Pose { node, position }, power, options.metres_per_unit).map_err(fault)?);
+        lights.push(light_of(light, node, power, origin, options.metres_per_unit).map_err(fault)?);
     }
     Ok(lights)
 }
 
 /// Irradiance of a directional light, W/m², or intensity of the others, W/sr.
-fn power_of(light: &Punctual, options: &ImportOptions) -> Result<DVec3, Fault> {
+fn power_of(light: &Punctual, options: &ImportOptions) -> Result<DVec3> {
     let power = DVec3::from_array(light.color.map(f64::from)) * f64::from(light.intensity);
     if !power.is_finite() || power.min_element() < 0.0 {
         return Err(format!("color times intensity, {power}, must be finite and not negative"));
@@ -101,7 +95,7 @@ fn power_of(light: &Punctual, options: &ImportOptions) -> Result<DVec3, Fault> {
 }
 
 /// Inner and outer angle of a spot, rad. glTF excludes a hard edge (inner = outer), but some writers have it.
-fn angles_of(light: &Punctual) -> Result<[f64; 2], Fault> {
+fn angles_of(light: &Punctual) -> Result<[f64; 2]> {
     let cone = light.spot.as_ref().ok_or("a spot light without its `spot` object")?;
     let (inner, outer) = (f64::from(cone.inner_cone_angle), f64::from(cone.outer_cone_angle));
     if !(inner >= 0.0 && inner <= outer && outer > 0.0 && outer <= FRAC_PI_2 + 1e-6) {
@@ -111,7 +105,7 @@ fn angles_of(light: &Punctual) -> Result<[f64; 2], Fault> {
 }
 
 /// Range, m.
-fn range_of(light: &Punctual, metres_per_unit: f64) -> Result<Option<f64>, Fault> {
+fn range_of(light: &Punctual, metres_per_unit: f64) -> Result<Option<f64>> {
     let range = light.range.map(|r| f64::from(r) * metres_per_unit);
     match range {
         Some(r) if !(r > 0.0 && r.is_finite()) => Err(format!("range {r} must be positive")),

@@ -1,6 +1,6 @@
 //! Import of materials.
 
-use super::{container::Document, fault::Fault, options::ImportOptions, textures::Textures, volumes};
+use super::{container::Document, fault::Result, options::ImportOptions, textures::Textures, volumes};
 use crate::material::Material;
 use glam::{DVec3, DVec4};
 use gltf::json::{self, material::AlphaMode, validation::Checked};
@@ -8,11 +8,7 @@ use gltf::json::{self, material::AlphaMode, validation::Checked};
 /// Triangles have a material index of 16 bits, and one index is for triangles without material.
 const MAX_MATERIALS: usize = u16::MAX as usize;
 
-pub(super) fn read(
-    document: &Document,
-    options: &ImportOptions,
-    warnings: &mut Vec<String>,
-) -> Result<Vec<Material>, Fault> {
+pub(super) fn read(document: &Document, options: &ImportOptions, warnings: &mut Vec<String>) -> Result<Vec<Material>> {
     let root = &document.root;
     let count = root.materials.len();
     if count > MAX_MATERIALS {
@@ -48,7 +44,7 @@ fn material(
     options: &ImportOptions,
     textures: &mut Textures,
     warnings: &mut Vec<String>,
-) -> Result<Material, Fault> {
+) -> Result<Material> {
     let strength = m.extensions.as_ref().and_then(|e| e.emissive_strength.as_ref());
     let strength = strength.map_or(1.0, |s| f64::from(s.emissive_strength.0));
     let emission = DVec3::from_array(m.emissive_factor.0.map(f64::from)) * strength;

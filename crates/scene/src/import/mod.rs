@@ -18,7 +18,6 @@ mod jpeg;
 mod lights;
 mod materials;
 mod nodes;
-mod number;
 mod options;
 mod primitive;
 mod survey;
@@ -33,11 +32,12 @@ use crate::{
     material::Material,
     mesh::Mesh,
     scene::Scene,
-    unhonoured::{quoted, rest},
+    unhonoured::{first_of, quoted},
 };
 use container::Document;
 use fault::{Refusal, get};
 use geometry::{Geometry, Instance};
+use glam::DVec3;
 use gltf::json::Root;
 use nodes::SceneNode;
 pub use options::{ImportOptions, LightUnit};
@@ -95,12 +95,12 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
     let parts = RenderedParts { mesh: &mesh, nodes: &nodes, cameras: &cameras, origin, metres_per_unit };
     let unhonoured = [features::undeclared_effects(document), unhonoured::of(document, &parts)].concat();
     Ok(Scene {
-        files: document.files.borrow().read().to_owned(),
+        files: document.files.borrow().read.clone(),
         claimed: claimed(root, &nodes),
         mesh,
         materials,
         file_lights: lights,
-        environment: Environment::default(),
+        environment: Environment::Constant(DVec3::ZERO),
         cameras,
         origin,
         warnings,
@@ -139,14 +139,10 @@ fn warn_of_lost(mesh: &Mesh, materials: &[Material], degenerate: &BTreeMap<u16, 
     }
     let mut lost: BTreeSet<u16> = degenerate.keys().copied().collect();
     mesh.triangles.iter().for_each(|t| _ = lost.remove(&t.material));
-    let names: Vec<String> = lost
-        .iter()
-        .take(NAMED)
-        .map(|k| quoted(materials.get(usize::from(*k)).map_or("default", |m| &m.name)))
-        .collect();
-    let all = if names.is_empty() { "" } else { ", all of " };
-    let (names, more) = (names.join(", "), rest(lost.len().saturating_sub(NAMED)));
-    warnings.push(format!("{count} triangles without area are left out{all}{names}{more}"));
+    let name = |k: &u16| quoted(materials.get(usize::from(*k)).map_or("default", |m| &m.name));
+    let all = if lost.is_empty() { "" } else { ", all of " };
+    let names = first_of(lost.iter().map(name), NAMED);
+    warnings.push(format!("{count} triangles without area are left out{all}{names}"));
 }
 
 /// Materials of all primitives in the scene, even of those whose triangles are left out.

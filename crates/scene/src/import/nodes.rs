@@ -2,7 +2,7 @@
 
 use super::{
     container::Document,
-    fault::{Fault, get},
+    fault::{Result, get},
 };
 use glam::{DMat4, DVec3};
 use gltf::json;
@@ -18,7 +18,7 @@ pub(super) struct SceneNode<'a> {
 }
 
 /// The nodes of the default scene with their world transforms.
-pub(super) fn in_world(document: &Document, metres_per_unit: f64) -> Result<Vec<SceneNode<'_>>, Fault> {
+pub(super) fn in_world(document: &Document, metres_per_unit: f64) -> Result<Vec<SceneNode<'_>>> {
     let root = &document.root;
     let world = DMat4::from_scale(DVec3::splat(metres_per_unit));
     let mut stack: Vec<_> = root_nodes(root)?.into_iter().rev().map(|index| (index, world)).collect();
@@ -43,7 +43,7 @@ pub(super) fn in_world(document: &Document, metres_per_unit: f64) -> Result<Vec<
 }
 
 /// Roots of the default scene, or of the first scene, or all nodes without a parent.
-fn root_nodes(root: &json::Root) -> Result<Vec<usize>, Fault> {
+fn root_nodes(root: &json::Root) -> Result<Vec<usize>> {
     let scene = match &root.scene {
         Some(index) => Some(get(&root.scenes, index, "scene")?),
         None => root.scenes.first(),

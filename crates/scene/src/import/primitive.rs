@@ -1,6 +1,6 @@
 //! The primitives of a mesh, checked and not read yet: a mesh may have many instances, or be too large to be read.
 
-use super::{accessor::CheckedAccessor, container::Document, fault::Fault, textures::Coordinates};
+use super::{accessor::CheckedAccessor, container::Document, fault::Result, textures::Coordinates};
 use gltf::json::{
     self, Accessor, Index,
     mesh::{Mode, Primitive, Semantic},
@@ -29,14 +29,9 @@ pub(super) struct CheckedPrimitive<'a> {
 }
 
 impl<'a> CheckedMesh<'a> {
-    /// Checks the primitives of a mesh, and warns of those without triangles. Each primitive keeps the name of the mesh
-    /// for messages, so that a long name is cut.
-    pub fn new(
-        document: &'a Document,
-        mesh: &json::Mesh,
-        name: &str,
-        warnings: &mut Vec<String>,
-    ) -> Result<Self, Fault> {
+    /// Checks the primitives of a mesh, and warns of those without triangles. Each primitive keeps the name of the mesh for
+    /// messages, so that a long name is cut.
+    pub fn new(document: &'a Document, mesh: &json::Mesh, name: &str, warnings: &mut Vec<String>) -> Result<Self> {
         let mut parts = CheckedMesh::default();
         let name = short(name);
         for (k, primitive) in mesh.primitives.iter().enumerate() {
@@ -71,7 +66,7 @@ fn short(name: &str) -> String {
 }
 
 /// The function that checks an attribute.
-type AttributeCheck<'a> = fn(&'a Document, &Index<Accessor>, String) -> Result<CheckedAccessor<'a>, Fault>;
+type AttributeCheck<'a> = fn(&'a Document, &Index<Accessor>, String) -> Result<CheckedAccessor<'a>>;
 
 impl<'a> CheckedPrimitive<'a> {
     fn new(
@@ -80,7 +75,7 @@ impl<'a> CheckedPrimitive<'a> {
         mode: Mode,
         name: &str,
         warnings: &mut Vec<String>,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self> {
         let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic));
         let position = attribute(Semantic::Positions).ok_or_else(|| format!("{name}: no POSITION"))?;
         let positions = CheckedAccessor::vectors(document, position, format!("{name}: POSITION"))?;
@@ -107,17 +102,15 @@ impl<'a> CheckedPrimitive<'a> {
         let texture = document.root.materials.get(usize::from(material));
         let texture = texture.and_then(|m| m.pbr_metallic_roughness.base_color_texture.as_ref());
         let transform = texture.map(Coordinates::new).transpose().map_err(|e| format!("{name}: {e}"))?;
-        let coordinates = match transform {
-            None => None,
-            Some(transform) => match beside(Semantic::TexCoords(transform.set), CheckedAccessor::coordinates)? {
-                Some(column) => Some((column, transform)),
-                None => {
-                    let set = transform.set;
-                    warnings.push(format!("{name}: no TEXCOORD_{set}: one texel of its texture is taken"));
-                    None
-                }
-            },
-        };
+        let mut coordinates = None;
+        if let Some(transform) = transform {
+            let set = transform.set;
+            let column = beside(Semantic::TexCoords(set), CheckedAccessor::coordinates)?;
+            coordinates = column.map(|column| (column, transform));
+            if coordinates.is_none() {
+                warnings.push(format!("{name}: no TEXCOORD_{set}: one texel of its texture is taken"));
+            }
+        }
         Ok(CheckedPrimitive { positions, normals, indices, coordinates, colors, material, mode })
     }
 

@@ -2,7 +2,7 @@
 
 use super::{
     container::Document,
-    fault::{Fault, get},
+    fault::{Fault, Result, get},
     jpeg,
 };
 use crate::texture::{Picture, Texture, Wrap};
@@ -52,7 +52,7 @@ impl<'a> Textures<'a> {
         Textures { document, known: BTreeMap::new(), texels_left: MAX_TEXELS_OF_ALL, bytes_left }
     }
 
-    pub fn read(&mut self, info: &Info) -> Result<Texture, Fault> {
+    pub fn read(&mut self, info: &Info) -> Result<Texture> {
         let root = &self.document.root;
         let texture = get(&root.textures, &info.index, "index")?;
         if texture.source.value() == u32::MAX as usize {
@@ -73,7 +73,7 @@ impl<'a> Textures<'a> {
         Ok(Texture { picture, wrap, nearest })
     }
 
-    fn picture(&mut self, index: usize, image: &json::Image) -> Result<Arc<Picture>, Fault> {
+    fn picture(&mut self, index: usize, image: &json::Image) -> Result<Arc<Picture>> {
         let source = match (&image.uri, &image.buffer_view) {
             (Some(uri), _) if uri.starts_with("data:") => Source::Own(index),
             (Some(uri), _) => Source::File(self.document.files.borrow().locate(uri)?.1),
@@ -140,9 +140,9 @@ fn without_compressed_chunks(bytes: &[u8]) -> Cow<'_, [u8]> {
     kept
 }
 
-/// Decodes a picture of at most `room` texels. Messages do not repeat those of the decoder, which show bytes, because a
-/// link can make a picture of any file.
-fn decode(bytes: &[u8], room: u64) -> Result<Picture, Fault> {
+/// Decodes a picture of at most `room` texels. Messages do not repeat those of the decoder, which show bytes, because a link can
+/// make a picture of any file.
+fn decode(bytes: &[u8], room: u64) -> Result<Picture> {
     const WAY_OUT: &str = "export it as PNG or JPEG";
     let fault = |_| format!("the PNG or JPEG picture is damaged or of a kind that is not supported; {WAY_OUT} again");
     let bytes = without_compressed_chunks(bytes);
@@ -177,7 +177,7 @@ pub(super) struct Coordinates {
 }
 
 impl Coordinates {
-    pub fn new(info: &Info) -> Result<Self, Fault> {
+    pub fn new(info: &Info) -> Result<Self> {
         let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.clone()).unwrap_or_default();
         let [offset, scale] = [transform.offset.0, transform.scale.0].map(|v| DVec2::from_array(v.map(f64::from)));
         let rotation = f64::from(transform.rotation.0);

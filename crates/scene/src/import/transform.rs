@@ -1,6 +1,6 @@
 //! Transforms of nodes in float64; the gltf crate rounds them to float32.
 
-use super::fault::Fault;
+use super::fault::Result;
 use glam::{DMat4, DQuat, DVec3, DVec4};
 use serde::Deserialize;
 
@@ -14,7 +14,7 @@ pub(super) struct NodeTransform {
 }
 
 impl NodeTransform {
-    pub fn matrix(&self) -> Result<DMat4, Fault> {
+    pub fn matrix(&self) -> Result<DMat4> {
         if let Some(m) = &self.matrix {
             if self.translation.is_some() || self.rotation.is_some() || self.scale.is_some() {
                 return Err("`matrix` excludes `translation`, `rotation` and `scale`".into());
@@ -33,7 +33,7 @@ impl NodeTransform {
 }
 
 /// A matrix by columns, which must be affine, because points are not divided by w.
-fn affine(m: &[f64; 16]) -> Result<DMat4, Fault> {
+fn affine(m: &[f64; 16]) -> Result<DMat4> {
     // Some writers compute in float32.
     const TOLERANCE: f64 = 1e-6;
     let row = DVec4::new(m[3], m[7], m[11], m[15]);

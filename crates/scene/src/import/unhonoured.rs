@@ -38,17 +38,12 @@ pub(super) fn of(document: &Document, parts: &RenderedParts) -> Vec<Unhonoured> 
     list.add_nodes(root, parts.nodes);
     list.add_cameras(root, parts);
     let scene = root.scene.as_ref().map_or(0, |s| s.value());
-    let name = |s: &json::Scene| s.name.clone();
-    list.add(honoured::SCENES, scene, Some(holder(root.scenes.get(scene).and_then(name), scene)));
+    list.add_each(honoured::SCENES, [scene], |k| root.scenes.get(k)?.name.clone());
     for name in [honoured::ACCESSORS, honoured::VIEWS, honoured::BUFFERS] {
-        (0..list.survey.len(name)).for_each(|k| list.add(name, k, Some(Holder::Numbered(k))));
+        list.add_each(name, 0..list.survey.len(name), |_| None);
     }
     list.add(honoured::DOCUMENT, 0, None);
     list.list
-}
-
-fn holder(name: Option<String>, index: usize) -> Holder {
-    name.map_or(Holder::Numbered(index), Holder::Named)
 }
 
 struct Collected<'a> {
@@ -60,6 +55,18 @@ impl Collected<'_> {
     /// Adds the findings about an element.
     fn add(&mut self, list: &'static str, index: usize, holder: Option<Holder>) {
         self.add_if(list, index, holder, |_| true);
+    }
+
+    /// Adds the findings about elements that are named in the file, or else by their index.
+    fn add_each(
+        &mut self,
+        list: &'static str,
+        indices: impl IntoIterator<Item = usize>,
+        name: impl Fn(usize) -> Option<String>,
+    ) {
+        for index in indices {
+            self.add(list, index, Some(name(index).map_or(Holder::Numbered(index), Holder::Named)));
+        }
     }
 
     fn add_if(&mut self, list: &'static str, index: usize, holder: Option<Holder>, accept: impl Fn(&Finding) -> bool) {
@@ -77,19 +84,13 @@ impl Collected<'_> {
         let infos = materials.filter_map(|m| m.pbr_metallic_roughness.base_color_texture.as_ref());
         let textures: BTreeSet<usize> = infos.map(|info| info.index.value()).collect();
         let (mut samplers, mut images) = (BTreeSet::new(), BTreeSet::new());
-        for k in textures {
-            let Some(texture) = root.textures.get(k) else { continue };
+        for texture in textures.iter().filter_map(|k| root.textures.get(*k)) {
             samplers.extend(texture.sampler.as_ref().map(|s| s.value()));
             images.insert(texture.source.value());
-            self.add(honoured::TEXTURES, k, Some(holder(texture.name.clone(), k)));
         }
-        for k in samplers {
-            self.add(honoured::SAMPLERS, k, Some(Holder::Numbered(k)));
-        }
-        for k in images {
-            let name = root.images.get(k).and_then(|image| image.name.clone());
-            self.add(honoured::IMAGES, k, Some(holder(name, k)));
-        }
+        self.add_each(honoured::TEXTURES, textures, |k| root.textures.get(k)?.name.clone());
+        self.add_each(honoured::SAMPLERS, samplers, |_| None);
+        self.add_each(honoured::IMAGES, images, |k| root.images.get(k)?.name.clone());
     }
 
     /// Adds the nodes of the scene with their meshes and lights.
@@ -101,15 +102,9 @@ impl Collected<'_> {
             let light = placed.node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
             lights.extend(light.map(|l| l.light.value()));
         }
-        for k in meshes {
-            let name = root.meshes.get(k).and_then(|mesh| mesh.name.clone());
-            self.add(honoured::MESHES, k, Some(holder(name, k)));
-        }
+        self.add_each(honoured::MESHES, meshes, |k| root.meshes.get(k)?.name.clone());
         let defined = root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
-        for k in lights {
-            let name = defined.and_then(|d| d.lights.get(k)).and_then(|light| light.name.clone());
-            self.add(honoured::LIGHTS, k, Some(holder(name, k)));
-        }
+        self.add_each(honoured::LIGHTS, lights, |k| defined?.lights.get(k)?.name.clone());
     }
 
     /// Adds the cameras. Their planes are added only where they would cut anything off.

@@ -1,7 +1,7 @@
 //! Import of the media below materials.
 
-use super::fault::Fault;
-use crate::volume::{Scatter, ScatterExtension, Volume};
+use super::fault::Result;
+use crate::material::{Scatter, ScatterExtension, Volume};
 use glam::DVec3;
 use gltf::json::{
     self,
@@ -40,11 +40,7 @@ fn drafts(e: &material::Material) -> impl Iterator<Item = (ScatterExtension, &Va
 }
 
 /// The coefficients of the medium, if the material states them. Warnings about missing or changed values go to `note`.
-pub(super) fn read(
-    m: &json::Material,
-    metres_per_unit: f64,
-    mut note: impl FnMut(String),
-) -> Result<Option<Volume>, Fault> {
+pub(super) fn read(m: &json::Material, metres_per_unit: f64, mut note: impl FnMut(String)) -> Result<Option<Volume>> {
     let Some(e) = &m.extensions else { return Ok(None) };
     let transmission = e.transmission.as_ref().map_or(0.0, |t| t.transmission_factor.0);
     let mut drafts = drafts(e);
@@ -82,9 +78,9 @@ pub(super) fn read(
     Ok(Some(Volume { extinction, ior, scatter }))
 }
 
-/// `σ_t = −ln(attenuationColor)/attenuationDistance`, 1/m. The distance is in units of the world and independent of the
-/// scale of nodes.
-fn extinction(volume: &material::Volume, metres_per_unit: f64, note: &mut impl FnMut(String)) -> Result<DVec3, Fault> {
+/// `σ_t = −ln(attenuationColor)/attenuationDistance`, 1/m. The distance is in units of the world and independent of the scale of
+/// nodes.
+fn extinction(volume: &material::Volume, metres_per_unit: f64, note: &mut impl FnMut(String)) -> Result<DVec3> {
     let color = DVec3::from_array(volume.attenuation_color.0.map(f64::from));
     check_color("attenuationColor", color)?;
     let distance = f64::from(volume.attenuation_distance.0) * metres_per_unit;
@@ -98,7 +94,7 @@ fn extinction(volume: &material::Volume, metres_per_unit: f64, note: &mut impl F
     Ok(color.map(|c| (-c.max(MIN_ATTENUATION).ln()).max(0.0) / distance))
 }
 
-fn scatter(draft: ScatterExtension, value: &Value, note: &mut impl FnMut(String)) -> Result<Option<Scatter>, Fault> {
+fn scatter(draft: ScatterExtension, value: &Value, note: &mut impl FnMut(String)) -> Result<Option<Scatter>> {
     let fields = Fields::deserialize(value).map_err(|e| e.to_string())?;
     let (default_color, strength) = match draft {
         ScatterExtension::VolumeScatter => (0.0, 1.0),
@@ -122,7 +118,7 @@ fn scatter(draft: ScatterExtension, value: &Value, note: &mut impl FnMut(String)
     Ok(Some(Scatter { draft, color, asymmetry }))
 }
 
-fn check_color(field: &str, color: DVec3) -> Result<(), Fault> {
+fn check_color(field: &str, color: DVec3) -> Result<()> {
     let good = color.to_array().iter().all(|c| (0.0..=1.0).contains(c));
     if good { Ok(()) } else { Err(format!("{field} {color} must lie in [0, 1]")) }
 }

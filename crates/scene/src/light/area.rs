@@ -1,10 +1,9 @@
 //! Light from emitting triangles.
 
 use super::{
-    bounds::{LightBounds, LightSphere},
+    bounds::{LightBounds, LightSphere, ReceiverBounds},
     contract::{Illumination, Light, channel_sum, hash_numbers},
     direction_cone::DirectionCone,
-    receiver::ReceiverBounds,
 };
 use crate::{
     mesh::{Mesh, SurfacePoint, unit},

@@ -7,9 +7,9 @@
 //! a point has a chance there.
 
 use super::{
+    bounds::ReceiverBounds,
     contract::Light,
     hierarchical_sampler::split,
-    receiver::ReceiverBounds,
     tree::{Kind, LightTree},
 };
 use crate::{mesh::SurfacePoint, random::BELOW_ONE};
@@ -50,8 +50,8 @@ impl<'t, 'a> LightChoice<'t, 'a> {
         if tree.is_flat() {
             return choice;
         }
-        let nodes = if tree.leaves().len() <= max_nodes {
-            tree.leaves().iter().map(|node| (*node, choice.weigh(*node, receiver))).collect()
+        let nodes = if tree.leaves.len() <= max_nodes {
+            tree.leaves.iter().map(|node| (*node, choice.weigh(*node, receiver))).collect()
         } else {
             choice.open(receiver, max_nodes)
         };
@@ -110,19 +110,9 @@ impl<'t, 'a> LightChoice<'t, 'a> {
         if shared > 0.0 && split(&mut xi, single, shared, &mut probability) {
             return self.resample(at, xi, probability);
         }
-        let mut left = xi * single;
-        let mut last = None;
-        for index in &self.single {
-            let own = importance(index);
-            if own > 0.0 {
-                last = Some(self.picked(*index, probability * (own / single)));
-                if left < own {
-                    break;
-                }
-                left -= own;
-            }
-        }
-        last
+        let weights = self.single.iter().map(|index| (*index, importance(index)));
+        let (index, own) = choose(weights, xi * single)?;
+        Some(self.picked(index, probability * (own / single)))
     }
 
     fn picked(&self, light: u32, share: f64) -> Pick<'a> {
@@ -148,18 +138,10 @@ impl<'t, 'a> LightChoice<'t, 'a> {
             return None;
         }
         // Given the candidates, the number is uniform between `low` and `high`: it is used again to choose among them.
-        let mut left = ((xi - low) / (high - low)).clamp(0.0, 1.0) * total;
-        let mut last = None;
-        for (light, importance, ratio) in candidates {
-            if ratio > 0.0 {
-                last = Some(self.picked(light, probability * importance * count / total));
-                if left < ratio {
-                    break;
-                }
-                left -= ratio;
-            }
-        }
-        last
+        let target = ((xi - low) / (high - low)).clamp(0.0, 1.0) * total;
+        let weights = candidates.into_iter().map(|(light, importance, ratio)| ((light, importance), ratio));
+        let ((light, importance), _) = choose(weights, target)?;
+        Some(self.picked(light, probability * importance * count / total))
     }
 
     /// Draws a node of the shared list, and one light below it.
@@ -185,6 +167,20 @@ impl<'t, 'a> LightChoice<'t, 'a> {
             }
         }
     }
+}
+
+/// The item in whose part of the sum of all weights `left` lies, with its weight. Rounding may leave the last one of positive
+/// weight.
+fn choose<T>(weighted: impl Iterator<Item = (T, f64)>, mut left: f64) -> Option<(T, f64)> {
+    let mut chosen = None;
+    for (item, weight) in weighted.filter(|(_, weight)| *weight > 0.0) {
+        chosen = Some((item, weight));
+        if left < weight {
+            break;
+        }
+        left -= weight;
+    }
+    chosen
 }
 
 /// A light that was drawn from the list.

@@ -69,13 +69,7 @@ fn tile((width, height): (usize, usize), level: usize, column: usize, row: usize
 /// The index of the bin that holds a unit normal.
 fn normal_bin_of(normal: DVec3) -> usize {
     let size = normal.abs();
-    let axis = if size.x >= size.y && size.x >= size.z {
-        0
-    } else if size.y >= size.z {
-        1
-    } else {
-        2
-    };
+    let axis = size.max_position();
     let side = 2 * axis + usize::from(normal[axis] < 0.0);
     let bin = |k: usize| {
         let share = 0.5 + 0.5 * normal[(axis + k) % 3] / size[axis];

@@ -1,9 +1,9 @@
 //! Light that arrives at a surface point straight from the lights, by one routine for both phases.
 
 use super::{
+    bounds::ReceiverBounds,
     choice::{LightChoice, Pick},
     contract::{Illumination, Light},
-    receiver::ReceiverBounds,
     tree::{LightTree, MAX_FLAT},
 };
 use crate::{mesh::SurfacePoint, rays::Rays};

@@ -35,13 +35,6 @@ impl Environment {
     }
 }
 
-impl Default for Environment {
-    /// No light.
-    fn default() -> Environment {
-        Environment::Constant(DVec3::ZERO)
-    }
-}
-
 impl From<DVec3> for Environment {
     fn from(radiance: DVec3) -> Environment {
         Environment::Constant(radiance)

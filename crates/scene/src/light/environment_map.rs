@@ -131,20 +131,7 @@ impl EnvironmentMap {
         let (sine, cosine) = (TAU * (across - 0.5)).sin_cos();
         DVec3::new(radius * cosine, 1.0 - height, radius * sine).normalize()
     }
-}
 
-/// Half of the polar angle of the border above a row.
-fn half_angle(row: usize, height: usize) -> f64 {
-    0.5 * PI * row as f64 / height as f64
-}
-
-/// Solid angle of each pixel of a row, sr: the difference of the borders' cosines, times the width.
-fn solid_angle(width: usize, height: usize, row: usize) -> f64 {
-    let (high, low) = (half_angle(row, height), half_angle(row + 1, height));
-    2.0 * (high + low).sin() * (low - high).sin() * TAU / width as f64
-}
-
-impl EnvironmentMap {
     /// The light of the tiles that the surface faces, W/m².
     pub fn importance(&self, at: &SurfacePoint) -> f64 {
         self.cosine_importance.facing(self.in_map(at.normal)).total() * self.scale
@@ -178,4 +165,15 @@ impl EnvironmentMap {
     fn tile_level(&self) -> usize {
         self.power.level_within(TILE_COLUMNS, TILE_ROWS)
     }
+}
+
+/// Half of the polar angle of the border above a row.
+fn half_angle(row: usize, height: usize) -> f64 {
+    0.5 * PI * row as f64 / height as f64
+}
+
+/// Solid angle of each pixel of a row, sr: the difference of the borders' cosines, times the width.
+fn solid_angle(width: usize, height: usize, row: usize) -> f64 {
+    let (high, low) = (half_angle(row, height), half_angle(row + 1, height));
+    2.0 * (high + low).sin() * (low - high).sin() * TAU / width as f64
 }

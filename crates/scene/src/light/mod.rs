@@ -12,11 +12,10 @@ pub(crate) mod environment;
 mod environment_map;
 mod hierarchical_sampler;
 mod point;
-mod receiver;
 mod tree;
 
 pub use area::AreaLight;
-pub use bounds::LightBounds;
+pub use bounds::{LightBounds, ReceiverBounds};
 pub use choice::{LightChoice, Pick};
 pub use contract::{Illumination, Light};
 pub use direct::{Lit, all_light_at, light_at};
@@ -25,5 +24,4 @@ pub use directional::DirectionalLight;
 pub use environment::Environment;
 pub use environment_map::{EnvironmentMap, MapError};
 pub use point::{PointLight, Spot};
-pub use receiver::ReceiverBounds;
 pub use tree::LightTree;

@@ -78,9 +78,13 @@ impl Light for PointLight {
     }
 
     fn bounds(&self) -> Option<LightBounds> {
-        let point = LightBounds::point(self.position, channel_sum(self.intensity));
-        let cone = self.spot.map_or(point.cone, |spot| spot.cone);
-        Some(LightBounds { cone, range: self.range.unwrap_or(f64::INFINITY), ..point })
+        Some(LightBounds {
+            low: self.position,
+            high: self.position,
+            intensity: channel_sum(self.intensity),
+            cone: self.spot.map_or(DirectionCone::SPHERE, |spot| spot.cone),
+            range: self.range.unwrap_or(f64::INFINITY),
+        })
     }
 
     fn illuminate(&self, at: &SurfacePoint, _xi: [f64; 2]) -> Option<Illumination> {

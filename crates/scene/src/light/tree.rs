@@ -1,10 +1,10 @@
 //! A hierarchy of lights by their bounds (after Conty Estevez and Kulla 2018, importance sampling of many lights).
 
 use super::{
-    bounds::{LightBounds, LightSphere},
+    bounds::{LightBounds, LightSphere, ReceiverBounds},
     contract::Light,
-    receiver::ReceiverBounds,
 };
+use crate::mesh::bounds;
 use glam::DVec3;
 
 /// Up to this number, lights with bounds are weighed one by one, without a tree.
@@ -24,7 +24,7 @@ pub struct LightTree<'a> {
     /// The root first; the first child of a node follows it.
     nodes: Vec<Node>,
     /// Indices of the nodes of single lights.
-    leaves: Vec<u32>,
+    pub(super) leaves: Vec<u32>,
 }
 
 struct Node {
@@ -47,15 +47,11 @@ impl<'a> LightTree<'a> {
         let indices = 0..lights.len() as u32;
         let mut bounded: Vec<(u32, LightBounds)> =
             indices.clone().filter_map(|k| Some((k, lights[k as usize].bounds()?))).collect();
-        if bounded.len() <= MAX_FLAT {
-            bounded.clear();
-        }
-        let mut in_tree = vec![false; lights.len()];
-        bounded.iter().for_each(|(k, _)| in_tree[*k as usize] = true);
-        let single = indices.filter(|k| !in_tree[*k as usize]).collect();
+        let is_flat = bounded.len() <= MAX_FLAT;
+        let single = indices.filter(|k| is_flat || lights[*k as usize].bounds().is_none()).collect();
         let distant = lights.iter().copied().filter(|light| light.bounds().is_none()).collect();
         let mut tree = LightTree { lights, single, distant, nodes: Vec::new(), leaves: Vec::new() };
-        if !bounded.is_empty() {
+        if !is_flat {
             tree.add(&mut bounded);
         }
         tree
@@ -70,9 +66,7 @@ impl<'a> LightTree<'a> {
             self.leaves.push(index as u32);
             return;
         }
-        let first = lights[0].1.center();
-        let (low, high) =
-            lights.iter().fold((first, first), |(low, high), (_, b)| (low.min(b.center()), high.max(b.center())));
+        let (low, high) = bounds(lights.iter().map(|(_, b)| b.center()));
         let axis = (high - low).max_position();
         // Between equal centers the index of the light decides, so that there is only one order.
         lights.sort_by(|(i, a), (j, b)| a.center()[axis].total_cmp(&b.center()[axis]).then(i.cmp(j)));
@@ -91,10 +85,6 @@ impl<'a> LightTree<'a> {
     /// Others show it on their own surfaces.
     pub fn distant_radiance(&self, origin: DVec3, direction: DVec3) -> DVec3 {
         self.distant.iter().map(|light| light.radiance(origin, direction)).sum()
-    }
-
-    pub(super) fn leaves(&self) -> &[u32] {
-        &self.leaves
     }
 
     pub(super) fn kind(&self, node: u32) -> Kind {

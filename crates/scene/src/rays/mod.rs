@@ -26,7 +26,7 @@ pub use ray::Hit;
 use crate::{cutouts::Cutouts, mesh::Mesh, scene::Scene};
 use dispatch::run;
 use glam::{DVec3, Vec3};
-use query::{Closest, Occluded, Whole};
+use query::{Closest, Occluded, Segment, Whole};
 use ray::Ray;
 use scaled_mesh::{DIAGONAL, ROUNDING, ScaledMesh};
 
@@ -79,8 +79,8 @@ impl<'a> Rays<'a> {
             return None;
         }
         let hit = match &self.cutouts {
-            None => run(Closest { mesh: &self.mesh, solid: Whole, ray, limit: scaled_limit }),
-            Some(cutouts) => run(Closest { mesh: &self.mesh, solid: cutouts, ray, limit: scaled_limit }),
+            None => run(Closest(Segment { mesh: &self.mesh, solid: Whole, ray, limit: scaled_limit })),
+            Some(cutouts) => run(Closest(Segment { mesh: &self.mesh, solid: cutouts, ray, limit: scaled_limit })),
         }?;
         let distance = (hit.distance.max(0.0) + ray.skipped) * self.metres;
         (distance <= limit).then_some(Hit { distance, ..hit })
@@ -96,8 +96,8 @@ impl<'a> Rays<'a> {
         let ends_before_the_box = limit.is_nan() || limit <= 0.0;
         ends_before_the_box
             || match &self.cutouts {
-                None => !run(Occluded { mesh: &self.mesh, solid: Whole, ray, limit }),
-                Some(cutouts) => !run(Occluded { mesh: &self.mesh, solid: cutouts, ray, limit }),
+                None => !run(Occluded(Segment { mesh: &self.mesh, solid: Whole, ray, limit })),
+                Some(cutouts) => !run(Occluded(Segment { mesh: &self.mesh, solid: cutouts, ray, limit })),
             }
     }
 }

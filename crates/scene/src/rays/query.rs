@@ -4,7 +4,7 @@ use super::{
     ray::{Hit, Ray},
     scaled_mesh::ScaledMesh,
     tree::Visitor,
-    triangle::{Crossing, TriangleTest},
+    triangle::{Crossing, Leaf, TriangleTest},
     vectors::{Query, Vectors},
 };
 use crate::cutouts::Cutouts;
@@ -33,31 +33,38 @@ impl Solid for &Cutouts<'_> {
     }
 }
 
-/// Finds the nearest hit within `limit`, of equally near ones that of the first triangle. Its distance is measured from
-/// the ray's start, in scaled units.
-pub(super) struct Closest<'a, S> {
+/// The part of a ray up to `limit`, in scaled units from its start, on a mesh.
+#[derive(Clone, Copy)]
+pub(super) struct Segment<'a, S> {
     pub mesh: &'a ScaledMesh,
     pub solid: S,
     pub ray: &'a Ray,
     pub limit: f64,
 }
 
-/// Finds whether anything is hit before `limit`.
-pub(super) struct Occluded<'a, S> {
-    pub mesh: &'a ScaledMesh,
-    pub solid: S,
-    pub ray: &'a Ray,
-    pub limit: f64,
+impl<S: Solid> Segment<'_, S> {
+    /// Whether a crossing with a triangle is a hit, apart from the limit.
+    #[inline(always)]
+    fn is_hit(&self, leaf: &Leaf, lane: usize, crossing: &Crossing) -> bool {
+        self.mesh.counts(crossing.distance, leaf, lane, self.ray) && self.solid.is_solid(leaf.triangles[lane], crossing)
+    }
 }
+
+/// Finds the nearest hit within the limit, of equally near ones that of the first triangle. Its distance is measured from the
+/// ray's start, in scaled units.
+pub(super) struct Closest<'a, S>(pub Segment<'a, S>);
+
+/// Finds whether anything is hit before the limit.
+pub(super) struct Occluded<'a, S>(pub Segment<'a, S>);
 
 impl<S: Solid> Query for Closest<'_, S> {
     type Found = Option<Hit>;
 
     #[inline(always)]
     fn run(self, vectors: impl Vectors) -> Option<Hit> {
-        let Closest { mesh, solid, ray, limit } = self;
+        let Segment { mesh, ray, limit, .. } = self.0;
         let test = TriangleTest::new(ray.origin, ray.direction);
-        let mut search = SearchClosest { vectors, mesh, solid, ray, test, limit, best: None };
+        let mut search = SearchClosest { vectors, segment: self.0, test, best: None };
         let walk = mesh.tree.walk(vectors, &ray.for_boxes(), limit as f32, &mut search);
         debug_assert!(walk.is_continue());
         search.best
@@ -66,11 +73,8 @@ impl<S: Solid> Query for Closest<'_, S> {
 
 struct SearchClosest<'a, V, S> {
     vectors: V,
-    mesh: &'a ScaledMesh,
-    solid: S,
-    ray: &'a Ray,
+    segment: Segment<'a, S>,
     test: TriangleTest,
-    limit: f64,
     best: Option<Hit>,
 }
 
@@ -79,19 +83,19 @@ impl<V: Vectors, S: Solid> Visitor for SearchClosest<'_, V, S> {
 
     #[inline(always)]
     fn visit(&mut self, leaf: u32) -> ControlFlow<(), f32> {
-        let leaf = &self.mesh.leaves[leaf as usize];
+        let leaf = &self.segment.mesh.leaves[leaf as usize];
         for lane in lanes(self.vectors.triangles(leaf, &self.test)) {
             let (crossing, triangle) = (self.test.crossing(leaf, lane), leaf.triangles[lane]);
             let distance = crossing.distance;
             // The result must not depend on the order in which leaves are visited.
-            let first =
-                distance < self.limit || distance == self.limit && self.best.is_none_or(|b| triangle < b.triangle);
-            if first && self.mesh.counts(distance, leaf, lane, self.ray) && self.solid.is_solid(triangle, &crossing) {
-                self.limit = distance;
+            let limit = self.segment.limit;
+            let first = distance < limit || distance == limit && self.best.is_none_or(|b| triangle < b.triangle);
+            if first && self.segment.is_hit(leaf, lane, &crossing) {
+                self.segment.limit = distance;
                 self.best = Some(Hit { distance, triangle, weights: crossing.weights() });
             }
         }
-        ControlFlow::Continue(self.limit as f32)
+        ControlFlow::Continue(self.segment.limit as f32)
     }
 }
 
@@ -100,20 +104,17 @@ impl<S: Solid> Query for Occluded<'_, S> {
 
     #[inline(always)]
     fn run(self, vectors: impl Vectors) -> bool {
-        let Occluded { mesh, solid, ray, limit } = self;
+        let Segment { mesh, ray, limit, .. } = self.0;
         let test = TriangleTest::new(ray.origin, ray.direction);
-        let mut search = SearchAny { vectors, mesh, solid, ray, test, limit };
+        let mut search = SearchAny { vectors, segment: self.0, test };
         mesh.tree.walk(vectors, &ray.for_boxes(), limit as f32, &mut search).is_break()
     }
 }
 
 struct SearchAny<'a, V, S> {
     vectors: V,
-    mesh: &'a ScaledMesh,
-    solid: S,
-    ray: &'a Ray,
+    segment: Segment<'a, S>,
     test: TriangleTest,
-    limit: f64,
 }
 
 impl<V: Vectors, S: Solid> Visitor for SearchAny<'_, V, S> {
@@ -121,18 +122,14 @@ impl<V: Vectors, S: Solid> Visitor for SearchAny<'_, V, S> {
 
     #[inline(always)]
     fn visit(&mut self, leaf: u32) -> ControlFlow<(), f32> {
-        let leaf = &self.mesh.leaves[leaf as usize];
+        let leaf = &self.segment.mesh.leaves[leaf as usize];
         for lane in lanes(self.vectors.triangles(leaf, &self.test)) {
             let crossing = self.test.crossing(leaf, lane);
-            let distance = crossing.distance;
-            if distance < self.limit
-                && self.mesh.counts(distance, leaf, lane, self.ray)
-                && self.solid.is_solid(leaf.triangles[lane], &crossing)
-            {
+            if crossing.distance < self.segment.limit && self.segment.is_hit(leaf, lane, &crossing) {
                 return ControlFlow::Break(());
             }
         }
-        ControlFlow::Continue(self.limit as f32)
+        ControlFlow::Continue(self.segment.limit as f32)
     }
 }
 

@@ -24,10 +24,9 @@ impl Tree {
         &self,
         vectors: impl Vectors,
         ray: &BoxRay,
-        limit: f32,
+        mut limit: f32,
         visitor: &mut V,
     ) -> ControlFlow<()> {
-        let mut limit = limit;
         let mut pending = Pending::new();
         // The count is no part of `pending`: it stays in a register.
         let mut count = 0;

@@ -1,5 +1,7 @@
 //! Huffman codes of JPEG data, and its markers.
 
+pub(super) type Result<T> = std::result::Result<T, &'static str>;
+
 pub(super) const EARLY: &str = "its JPEG data ends early";
 pub(super) const DAMAGED: &str = "its JPEG data is damaged";
 
@@ -7,7 +9,7 @@ pub(super) const DAMAGED: &str = "its JPEG data is damaged";
 const LOOKUP_BITS: u32 = 9;
 
 /// The next marker, and the bytes after it.
-pub(super) fn next_marker(bytes: &[u8]) -> Result<(u8, &[u8]), &'static str> {
+pub(super) fn next_marker(bytes: &[u8]) -> Result<(u8, &[u8])> {
     let is_marker = |pair: &[u8]| pair[0] == 0xff && !matches!(pair[1], 0 | 0xff);
     let at = bytes.windows(2).position(is_marker).ok_or(EARLY)?;
     Ok((bytes[at + 1], &bytes[at + 2..]))
@@ -75,7 +77,7 @@ impl<'a> Bits<'a> {
         }
     }
 
-    pub fn skip(&mut self, count: u32) -> Result<(), &'static str> {
+    pub fn skip(&mut self, count: u32) -> Result<()> {
         let mut left = count;
         loop {
             self.fill();
@@ -91,14 +93,14 @@ impl<'a> Bits<'a> {
         }
     }
 
-    pub fn take(&mut self, count: u32) -> Result<u32, &'static str> {
+    pub fn take(&mut self, count: u32) -> Result<u32> {
         self.fill();
         let value = if count == 0 { 0 } else { self.buffer >> (64 - count) };
         self.skip(count)?;
         Ok(value as u32)
     }
 
-    pub fn decode(&mut self, table: Option<&Table>) -> Result<u8, &'static str> {
+    pub fn decode(&mut self, table: Option<&Table>) -> Result<u8> {
         let table = table.ok_or(DAMAGED)?;
         self.fill();
         let (length, symbol) = table.short[(self.buffer >> (64 - LOOKUP_BITS)) as usize];
@@ -116,7 +118,7 @@ impl<'a> Bits<'a> {
     }
 
     /// Continues after the restart marker of this number, counted from 0.
-    pub fn restart(&mut self, number: usize) -> Result<(), &'static str> {
+    pub fn restart(&mut self, number: usize) -> Result<()> {
         let rest = self.end()?;
         let (marker, after) = next_marker(rest)?;
         if usize::from(marker) != 0xd0 + number % 8 {
@@ -127,7 +129,7 @@ impl<'a> Bits<'a> {
     }
 
     /// The bytes after the data, from a marker on. Only the rest of a byte and fill bytes may come before it.
-    pub fn end(&mut self) -> Result<&'a [u8], &'static str> {
+    pub fn end(&mut self) -> Result<&'a [u8]> {
         let whole = self.count / 8;
         let filler = (0..whole).all(|k| matches!((self.buffer << (self.count % 8) >> (56 - 8 * k)) as u8, 0 | 0xff));
         let at = self.rest.iter().position(|byte| !matches!(byte, 0 | 0xff)).ok_or(EARLY)?;
