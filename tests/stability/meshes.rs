@@ -142,8 +142,8 @@ fn inside_out_mesh() {
     assert_invisible("inside out", &Clear::new(world), &[1.0], &camera, &settings);
 }
 
-/// Two objects at the same position: neither shadows the other, and a path that enters one of them leaves one of them, never
-/// both or none.
+/// Two objects at the same position: neither shadows the other, and a path that enters one of them leaves one of them,
+/// never both or none.
 #[test]
 fn two_coincident_shells() {
     let shell = Part::translucent(sphere(1.0, 3));

@@ -20,8 +20,8 @@ pub enum Unclear {
 }
 
 impl Unclear {
-    /// The message about a `word` of an option: that something is `missing`, before the names that exist, or that the word
-    /// may be several of a `kind`.
+    /// The message about a `word` of an option: that something is `missing`, before the names that exist, or that the
+    /// word may be several of a `kind`.
     pub fn message(&self, option: &str, word: &str, missing: &str, kind: &str) -> String {
         match self {
             Unclear::Unknown { known } => format!("{option}: {missing} {known}"),

@@ -11,8 +11,8 @@ pub(crate) fn tell(line: impl Display) {
     writeln!(io::stderr(), "{}", printable(&line.to_string())).ok();
 }
 
-/// The text with an escape for every character that controls a terminal, or that would end or reorder a line: `\n` for a
-/// newline, `\u{1b}` for the escape character. All other text is unchanged.
+/// The text with an escape for every character that controls a terminal, or that would end or reorder a line: `\n` for
+/// a newline, `\u{1b}` for the escape character. All other text is unchanged.
 pub fn printable(text: &str) -> Cow<'_, str> {
     if !text.chars().any(is_unsafe) {
         return Cow::Borrowed(text);
@@ -24,8 +24,8 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(safe)
 }
 
-/// Whether a character is a control character (C0, delete, C1), a line or paragraph separator, a mark of the direction of
-/// writing, or the byte order mark.
+/// Whether a character is a control character (C0, delete, C1), a line or paragraph separator, a mark of the direction
+/// of writing, or the byte order mark.
 fn is_unsafe(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}')

@@ -2,8 +2,8 @@
 
 use memmap2::MmapMut;
 
-/// `count` zeros, if the system would grant the memory for them now. The system itself is asked, because a program's allocator
-/// may end the process instead of returning an error.
+/// `count` zeros, if the system would grant the memory for them now. The system itself is asked, because a program's
+/// allocator may end the process instead of returning an error.
 pub(crate) fn zeros<T: Clone + Default>(count: usize) -> Option<Vec<T>> {
     let bytes = count.saturating_mul(size_of::<T>()).max(1);
     MmapMut::map_anon(bytes).is_ok().then(|| vec![T::default(); count])

@@ -20,8 +20,8 @@ pub struct LitSamples<'a> {
     pub(crate) nodes: &'a [Node],
     len: usize,
     entry: EntryRefraction,
-    /// The power of two that scales the total flux to about 1. Squares and sums of fluxes then neither overflow nor vanish
-    /// in float32, however strong or weak the light is, and a power of two rounds nothing.
+    /// The power of two that scales the total flux to about 1. Squares and sums of fluxes then neither overflow nor
+    /// vanish in float32, however strong or weak the light is, and a power of two rounds nothing.
     pub(crate) scale: f32,
 }
 

@@ -14,8 +14,8 @@ struct Rule {
     absent: Option<&'static str>,
     /// The largest difference of two numbers that count as equal.
     tolerance: f64,
-    /// What can be done if the images cannot be compared. `None` is for the position of the camera, a change of which shows in the
-    /// pixels, so that it is only reported.
+    /// What can be done if the images cannot be compared. `None` is for the position of the camera, a change of which
+    /// shows in the pixels, so that it is only reported.
     way_out: Option<&'static str>,
 }
 
@@ -139,7 +139,8 @@ impl Rule {
     }
 }
 
-/// An image of these channels that were computed from another image. It keeps the attributes that give the numbers their meaning.
+/// An image of these channels that were computed from another image. It keeps the attributes that give the numbers
+/// their meaning.
 pub(crate) fn computed_from(image: &Image, channels: Vec<Channel>) -> Image {
     let kept = image.attributes.iter().filter(|(name, _)| RULES.iter().any(|rule| rule.name == **name));
     let attributes = kept.map(|(name, value)| (name.clone(), value.clone())).collect();

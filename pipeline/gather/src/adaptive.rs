@@ -141,9 +141,9 @@ impl Round<'_> {
         (0..shards::materials(self.input.clouds).len()).map(|slot| shards::count(self.input.clouds, slot)).sum()
     }
 
-    /// The relative error of the light as estimated from the number of lit samples alone. They are as well spread as all
-    /// samples, so the error falls faster for stratified ones. It matters where few are lit, and the halves of the cloud
-    /// may agree by chance. It is 0 for a cloud without lit samples.
+    /// The relative error of the light as estimated from the number of lit samples alone. They are as well spread as
+    /// all samples, so the error falls faster for stratified ones. It matters where few are lit, and the halves of the
+    /// cloud may agree by chance. It is 0 for a cloud without lit samples.
     fn lit_count_error(&self) -> f64 {
         let stratified = |cloud: &Cloud| cloud.meta().options.pattern == Pattern::Stratified;
         let lit = self.lit().max(1) as f64;

@@ -1,5 +1,5 @@
-//! `note: [split]` One camera path: `L_o = L_e + L_t + L_r` where it refracts at a surface (docs/method.md 6.6), and what
-//! reflects there. A [`Bsdf`] says what happens at the surface; the path chooses between its lobes.
+//! `note: [split]` One camera path: `L_o = L_e + L_t + L_r` where it refracts at a surface (docs/method.md 6.6), and
+//! what reflects there. A [`Bsdf`] says what happens at the surface; the path chooses between its lobes.
 
 use crate::{
     counts::Counts,

@@ -99,8 +99,8 @@ pub type Layers = [DVec3; 5];
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PathLight {
     pub layers: Layers,
-    /// The sum of the layers as each half of the cloud alone estimates it; without scattered light for a half that the path
-    /// did not gather from.
+    /// The sum of the layers as each half of the cloud alone estimates it; without scattered light for a half that the
+    /// path did not gather from.
     pub halves: [DVec3; 2],
     /// Transmittance of the first interface for scattered light; 0 without such an interface.
     pub through: f64,

@@ -11,8 +11,8 @@ use sums::{estimator::Estimator, samples::Exit};
 const MAX_ERROR: f64 = 0.5;
 
 impl Renderer<'_> {
-    /// `note: [reflectance]` Adds `L_r` at an exitant point: the mean over all drawn samples (docs/method.md 6.7), or over
-    /// those of the half and shard that this path gathers from.
+    /// `note: [reflectance]` Adds `L_r` at an exitant point: the mean over all drawn samples (docs/method.md 6.7), or
+    /// over those of the half and shard that this path gathers from.
     pub(crate) fn gather(
         &self,
         state: &PathState,

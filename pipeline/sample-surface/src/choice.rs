@@ -31,8 +31,8 @@ pub struct TriangleChoice {
 }
 
 impl TriangleChoice {
-    /// The triangles of `mesh` that `wanted` accepts by their material. Those of each material in `shares` are chosen with
-    /// that probability in total, and those of the other materials with what is left.
+    /// The triangles of `mesh` that `wanted` accepts by their material. Those of each material in `shares` are chosen
+    /// with that probability in total, and those of the other materials with what is left.
     pub fn new(mesh: &Mesh, rule: Choice, wanted: impl Fn(u16) -> bool, shares: &[(u16, f64)]) -> Self {
         let mut triangles: Vec<u32> =
             (0..mesh.triangles.len()).filter(|k| wanted(mesh.triangles[*k].material)).map(|k| k as u32).collect();

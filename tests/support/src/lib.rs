@@ -1,6 +1,6 @@
-//! The parts that the tests share: the programs in a temporary folder, glTF files and meshes, random numbers; with the feature
-//! `transport` also statistics with stated false-alarm rates, quadrature, and the two phases as functions from a scene
-//! to a number.
+//! The parts that the tests share: the programs in a temporary folder, glTF files and meshes, random numbers; with the
+//! feature `transport` also statistics with stated false-alarm rates, quadrature, and the two phases as functions from
+//! a scene to a number.
 //!
 //! ```
 //! use glam::DVec3;

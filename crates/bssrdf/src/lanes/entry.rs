@@ -67,7 +67,8 @@ impl EntryRefraction {
         entered
     }
 
-    /// `w` of `m`, `N²` and `D²`; 0 for total reflection. The sum is in float64, for its terms cancel at the critical angle.
+    /// `w` of `m`, `N²` and `D²`; 0 for total reflection. The sum is in float64, for its terms cancel at the critical
+    /// angle.
     #[inline(always)]
     fn root(&self, m: &Integers, normal2: &Integers, direction2: &Integers) -> Lane {
         let squared = each(|i| {

@@ -41,8 +41,8 @@ pub struct Dimensions {
     pub height: usize,
     /// Channels of all parts.
     pub channels: usize,
-    /// Largest memory of [`Image::read`], including the file. Each further thread of [`Image::decode_with`] takes 12 MiB or three
-    /// blocks more.
+    /// Largest memory of [`Image::read`], including the file. Each further thread of [`Image::decode_with`] takes 12
+    /// MiB or three blocks more.
     pub reading_bytes: u64,
 }
 
@@ -306,7 +306,8 @@ fn convert(kind: SampleType, line: &[u8], target: &mut [f32]) -> bool {
         SampleType::F32 => fill(target, line, f32::from_ne_bytes),
         SampleType::U32 => {
             fill(target, line, |bytes| u32::from_ne_bytes(bytes) as f32);
-            // The comparison is in float64, which represents both: in uint32 the largest value would saturate and look equal.
+            // The comparison is in float64, which represents both: in uint32 the largest value would saturate and look
+            // equal.
             let mut pairs = target.iter().zip(line.as_chunks().0);
             return pairs.all(|(value, bytes)| f64::from(*value) == f64::from(u32::from_ne_bytes(*bytes)));
         }

@@ -143,7 +143,8 @@ impl<'a> CheckedAccessor<'a> {
 }
 
 impl<'a> Changes<'a> {
-    /// The changes of an accessor of `all` elements. There are at most as many, so that a short accessor is not slow to read.
+    /// The changes of an accessor of `all` elements. There are at most as many, so that a short accessor is not slow to
+    /// read.
     fn new(document: &'a Document, sparse: &Sparse, all: u64, size: usize, unit: usize) -> Result<Self> {
         let count = sparse.count.0;
         if count > all {
@@ -195,8 +196,8 @@ impl Run<'_> {
 /// Fewest bytes of a vertex in a file: an aligned position of 8-bit integers.
 const MIN_BYTES_PER_VERTEX: u64 = 4;
 
-/// The zeros that a sparse accessor without a buffer view changes. They take no bytes of the file, but other attributes of the
-/// same vertices do; without this limit, a short file could need any memory.
+/// The zeros that a sparse accessor without a buffer view changes. They take no bytes of the file, but other attributes
+/// of the same vertices do; without this limit, a short file could need any memory.
 fn zeros(count: u64, size: usize, longest: usize) -> Result<Elements<'static>> {
     const ZEROS: [u8; 16] = [0; 16];
     let limit = longest as u64 / MIN_BYTES_PER_VERTEX;

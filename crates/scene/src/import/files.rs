@@ -41,8 +41,8 @@ impl Files {
         Files { folder, known: HashMap::new(), read: vec![scene.to_owned()] }
     }
 
-    /// The path of a URI, and its canonical path. A link to its own folder gives a file any number of paths, but one canonical
-    /// path.
+    /// The path of a URI, and its canonical path. A link to its own folder gives a file any number of paths, but one
+    /// canonical path.
     pub fn locate(&self, uri: &str) -> Result<(PathBuf, PathBuf)> {
         let path = self.folder.join(relative_path(uri)?);
         let canonical = path.canonicalize().unwrap_or_else(|_| path.clone());

@@ -183,8 +183,8 @@ impl Builder {
         let (mut degenerate, mut rounded) = (BTreeMap::new(), BTreeMap::new());
         let has_area = |t: &Triangle| area_alone(t.vertices.map(|i| self.positions[i as usize])) > 0.0;
         retain(&mut self.triangles, &mut degenerate, has_area);
-        // Dropping a triangle can move the center, so this repeats until none is dropped. A dropped triangle is 2^24 times smaller
-        // than the mesh, so that there are few iterations.
+        // Dropping a triangle can move the center, so this repeats until none is dropped. A dropped triangle is 2^24
+        // times smaller than the mesh, so that there are few iterations.
         let (origin, positions) = loop {
             if self.triangles.is_empty() {
                 return Err(format!("all {count} triangles have no area (scale 0?)").into());

@@ -57,8 +57,8 @@ fn light_of(
     }
 }
 
-/// The directional, point and spot lights of the nodes, with positions relative to `origin`. A light shines along the −Z axis of
-/// its node, whose scale does not matter.
+/// The directional, point and spot lights of the nodes, with positions relative to `origin`. A light shines along the
+/// −Z axis of its node, whose scale does not matter.
 pub(super) fn punctual(
     root: &Root,
     nodes: &[SceneNode],

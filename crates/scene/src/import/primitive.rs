@@ -29,8 +29,8 @@ pub(super) struct CheckedPrimitive<'a> {
 }
 
 impl<'a> CheckedMesh<'a> {
-    /// Checks the primitives of a mesh, and warns of those without triangles. Each primitive keeps the name of the mesh for
-    /// messages, so that a long name is cut.
+    /// Checks the primitives of a mesh, and warns of those without triangles. Each primitive keeps the name of the mesh
+    /// for messages, so that a long name is cut.
     pub fn new(document: &'a Document, mesh: &json::Mesh, name: &str, warnings: &mut Vec<String>) -> Result<Self> {
         let mut parts = CheckedMesh::default();
         let name = short(name);

@@ -140,8 +140,8 @@ fn without_compressed_chunks(bytes: &[u8]) -> Cow<'_, [u8]> {
     kept
 }
 
-/// Decodes a picture of at most `room` texels. Messages do not repeat those of the decoder, which show bytes, because a link can
-/// make a picture of any file.
+/// Decodes a picture of at most `room` texels. Messages do not repeat those of the decoder, which show bytes, because a
+/// link can make a picture of any file.
 fn decode(bytes: &[u8], room: u64) -> Result<Picture> {
     const WAY_OUT: &str = "export it as PNG or JPEG";
     let fault = |_| format!("the PNG or JPEG picture is damaged or of a kind that is not supported; {WAY_OUT} again");

@@ -78,8 +78,8 @@ pub(super) fn read(m: &json::Material, metres_per_unit: f64, mut note: impl FnMu
     Ok(Some(Volume { extinction, ior, scatter }))
 }
 
-/// `σ_t = −ln(attenuationColor)/attenuationDistance`, 1/m. The distance is in units of the world and independent of the scale of
-/// nodes.
+/// `σ_t = −ln(attenuationColor)/attenuationDistance`, 1/m. The distance is in units of the world and independent of the
+/// scale of nodes.
 fn extinction(volume: &material::Volume, metres_per_unit: f64, note: &mut impl FnMut(String)) -> Result<DVec3> {
     let color = DVec3::from_array(volume.attenuation_color.0.map(f64::from));
     check_color("attenuationColor", color)?;

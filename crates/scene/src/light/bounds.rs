@@ -1,5 +1,5 @@
-//! Bounds of one light or of many, where they are and what they can send, and of surface points that lights are chosen for
-//! together.
+//! Bounds of one light or of many, where they are and what they can send, and of surface points that lights are chosen
+//! for together.
 
 use super::direction_cone::DirectionCone;
 use crate::mesh::SurfacePoint;
@@ -115,8 +115,8 @@ impl LightSphere {
     }
 }
 
-/// A sphere that holds some surface points, and a cone that holds their normals. Of the cone's half angle it keeps cosine
-/// and sine: the choice of lights asks for nothing else, for many lights each time.
+/// A sphere that holds some surface points, and a cone that holds their normals. Of the cone's half angle it keeps
+/// cosine and sine: the choice of lights asks for nothing else, for many lights each time.
 #[derive(Clone, Copy, Debug)]
 pub struct ReceiverBounds {
     /// The center of the sphere, with the axis of the cone as its normals.

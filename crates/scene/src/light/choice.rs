@@ -169,8 +169,8 @@ impl<'t, 'a> LightChoice<'t, 'a> {
     }
 }
 
-/// The item in whose part of the sum of all weights `left` lies, with its weight. Rounding may leave the last one of positive
-/// weight.
+/// The item in whose part of the sum of all weights `left` lies, with its weight. Rounding may leave the last one of
+/// positive weight.
 fn choose<T>(weighted: impl Iterator<Item = (T, f64)>, mut left: f64) -> Option<(T, f64)> {
     let mut chosen = None;
     for (item, weight) in weighted.filter(|(_, weight)| *weight > 0.0) {

@@ -50,8 +50,8 @@ impl<S: Solid> Segment<'_, S> {
     }
 }
 
-/// Finds the nearest hit within the limit, of equally near ones that of the first triangle. Its distance is measured from the
-/// ray's start, in scaled units.
+/// Finds the nearest hit within the limit, of equally near ones that of the first triangle. Its distance is measured
+/// from the ray's start, in scaled units.
 pub(super) struct Closest<'a, S>(pub Segment<'a, S>);
 
 /// Finds whether anything is hit before the limit.

@@ -18,8 +18,8 @@ pub struct FalloffTables {
     pub value: Table,
     /// Mean of `value` over a disc of this squared radius around the exitant point, 1/(m² sr).
     pub disc: Table,
-    /// Standard deviation over samples, divided by the root mean square of their distances from their mean, 1/(m³ sr). It
-    /// never grows with the distance.
+    /// Standard deviation over samples, divided by the root mean square of their distances from their mean, 1/(m³ sr).
+    /// It never grows with the distance.
     pub slope: Table,
     /// Standard deviation over diffuse directions of light, 1/(m² sr).
     pub scatter: Table,

@@ -28,7 +28,8 @@ use std::fmt;
 pub enum Estimator {
     /// Hierarchical: near samples are evaluated one by one, far ones by a few that represent many.
     Cut {
-        /// Target of the relative standard error of a pixel's sums; callers that make one of many sums set that of the sum.
+        /// Target of the relative standard error of a pixel's sums; callers that make one of many sums set that of the
+        /// sum.
         accuracy: f64,
     },
     /// The note's: a sample is evaluated with a probability that falls with its distance.

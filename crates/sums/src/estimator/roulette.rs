@@ -1,4 +1,5 @@
-//! `note: [roulette]` The note's acceptance by distance: `V(ξ, d) = [ξ < p(d)]`, weight `1/p`; docs/method.md section 7.
+//! `note: [roulette]` The note's acceptance by distance: `V(ξ, d) = [ξ < p(d)]`, weight `1/p`;
+//! docs/method.md section 7.
 //!
 //! A pass in float32 over all samples proposes those that may be accepted, with 32 random bits each. Where rounding or
 //! the number of bits could decide, the acceptance is decided in float64 and with 64 bits, so that its probability is

@@ -33,10 +33,11 @@ pub(super) struct Plane {
     pub text: String,
 }
 
-/// Encodes the first bytes of all little-endian float32, then all second, third and fourth bytes, deflated and in base64.
+/// Encodes the first bytes of all little-endian float32, then all second, third and fourth bytes, deflated and in
+/// base64.
 ///
-/// Bytes of the same significance are similar, above all those of the exponents. Higher levels of compression gain 3 % on
-/// renderings at many times the cost, because the low bits of noise do not compress.
+/// Bytes of the same significance are similar, above all those of the exponents. Higher levels of compression gain 3 %
+/// on renderings at many times the cost, because the low bits of noise do not compress.
 pub(super) fn encode(samples: &[f32]) -> String {
     let bytes: Vec<u8> = (0..4).flat_map(|byte| samples.iter().map(move |s| s.to_le_bytes()[byte])).collect();
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::fast());

@@ -56,8 +56,8 @@ pub struct Metrics {
 }
 
 impl Metrics {
-    /// A metric of the table by its key in the report, or the largest error, `max`. The value of an unknown key is NaN, which no
-    /// gate accepts.
+    /// A metric of the table by its key in the report, or the largest error, `max`. The value of an unknown key is NaN,
+    /// which no gate accepts.
     pub fn get(&self, key: &str) -> f64 {
         match key {
             "max" => self.max.error,

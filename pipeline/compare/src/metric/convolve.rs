@@ -21,8 +21,8 @@ pub(super) enum Symmetry {
     Even,
     /// Both sides have the same weights with opposite signs, and the middle has none.
     Odd,
-    /// Both sides have the same weights, and the weight of the middle makes their sum zero. The result is exactly zero where
-    /// nothing varies.
+    /// Both sides have the same weights, and the weight of the middle makes their sum zero. The result is exactly zero
+    /// where nothing varies.
     EvenOfSumZero,
 }
 
@@ -69,16 +69,16 @@ pub(super) fn convolve(symmetry: Symmetry, along: Along, taps: &[f32], from: &Pl
     }
 }
 
-/// Filters the columns without margin by an even filter along both dimensions, whose taps are given for each. `across` is
-/// overwritten.
+/// Filters the columns without margin by an even filter along both dimensions, whose taps are given for each. `across`
+/// is overwritten.
 #[inline(always)]
 pub(super) fn blur(rows: &[f32], columns: &[f32], from: &Plane, across: &mut Plane, to: &mut Plane) {
     convolve(Symmetry::Even, Along::Rows(columns.len() - 1), rows, from, across);
     convolve(Symmetry::Even, Along::Columns, columns, across, to);
 }
 
-/// The weights of a Gaussian with a standard deviation of `sigma` pixels, from the middle to `radius`. With both sides they sum
-/// to 1.
+/// The weights of a Gaussian with a standard deviation of `sigma` pixels, from the middle to `radius`. With both sides
+/// they sum to 1.
 pub(super) fn gaussian(sigma: f64, radius: usize) -> Vec<f64> {
     let weight = |distance: usize| (-0.5 * (distance as f64 / sigma).powi(2)).exp();
     let weights: Vec<f64> = (0..=radius).map(weight).collect();

@@ -1,5 +1,5 @@
-//! Metrics of the picture as a screen displays it: tile by tile, of display values. These are linear values at exposure 0,
-//! clamped to 0..1, encoded by the curve of sRGB (IEC 61966-2-1).
+//! Metrics of the picture as a screen displays it: tile by tile, of display values. These are linear values at exposure
+//! 0, clamped to 0..1, encoded by the curve of sRGB (IEC 61966-2-1).
 
 use color::srgb::{GAMMA, LINE_END, LINE_SLOPE, OFFSET, SCALE};
 use rayon::prelude::*;

@@ -1,4 +1,5 @@
-//! The samples that metrics are measured on: those of one channel, and of the picture that both images show in three colors.
+//! The samples that metrics are measured on: those of one channel, and of the picture that both images show in three
+//! colors.
 
 use formats::image::Image;
 use rayon::prelude::*;

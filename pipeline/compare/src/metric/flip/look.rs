@@ -17,8 +17,8 @@ pub(super) struct Eye {
     detectors: Detectors,
 }
 
-/// What the viewer sees of a tile of one image: L*, a*, b* with Hunt's adjustment, after the filters of contrast sensitivity,
-/// then the strength of edges and of points.
+/// What the viewer sees of a tile of one image: L*, a*, b* with Hunt's adjustment, after the filters of contrast
+/// sensitivity, then the strength of edges and of points.
 pub(super) type Look = [Box<Plane>; 5];
 
 /// [`LANES`] pixels of the planes of a look.
@@ -81,8 +81,8 @@ fn split(tone: Tone, [r, g, b]: &[Box<Plane>; 3], [y, xy, yz]: [&mut Plane; 3]) 
     }
 }
 
-/// Turns filtered opponent channels into adjusted colors. The third channel is the sum of two filters, the second of which is
-/// `addend`.
+/// Turns filtered opponent channels into adjusted colors. The third channel is the sum of two filters, the second of
+/// which is `addend`.
 #[inline(always)]
 fn adjust([first, second, third]: [&mut Plane; 3], addend: &Plane) {
     for at in (0..GROUPS).map(group) {

@@ -5,8 +5,8 @@ use serde_json::json;
 use std::{fs, os::unix::fs::PermissionsExt};
 use test_support::data;
 
-/// If two files have one name, the one that was named last counts, even if it is the older one. Seen to fail where targets depended on
-/// files by their times: each of these left the picture of the other file.
+/// If two files have one name, the one that was named last counts, even if it is the older one. Seen to fail where
+/// targets depended on files by their times: each of these left the picture of the other file.
 #[test]
 fn a_picture_is_of_the_file_that_was_named() {
     let tree = Tree::new();
