@@ -289,7 +289,7 @@ fn instances_are_counted_before_they_are_made() {
     assert!(fault(&asset).contains("8000000 primitives"), "{}", fault(&asset));
     asset.set("/meshes/0/primitives", json!([vec![lines; 2000], vec![primitive]].concat()));
     let bench = Bench::new();
-    let imported = Scene::import(&bench.write("lines.glb", &asset.glb()), &OPTIONS);
+    let imported = Scene::import(&bench.write("lines.glb", asset.glb()), &OPTIONS);
     assert!(imported.is_err(), "the triangles are still too many");
     assert!(start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
 }

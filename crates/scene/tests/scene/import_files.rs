@@ -19,7 +19,7 @@ fn gltf(buffers: Value) -> Vec<u8> {
 
 /// Imports `scene.gltf` from a bench, with its buffer at `uri`.
 fn import_in(bench: &Bench, uri: &str) -> Result<Scene, String> {
-    let path = bench.write("my scene.gltf", &gltf(json!([{ "uri": uri, "byteLength": tetrahedron().binary.len() }])));
+    let path = bench.write("my scene.gltf", gltf(json!([{ "uri": uri, "byteLength": tetrahedron().binary.len() }])));
     Scene::import(&path, &OPTIONS).map_err(|e| e.to_string())
 }
 
@@ -101,7 +101,7 @@ fn one_file_is_read_once() {
     large.resize(4 << 20, 0);
     bench.write("mesh.bin", &large);
     let buffers: Vec<Value> = (0..4000).map(|_| json!({ "uri": "./mesh.bin", "byteLength": 4 << 20 })).collect();
-    let path = bench.write("many.gltf", &gltf(json!(buffers)));
+    let path = bench.write("many.gltf", gltf(json!(buffers)));
     let start = std::time::Instant::now();
     assert!(Scene::import(&path, &OPTIONS).is_ok());
     assert!(start.elapsed().as_secs() < 5, "16 GiB would take longer");
@@ -128,7 +128,7 @@ fn links_are_followed_and_messages_do_not_show_what_is_there() {
     for (name, start) in starts {
         link(name, &[start, b"root:x:0:0:root:/root:/bin/bash"].concat());
         asset.set("/images/0", json!({ "uri": name }));
-        let path = bench.write("picture.glb", &asset.glb());
+        let path = bench.write("picture.glb", asset.glb());
         let message = Scene::import(&path, &OPTIONS).err().expect("no picture").to_string();
         let (_, said) = message.split_once(&format!("`{name}`: ")).expect("the image's name");
         let known = [
@@ -141,7 +141,7 @@ fn links_are_followed_and_messages_do_not_show_what_is_there() {
     std::os::unix::fs::symlink(".", bench.path("d")).expect("a link");
     let uris = ["mesh.bin", "d/mesh.bin", "d/d/mesh.bin"];
     let buffers = uris.map(|uri| json!({ "uri": uri, "byteLength": tetrahedron().binary.len() }));
-    let path = bench.write("round.gltf", &gltf(json!(buffers)));
+    let path = bench.write("round.gltf", gltf(json!(buffers)));
     assert_eq!(Scene::import(&path, &OPTIONS).expect("a good file").files.len(), 2);
     let good = tetrahedron();
     let secret = 7654321.0f32;
@@ -172,7 +172,7 @@ fn every_file_that_was_read_is_told() {
     asset.push("materials", material);
     bench.write("parts/mesh.bin", &asset.binary);
     bench.write("more.bin", &asset.binary);
-    bench.write("skin one.png", &encoded(&image::RgbaImage::new(2, 2), image::ImageFormat::Png));
+    bench.write("skin one.png", encoded(&image::RgbaImage::new(2, 2), image::ImageFormat::Png));
     let buffer = |uri: &str| json!({ "uri": uri, "byteLength": asset.binary.len() });
     let buffers = ["parts/mesh.bin", "parts/./mesh.bin", "more.bin"].map(buffer);
     asset.json["buffers"] = json!(buffers);
@@ -180,7 +180,7 @@ fn every_file_that_was_read_is_told() {
     let scene = Scene::import(&path, &OPTIONS).expect("a good file");
     let expected = ["scene.gltf", "parts/mesh.bin", "more.bin", "skin one.png"].map(|name| bench.path(name));
     assert_eq!(scene.files, expected);
-    let path = bench.write("alone.glb", &tetrahedron().glb());
+    let path = bench.write("alone.glb", tetrahedron().glb());
     assert_eq!(Scene::import(&path, &OPTIONS).expect("a good file").files, [path]);
 }
 

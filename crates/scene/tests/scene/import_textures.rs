@@ -130,12 +130,12 @@ fn a_picture_beside_the_scene() {
     let bench = Bench::new();
     let mut asset = with_picture(&[], textured(json!({})), json!({ "magFilter": NEAREST }));
     asset.set("/images/0", json!({ "uri": "my%20w%C3%A9ave.png" }));
-    let path = bench.write("cloth.glb", &asset.glb());
+    let path = bench.write("cloth.glb", asset.glb());
     let message = Scene::import(&path, &OPTIONS).err().expect("it is not there").to_string();
     for word in ["cloth.glb", "`Cloth`", "images[0] `my%20w%C3%A9ave.png`", "my wéave.png", "beside it"] {
         assert!(message.contains(word), "{word}: {message}");
     }
-    bench.write("my wéave.png", &png());
+    bench.write("my wéave.png", png());
     assert_color(&Scene::import(&path, &OPTIONS).expect("imports"), [0.7, 0.2], linear(1, 0));
     asset.set("/images/0", json!({ "uri": "../weave.png" }));
     assert!(fault(&asset).contains("not a file in the scene's folder"));
