@@ -47,6 +47,7 @@ else
 endif
 
 MAKE_FILES := $(dir $(lastword $(MAKEFILE_LIST)))make
+$(if $(wildcard $(MAKE_FILES)/*.mk),,$(error $(MAKE_FILES)/ is missing: where the Makefile is copied to, that folder belongs too))
 include $(MAKE_FILES)/names.mk
 include $(MAKE_FILES)/settings.mk
 include $(MAKE_FILES)/gallery.mk
