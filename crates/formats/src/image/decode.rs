@@ -268,10 +268,8 @@ impl Part {
                     return Err(damaged("a block is too short, or its position lies outside the image"));
                 };
                 if !convert(*kind, line, target) {
-                    let name = &channel.name;
-                    return Err(ImageError::Unsupported(format!(
-                        "channel `{name}` holds integers that float32 cannot represent"
-                    )));
+                    let what = format!("channel `{}` holds integers that float32 cannot represent", channel.name);
+                    return Err(ImageError::Unsupported(what));
                 }
                 rest = next;
             }
