@@ -61,7 +61,7 @@ struct Fields {
     mean_free_path: Option<[f64; 3]>,
     color: Option<[f64; 3]>,
     radius: Option<[f64; 3]>,
-    #[serde(default)]
+    #[serde(default = "isotropic")]
     g: Asymmetry,
     #[serde(default = "default_eta")]
     eta: f64,
@@ -81,10 +81,8 @@ enum Asymmetry {
     PerChannel([f64; 3]),
 }
 
-impl Default for Asymmetry {
-    fn default() -> Self {
-        Asymmetry::Same(0.0)
-    }
+fn isotropic() -> Asymmetry {
+    Asymmetry::Same(0.0)
 }
 
 impl TryFrom<Fields> for MediumFile {

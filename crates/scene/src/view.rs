@@ -113,10 +113,8 @@ impl View {
         let forward = (target - eye).try_normalize().ok_or("fields `eye` and `target` are the same point")?;
         let tangent = (0.5 * self.yfov).to_radians().tan();
         let projection = Projection::Perspective { tangent };
-        let aspect = match (self.width, self.height) {
-            (Some(w), Some(h)) if w > 0 && h > 0 => Some(f64::from(w) / f64::from(h)),
-            _ => None,
-        };
+        let size = self.width.zip(self.height).filter(|(w, h)| *w > 0 && *h > 0);
+        let aspect = size.map(|(w, h)| f64::from(w) / f64::from(h));
         let camera = Camera::looking((name.clone(), name), eye, [forward, up], projection, aspect);
         Ok((self, camera.ok_or("field `up` is zero or along the line of sight")?))
     }

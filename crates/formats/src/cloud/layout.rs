@@ -171,15 +171,8 @@ fn decode_entry(entry: &[u8], known: &[(&'static str, Kind, u16)], length: u64) 
     };
     let short = |at| word(entry, at).map(u16::from_le_bytes);
     let long = |at| word(entry, at).map(u64::from_le_bytes);
-    let section = Section {
-        name,
-        kind,
-        components,
-        offset: long(24)?,
-        bytes: long(32)?,
-        elements: long(48)?,
-        checksum: long(56)?,
-    };
+    let [offset, bytes, elements, checksum] = [long(24)?, long(32)?, long(48)?, long(56)?];
+    let section = Section { name, kind, components, offset, bytes, elements, checksum };
     let expected = u64::checked_mul(section.elements, u64::from(components) * kind.size());
     let fits = section.offset.checked_add(section.bytes).is_some_and(|end| end <= length)
         && section.offset.is_multiple_of(ALIGN)

@@ -251,11 +251,8 @@ fn records_are_good(records: &[Record], max_coordinate: f32) -> bool {
 fn nodes_are_good(nodes: &[Node], max_coordinate: f32) -> bool {
     const MASKS: [u32; 8] = [!SIGN, !SIGN, !SIGN, !0, !0, !0, !0, !0];
     let apart = 4.0 * max_coordinate;
-    are_within(
-        bytemuck::cast_slice(nodes),
-        MASKS,
-        [max_coordinate, max_coordinate, max_coordinate, apart, apart, f32::MAX, f32::MAX, 2.0],
-    )
+    let limits = [max_coordinate, max_coordinate, max_coordinate, apart, apart, f32::MAX, f32::MAX, 2.0];
+    are_within(bytemuck::cast_slice(nodes), MASKS, limits)
 }
 
 /// True if in each row of eight floats, the masked bits of every float are at most those of its limit.

@@ -5,15 +5,11 @@ use std::io::{BufReader, Cursor, Read, Seek};
 use std::num::NonZeroUsize;
 use std::path::Path;
 
-use exr::block::reader::ChunksReader;
-use exr::block::{UncompressedBlock, read};
+use exr::block::{UncompressedBlock, read, reader::ChunksReader};
 use exr::compression::Compression::{PIZ, PXR24, RLE, Uncompressed, ZIP1, ZIP16};
-use exr::error::Error as ExrError;
-use exr::math::Vec2;
-use exr::meta::BlockDescription;
-use exr::meta::attribute::{Chromaticities, EnvironmentMap, IntegerBounds, SampleType};
-use exr::meta::header::Header;
-use exr::prelude::f16;
+use exr::meta::attribute::{Chromaticities, EnvironmentMap};
+use exr::meta::{BlockDescription, header::Header};
+use exr::prelude::{Error as ExrError, IntegerBounds, SampleType, Vec2, f16};
 
 use super::header;
 use super::parallel::parallel;
@@ -272,10 +268,8 @@ impl Part {
                     return Err(damaged("a block is too short, or its position lies outside the image"));
                 };
                 if !convert(*kind, line, target) {
-                    let name = &channel.name;
-                    return Err(ImageError::Unsupported(format!(
-                        "channel `{name}` holds integers that float32 cannot represent"
-                    )));
+                    let what = format!("channel `{}` holds integers that float32 cannot represent", channel.name);
+                    return Err(ImageError::Unsupported(what));
                 }
                 rest = next;
             }

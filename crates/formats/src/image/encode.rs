@@ -4,16 +4,10 @@ use std::collections::HashMap;
 use std::io::Cursor;
 use std::num::NonZeroUsize;
 
-use exr::block::writer::ChunksWriter;
-use exr::block::{BlockIndex, UncompressedBlock, write};
-use exr::compression::Compression;
-use exr::math::Vec2;
-use exr::meta::BlockDescription;
-use exr::meta::attribute::{
-    AttributeValue, ChannelDescription, Chromaticities, IntegerBounds, LineOrder, SampleType, Text,
-};
-use exr::meta::header::{Header, LayerAttributes};
-use exr::prelude::SmallVec;
+use exr::block::{BlockIndex, UncompressedBlock, write, writer::ChunksWriter};
+use exr::meta::{BlockDescription, attribute::Chromaticities, header::Header};
+use exr::prelude::{AttributeValue, ChannelDescription, Compression, IntegerBounds, LayerAttributes, LineOrder};
+use exr::prelude::{SampleType, SmallVec, Text, Vec2};
 
 use super::header;
 use super::parallel::parallel;

@@ -34,51 +34,29 @@ const OF_PART: &str = " of part ";
 const USUAL: [(&str, &[u8]); 3] =
     [(PIXEL_ASPECT, &1f32.to_le_bytes()), (SCREEN_CENTER, &[0; 8]), (SCREEN_WIDTH, &1f32.to_le_bytes())];
 
-/// Standard attributes and the types that readers expect (openexr.com, "Standard Attributes").
-const STANDARD: [(&str, &str); 38] = [
-    ("adoptedNeutral", "v2f"),
-    ("altitude", "float"),
-    ("aperture", "float"),
-    ("capDate", "string"),
-    ("chromaticities", "chromaticities"),
-    ("comments", "string"),
-    ("deepImageState", "deepImageState"),
-    ("dwaCompressionLevel", "float"),
-    ("envmap", "envmap"),
-    ("expTime", "float"),
-    ("far", "float"),
-    ("fieldOfViewHorizontal", "float"),
-    ("fieldOfViewVertical", "float"),
-    ("focus", "float"),
-    ("framesPerSecond", "rational"),
-    ("isoSpeed", "float"),
-    ("keyCode", "keycode"),
-    ("latitude", "float"),
-    ("longitude", "float"),
-    ("lookModTransform", "string"),
-    ("multiView", "stringvector"),
-    ("near", "float"),
-    ("originalDataWindow", "box2i"),
-    ("owner", "string"),
-    (PIXEL_ASPECT, "float"),
-    ("preview", "preview"),
-    ("renderingTransform", "string"),
-    (SCREEN_CENTER, "v2f"),
-    (SCREEN_WIDTH, "float"),
-    ("software", "string"),
-    ("timeCode", "timecode"),
-    ("utcOffset", "float"),
-    ("view", "string"),
-    ("whiteLuminance", "float"),
-    ("worldToCamera", "m44f"),
-    ("worldToNDC", "m44f"),
-    ("wrapmodes", "string"),
-    ("xDensity", "float"),
+/// The types that readers expect, each with standard attributes of that type (openexr.com, "Standard Attributes").
+const STANDARD: &[(&str, &[&str])] = &[
+    ("box2i", &["originalDataWindow"]),
+    ("chromaticities", &["chromaticities"]),
+    ("deepImageState", &["deepImageState"]),
+    ("envmap", &["envmap"]),
+    ("float", &["altitude", "aperture", "dwaCompressionLevel", "expTime", "far", "focus", "isoSpeed", "latitude"]),
+    ("float", &["fieldOfViewHorizontal", "fieldOfViewVertical", "longitude", "near", PIXEL_ASPECT, SCREEN_WIDTH]),
+    ("float", &["utcOffset", "whiteLuminance", "xDensity"]),
+    ("keycode", &["keyCode"]),
+    ("m44f", &["worldToCamera", "worldToNDC"]),
+    ("preview", &["preview"]),
+    ("rational", &["framesPerSecond"]),
+    ("string", &["capDate", "comments", "lookModTransform", "owner"]),
+    ("string", &["renderingTransform", "software", "view", "wrapmodes"]),
+    ("stringvector", &["multiView"]),
+    ("timecode", &["timeCode"]),
+    ("v2f", &["adoptedNeutral", SCREEN_CENTER]),
 ];
 
 /// The type that readers expect of an attribute, if it is a standard one.
 pub(super) fn standard_kind(name: &str) -> Option<&'static str> {
-    STANDARD.iter().find(|(standard, _)| *standard == name).map(|(_, kind)| *kind)
+    STANDARD.iter().find(|(_, names)| names.contains(&name)).map(|(kind, _)| *kind)
 }
 
 /// An attribute as bytes of the file.

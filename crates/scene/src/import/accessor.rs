@@ -77,7 +77,7 @@ impl<'a> CheckedAccessor<'a> {
         expected: &str,
     ) -> Result<Self> {
         let accessor = get(&document.root.accessors, index, &field)?;
-        let number = component(accessor).and_then(|c| number(c, accessor.normalized));
+        let number = valid(&accessor.component_type).and_then(|c| number(c.0, accessor.normalized));
         let shape = shapes.iter().find(|shape| accessor.type_ == Checked::Valid(**shape));
         let (Some(number), Some(shape)) = (number, shape) else {
             return Err(format!("{field}: the accessor must hold {expected}"));
@@ -151,10 +151,7 @@ impl<'a> Changes<'a> {
             return Err(format!("count {count} exceeds the {all} elements of the accessor"));
         }
         let (indices, values) = (&sparse.indices, &sparse.values);
-        let index_size = match &indices.component_type {
-            Checked::Valid(c) => Number::of_index(c.0, false).map(Number::size),
-            Checked::Invalid => None,
-        };
+        let index_size = valid(&indices.component_type).and_then(|c| Number::of_index(c.0, false)).map(Number::size);
         let index_size = index_size.ok_or("the indices must be unsigned integers")?;
         let offset = indices.byte_offset.0;
         let replaced = Run { view: &indices.buffer_view, offset, count, size: index_size, unit: index_size };
@@ -207,9 +204,10 @@ fn zeros(count: u64, size: usize, longest: usize) -> Result<Elements<'static>> {
     Ok(Elements { bytes: &ZEROS, count: count as usize, stride: 0, size })
 }
 
-fn component(accessor: &Accessor) -> Option<ComponentType> {
-    match &accessor.component_type {
-        Checked::Valid(c) => Some(c.0),
+/// The value of a field of the file, if glTF knows it.
+fn valid<T: Copy>(field: &Checked<T>) -> Option<T> {
+    match field {
+        Checked::Valid(value) => Some(*value),
         Checked::Invalid => None,
     }
 }

@@ -74,30 +74,28 @@ impl<'a> Textures<'a> {
     }
 
     fn picture(&mut self, index: usize, image: &json::Image) -> Result<Arc<Picture>> {
-        let source = match (&image.uri, &image.buffer_view) {
+        let view = image.buffer_view.as_ref().filter(|_| image.uri.is_none());
+        let view = view.map(|view| self.document.view(view)).transpose()?;
+        let source = match (&image.uri, view) {
             (Some(uri), _) if uri.starts_with("data:") => Source::Own(index),
             (Some(uri), _) => Source::File(self.document.files.borrow().locate(uri)?.1),
-            (None, Some(view)) => {
-                let bytes = self.document.view(view)?;
-                Source::View(bytes.as_ptr() as usize, bytes.len())
-            }
+            (None, Some(bytes)) => Source::View(bytes.as_ptr() as usize, bytes.len()),
             (None, None) => return Err("the image has neither uri nor bufferView".into()),
         };
         let vacant = match self.known.entry(source) {
             Entry::Occupied(known) => return Ok(known.get().clone()),
             Entry::Vacant(vacant) => vacant,
         };
-        let picture = match (&image.uri, &image.buffer_view) {
-            (None, Some(view)) => {
-                let bytes = self.document.view(view)?;
+        let picture = match view {
+            Some(bytes) => {
                 // Pictures that do not overlap never exceed this. A short file could name one picture many times, each
                 // time a byte longer.
                 let left = self.bytes_left.checked_sub(bytes.len() as u64);
                 self.bytes_left = left.ok_or("the bufferViews of the images overlap; export them apart")?;
                 decode(bytes, self.texels_left)?
             }
-            (uri, _) => {
-                let bytes = self.document.files.borrow_mut().resolve(uri.as_deref().unwrap_or_default())?;
+            None => {
+                let bytes = self.document.files.borrow_mut().resolve(image.uri.as_deref().unwrap_or_default())?;
                 decode(&bytes, self.texels_left)?
             }
         };

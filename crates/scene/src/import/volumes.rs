@@ -30,9 +30,8 @@ struct Fields {
 
 /// True if the file says that the surface bounds a medium.
 pub(super) fn is_marked(m: &json::Material) -> bool {
-    m.extensions
-        .as_ref()
-        .is_some_and(|e| e.volume.as_ref().is_some_and(|v| v.thickness_factor.0 > 0.0) || drafts(e).next().is_some())
+    let is_solid = |e: &material::Material| e.volume.as_ref().is_some_and(|v| v.thickness_factor.0 > 0.0);
+    m.extensions.as_ref().is_some_and(|e| is_solid(e) || drafts(e).next().is_some())
 }
 
 fn drafts(e: &material::Material) -> impl Iterator<Item = (ScatterExtension, &Value)> {

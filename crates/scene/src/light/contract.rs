@@ -16,6 +16,13 @@ pub struct Illumination {
     pub irradiance: DVec3,
 }
 
+impl Illumination {
+    /// Light from infinitely far away.
+    pub(super) fn distant(direction: DVec3, irradiance: DVec3) -> Illumination {
+        Illumination { direction, distance: f64::INFINITY, irradiance }
+    }
+}
+
 /// A source of light. No method has a default: a light that leaves one out does not compile.
 pub trait Light: Send + Sync {
     /// The weight by which one light of many is chosen, W/m²: near the unshadowed irradiance at `at`, positive wherever

@@ -30,11 +30,7 @@ impl Light for DirectionalLight {
 
     fn illuminate(&self, at: &SurfacePoint, _xi: [f64; 2]) -> Option<Illumination> {
         let cosine = at.normal.dot(self.direction);
-        (cosine > 0.0).then(|| Illumination {
-            direction: self.direction,
-            distance: f64::INFINITY,
-            irradiance: self.irradiance * cosine,
-        })
+        (cosine > 0.0).then(|| Illumination::distant(self.direction, self.irradiance * cosine))
     }
 
     fn pdf_solid_angle(&self, _at: &SurfacePoint, _direction: DVec3) -> f64 {

@@ -56,11 +56,9 @@ impl Light for Environment {
     /// A constant environment gives cosine-distributed directions, `E = V π L` (docs/method.md 6.4).
     fn illuminate(&self, at: &SurfacePoint, xi: [f64; 2]) -> Option<Illumination> {
         match self {
-            Environment::Constant(radiance) => Some(Illumination {
-                direction: warp::cosine_hemisphere(at.normal, xi),
-                distance: f64::INFINITY,
-                irradiance: *radiance * PI,
-            }),
+            Environment::Constant(radiance) => {
+                Some(Illumination::distant(warp::cosine_hemisphere(at.normal, xi), *radiance * PI))
+            }
             Environment::Map(map) => map.illuminate(at, xi),
         }
     }

@@ -150,7 +150,7 @@ impl EnvironmentMap {
         let cosine = at.normal.dot(direction);
         let radiance = self.pixel_radiance([cell.column, cell.row]);
         let factor = cosine * solid_angle(self.width, self.height, cell.row) / cell.probability;
-        (cosine > 0.0).then(|| Illumination { direction, distance: f64::INFINITY, irradiance: radiance * factor })
+        (cosine > 0.0).then(|| Illumination::distant(direction, radiance * factor))
     }
 
     /// `P/Ω` of the pixel in this direction.
