@@ -59,7 +59,7 @@ pub enum Mismatch {
     /// The images were made from different inputs: the attribute of this name has different values.
     #[error("the image was made from other inputs ({name} is {test}, but {reference} in the reference)")]
     Inputs { name: &'static str, reference: String, test: String },
-    /// The layer that a gate judges, or that was asked for, does not exist; those of both images are present.
+    /// The layer that a gate judges, or that was asked for, does not exist: `present` lists those of both images.
     #[error("there is no layer `{name}`; there are {present}")]
     NoLayer { name: String, present: String },
 }

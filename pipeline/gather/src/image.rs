@@ -1,4 +1,4 @@
-//! The input, the settings and the result of rendering an image.
+//! The input, the settings and the result of rendering an image or a part of it.
 
 use crate::{counts::Counts, estimator::Estimator, film::Pixel};
 use bssrdf::{Medium, Model};
