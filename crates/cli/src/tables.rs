@@ -52,22 +52,17 @@ fn position(camera: &Camera) -> String {
 
 /// The cameras of a scene as a word may mean them: by their own name or their node's.
 pub fn camera_names(scene: &Scene) -> Vec<Candidate<'_>> {
-    scene.cameras.iter().enumerate().map(|(index, camera)| named_camera(index, camera)).collect()
-}
-
-fn named_camera(index: usize, camera: &Camera) -> Candidate<'_> {
-    let detail = format!(" of node `{}` at {} m", camera.node, position(camera));
-    Candidate { index, names: vec![&camera.name, &camera.node], detail }
+    let detail = |camera: &Camera| format!(" of node `{}` at {} m", camera.node, position(camera));
+    let cameras = scene.cameras.iter().enumerate();
+    cameras.map(|(index, c)| Candidate { index, names: vec![&c.name, &c.node], detail: detail(c) }).collect()
 }
 
 /// These materials of a scene as a word may mean them: by name, told apart by area.
 pub fn material_names<'a>(scene: &'a Scene, materials: &[u16]) -> Vec<Candidate<'a>> {
     let areas = scene.area_of_materials();
-    let candidate = |index: usize| {
-        let detail = format!(", {:.4e} m2", areas[index]);
-        Candidate { index, names: vec![&scene.materials[index].name], detail }
-    };
-    materials.iter().map(|material| candidate(usize::from(*material))).collect()
+    let detail = |index: usize| format!(", {:.4e} m2", areas[index]);
+    let own = materials.iter().map(|material| usize::from(*material));
+    own.map(|index| Candidate { index, names: vec![&scene.materials[index].name], detail: detail(index) }).collect()
 }
 
 /// The materials of a scene, which `--translucent` and `--medium` may name: what each is taken for without these

@@ -59,10 +59,8 @@ pub(crate) fn unjudged_layers(layers: &[Layer<'_>], report: &Report, settings: &
 pub(crate) fn check_choice(layers: &[Layer<'_>], settings: &Settings) -> Result<(), Mismatch> {
     let judged = settings.all_gates().filter_map(|(gate, choice, _)| gate.layer(choice));
     let named = if let Choice::Named(name) = &settings.choice { Some(name.as_str()) } else { None };
-    match judged.chain(named).find(|name| layers.iter().all(|layer| layer.name != *name)) {
-        None => Ok(()),
-        Some(name) => Err(Mismatch::no_layer(name, layers)),
-    }
+    let missing = judged.chain(named).find(|name| layers.iter().all(|layer| layer.name != *name));
+    missing.map_or(Ok(()), |name| Err(Mismatch::no_layer(name, layers)))
 }
 
 /// The names of the layers that the verdict speaks of: the picture with its alpha, or all layers if there is no beauty

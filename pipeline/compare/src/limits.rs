@@ -28,20 +28,10 @@ pub struct Limit {
 pub enum LimitsError {
     /// The operating system refused to read it.
     #[error("{}: the limits cannot be read: {source}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// The error of the operating system.
-        source: std::io::Error,
-    },
-    /// It is not the JSON that docs/compare.md describes.
+    Io { path: PathBuf, source: std::io::Error },
+    /// It is not the JSON that docs/compare.md describes: `what` names the entry and its fault.
     #[error("{}: {what}", path.display())]
-    Invalid {
-        /// The file.
-        path: PathBuf,
-        /// The entry and its fault.
-        what: String,
-    },
+    Invalid { path: PathBuf, what: String },
 }
 
 #[derive(Deserialize)]

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::gate::Judgement;
 use crate::layer::Layer;
-use crate::metric::{CHANNEL_METRICS, ChannelMetric, EPSILON, Metrics, PictureMetrics, measure_each};
+use crate::metric::{CHANNEL_METRICS, ChannelMetric, EPSILON, Metrics, PictureMetrics, Worst, measure_each};
 use crate::structure::Input;
 
 /// The version of the keys, which changes only when a key of the JSON report changes its meaning or is removed.
@@ -176,20 +176,16 @@ impl Report {
 }
 
 fn line(table: &mut String, name: &str, metrics: &Metrics) {
-    let Metrics { mean_reference, mean_test, p99, max, .. } = metrics;
+    let Metrics { mean_reference, mean_test, p99, max: Worst { error, pixel: [x, y], reference, test }, .. } = metrics;
     let cell = |metric: &ChannelMetric| match (metric.signed, metrics.get(metric.key)) {
         (true, value) => format!("{value:>+11.2e}"),
         (false, value) => format!("{value:>11.3e}"),
     };
     let values: String = CHANNEL_METRICS.iter().map(cell).collect();
+    let (reference, test) = (sample(*reference), sample(*test));
     let _ = writeln!(
         table,
-        "{name:<14}{mean_reference:>11.3e}{mean_test:>11.3e}{values}{p99:>11.3e}{:>11.3e}  {},{} {} -> {}",
-        max.error,
-        max.pixel[0],
-        max.pixel[1],
-        sample(max.reference),
-        sample(max.test),
+        "{name:<14}{mean_reference:>11.3e}{mean_test:>11.3e}{values}{p99:>11.3e}{error:>11.3e}  {x},{y} {reference} -> {test}"
     );
 }
 

@@ -39,55 +39,29 @@ impl Input {
 /// Why two images cannot be compared. The messages are about the test image.
 #[derive(Debug, PartialEq, thiserror::Error)]
 pub enum Mismatch {
-    /// The images have different resolutions.
+    /// The images have different resolutions: width and height in pixels.
     #[error("the image has {} x {} pixels, but the reference has {} x {}; render both at one size", test[0], test[1], reference[0], reference[1])]
-    Size {
-        /// Width and height in pixels.
-        reference: [usize; 2],
-        /// Width and height in pixels.
-        test: [usize; 2],
-    },
-    /// The images show different parts of the picture.
+    Size { reference: [usize; 2], test: [usize; 2] },
+    /// The images show different parts of the picture, which begin at these top left pixels.
     #[error(
         "the data window starts at {test:?}, but that of the reference at {reference:?}; render both without cropping"
     )]
-    Window {
-        /// The top left pixel.
-        reference: [i32; 2],
-        /// The top left pixel.
-        test: [i32; 2],
-    },
-    /// The images have different channels.
+    Window { reference: [i32; 2], test: [i32; 2] },
+    /// The images have different channels: those of the reference only are missing, those of the test image only are
+    /// additional.
     #[error(
         "the image has other channels than the reference (missing: {missing}; additional: {additional}); write both with one version of the renderer"
     )]
-    Channels {
-        /// The channels of the reference only.
-        missing: String,
-        /// The channels of the test image only.
-        additional: String,
-    },
+    Channels { missing: String, additional: String },
     /// The same numbers mean different pictures.
     #[error(transparent)]
     Meaning(#[from] Difference),
-    /// The images were made from different inputs.
+    /// The images were made from different inputs: the attribute of this name has different values.
     #[error("the image was made from other inputs ({name} is {test}, but {reference} in the reference)")]
-    Inputs {
-        /// The name of the attribute that differs.
-        name: &'static str,
-        /// Its value.
-        reference: String,
-        /// Its value.
-        test: String,
-    },
-    /// The layer that a gate judges does not exist.
+    Inputs { name: &'static str, reference: String, test: String },
+    /// The layer that a gate judges, or that was asked for, does not exist: `present` lists those of both images.
     #[error("there is no layer `{name}`; there are {present}")]
-    NoLayer {
-        /// The layer that was asked for.
-        name: String,
-        /// The layers of both images.
-        present: String,
-    },
+    NoLayer { name: String, present: String },
 }
 
 impl Mismatch {

@@ -3,10 +3,9 @@
 use crate::{
     calibration,
     counts::Counts,
-    crop::Crop,
     edge::{self, Edge},
     film::{Errors, Pixel, PixelSum},
-    image::{Filter, Input, Rendered, Settings},
+    image::{Crop, Filter, Input, Rendered, Settings},
     path_state::{PathIndex, ThreadContext},
     renderer::{Renderer, TranslucentObject},
     shards,

@@ -71,24 +71,17 @@ impl<'a> Facts<'a> {
 
     /// The arguments that change values, in a fixed order; neither paths of files, nor threads, nor the crop.
     fn arguments(&self) -> String {
-        let (s, camera) = (&self.settings, &self.job.argument);
+        let Settings { width, height, estimator, paths_per_pixel: paths, max_depth: depth, seed, .. } = &self.settings;
+        let (model, filter) = (self.settings.model.name(), self.settings.filter.name());
+        let (camera, environment) = (&self.job.argument, self.inputs.scene.environment.identity());
         let turned = match self.job.degrees {
             0.0 => String::new(),
             degrees => format!(" turned by {degrees} degrees"),
         };
         format!(
-            "{camera}{turned} --width {} --height {} --bssrdf {} --estimator {} --spp {} --filter {} --max-depth {} --seed {} \
-             --environment {} --normals {}",
-            s.width,
-            s.height,
-            s.model.name(),
-            s.estimator,
-            s.paths_per_pixel,
-            s.filter.name(),
-            s.max_depth,
-            s.seed,
-            self.inputs.scene.environment.identity(),
-            self.request.scene.how.normals,
+            "{camera}{turned} --width {width} --height {height} --bssrdf {model} --estimator {estimator} --spp {paths} \
+             --filter {filter} --max-depth {depth} --seed {seed} --environment {environment} --normals {}",
+            self.request.scene.how.normals
         )
     }
 
@@ -148,15 +141,10 @@ impl<'a> Facts<'a> {
 
 /// A medium and its material in one line.
 fn describe(material: &str, medium: &Medium) -> String {
-    let three = |v: [f64; 3]| format!("{},{},{}", v[0], v[1], v[2]);
-    format!(
-        "{material}={}: sigma_a {} sigma_s {} 1/m, g {}, eta {}",
-        medium.name,
-        three(medium.map(|c| c.sigma_a)),
-        three(medium.map(|c| c.sigma_s)),
-        three(medium.map(|c| c.asymmetry)),
-        medium.eta
-    )
+    let three = |[r, g, b]: [f64; 3]| format!("{r},{g},{b}");
+    let [absorption, scattering, g] =
+        [medium.map(|c| c.sigma_a), medium.map(|c| c.sigma_s), medium.map(|c| c.asymmetry)].map(three);
+    format!("{material}={}: sigma_a {absorption} sigma_s {scattering} 1/m, g {g}, eta {}", medium.name, medium.eta)
 }
 
 /// `YYYY:MM:DD hh:mm:ss` of SOURCE_DATE_EPOCH, UTC.

@@ -70,37 +70,31 @@ fn warnings(object: &Object, medium: &Medium) -> Vec<String> {
     let shortest = |lengths: [f64; 3]| lengths.into_iter().fold(f64::INFINITY, f64::min);
     let free_path = shortest(medium.mean_free_path());
     let reduced = shortest(medium.map(|c| 1.0 / c.reduced_extinction()));
+    let [size, path, depth, apart, rounded] = [diagonal, free_path, reduced, spacing, rounding].map(length);
     let mut warnings = Vec::new();
     if free_path > diagonal {
         warnings.push(format!(
-            "`{material}`: light crosses the object ({}) without scattering (mean free path {}); are the medium's unit \
-             and --metres-per-unit right?",
-            length(diagonal),
-            length(free_path)
+            "`{material}`: light crosses the object ({size}) without scattering (mean free path {path}); are the medium's \
+             unit and --metres-per-unit right?"
         ));
     } else if reduced < OPAQUE * diagonal {
         warnings.push(format!(
-            "`{material}`: light scatters within {} of an object of {}: it will look opaque; are the medium's unit and \
-             --metres-per-unit right?",
-            length(reduced),
-            length(diagonal)
+            "`{material}`: light scatters within {depth} of an object of {size}: it will look opaque; are the medium's unit \
+             and --metres-per-unit right?"
         ));
     } else if spacing == f64::INFINITY {
         warnings.push(format!("`{material}`: none of its samples carries light: it will show no scattered light"));
     } else if spacing > SPARSE * reduced {
         warnings.push(format!(
-            "`{material}`: samples lie {} apart, light scatters within {}: expect grain; a cloud of about {} samples would do",
-            length(spacing),
-            length(reduced),
+            "`{material}`: samples lie {apart} apart, light scatters within {depth}: expect grain; a cloud of about {} \
+             samples would do",
             count_up(drawn as f64 * (spacing / reduced).powi(2))
         ));
     }
     if rounding > ROUGH * reduced {
         warnings.push(format!(
-            "`{material}`: positions are rounded by up to {}, light scatters within {}: the scene is too wide for so \
-             dense a medium; leave out what is far away",
-            length(rounding),
-            length(reduced)
+            "`{material}`: positions are rounded by up to {rounded}, light scatters within {depth}: the scene is too wide \
+             for so dense a medium; leave out what is far away"
         ));
     }
     warnings

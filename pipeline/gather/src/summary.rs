@@ -15,19 +15,12 @@ pub fn show(facts: &Facts) -> Result<(), Failure> {
     // If no two paths differ, the error is unknown: there may be light that none of them met.
     let error = film::relative_error(&facts.rendered.pixels).filter(|error| *error > 0.0);
     let error = error.map_or("unknown".into(), sums::confidence::percent);
-    common.say(format_args!(
-        "{} gathers, {} BSSRDF evaluations; relative error {error} ({})",
-        count(counts.gathers),
-        count(counts.evaluations),
-        facts.covers()
-    ));
+    let (gathers, evaluations, covers) = (count(counts.gathers), count(counts.evaluations), facts.covers());
+    common.say(format_args!("{gathers} gathers, {evaluations} BSSRDF evaluations; relative error {error} ({covers})"));
     let share = |n: u64| 100.0 * n as f64 / counts.paths as f64;
     if counts.cut_by_depth > 0 {
-        common.say(format_args!(
-            "of 100 paths {:.3} branches were cut off at --max-depth {}",
-            share(counts.cut_by_depth),
-            facts.settings.max_depth
-        ));
+        let (share, depth) = (share(counts.cut_by_depth), facts.settings.max_depth);
+        common.say(format_args!("of 100 paths {share:.3} branches were cut off at --max-depth {depth}"));
     }
     if counts.escaped_inside > 0 {
         let share = share(counts.escaped_inside);

@@ -15,6 +15,7 @@ use crate::{
     trials::{TRIALS, Trials},
 };
 use scene::{Rays, Scene};
+use std::ops::ControlFlow;
 use sums::confidence::Estimate;
 
 /// The result of a round of the search.
@@ -66,13 +67,6 @@ const GAIN: f64 = 0.5;
 /// A cloud whose error exceeds the bound from trials by this factor has found light that the trials had not.
 const SURPRISE: f64 = 1.5;
 
-/// The outcome of clouds whose error their halves estimate.
-enum Found {
-    Sufficient(Box<SufficientCloud>),
-    /// Larger trials turned out to have few degrees of freedom.
-    Few(Trials),
-}
-
 /// A search for the number of samples that meets a goal.
 pub struct Search<'a> {
     pub scene: &'a Scene,
@@ -101,8 +95,8 @@ impl Search<'_> {
                 self.trials(self.more(samples, error, TRIALS_GROW)?)?
             } else {
                 match self.by_halves(trials)? {
-                    Found::Sufficient(cloud) => return Ok(*cloud),
-                    Found::Few(trials) => trials,
+                    ControlFlow::Break(cloud) => return Ok(cloud),
+                    ControlFlow::Continue(trials) => trials,
                 }
             };
         }
@@ -136,8 +130,9 @@ impl Search<'_> {
         }
     }
 
-    /// Draws clouds whose error their halves estimate, until one meets the target.
-    fn by_halves(&self, mut trials: Trials) -> Result<Found, SampleError> {
+    /// Draws clouds whose error their halves estimate, until one meets the target, or larger trials turn out to have few
+    /// degrees of freedom.
+    fn by_halves(&self, mut trials: Trials) -> Result<ControlFlow<SufficientCloud, Trials>, SampleError> {
         let points = Points::new(self.scene, self.settings, self.plan, self.goal, POINTS);
         let mut samples = self.first_cloud(&trials)?;
         loop {
@@ -154,13 +149,13 @@ impl Search<'_> {
                 // The cloud stays in memory beside the new trials.
                 trials = self.trials(checked.min(self.goal.max_samples - samples).max(TRIALS))?;
                 if trials.freedom < MANY {
-                    return Ok(Found::Few(trials));
+                    return Ok(ControlFlow::Continue(trials));
                 }
                 estimate.freedom = trials.freedom;
             }
             (self.tell)(&Round::Cloud(samples, estimate));
             if enough(&estimate) {
-                return Ok(Found::Sufficient(Box::new(SufficientCloud { sampled, estimate: Some(estimate) })));
+                return Ok(ControlFlow::Break(SufficientCloud { sampled, estimate: Some(estimate) }));
             }
             samples = self.more(samples, estimate.safe(), CLOUDS_GROW)?;
         }

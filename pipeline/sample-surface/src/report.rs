@@ -42,15 +42,11 @@ pub fn summarize(cloud: &Cloud, common: &Common) {
         .filter(|(_, n)| **n > 0)
         .map(|(reason, n)| format!("{:.1} % {}", share(*n), reason.replace('_', " ")))
         .collect();
+    let dropped = if dropped.is_empty() { "none dropped".into() } else { dropped.join(", ") };
+    let (lit, drawn, area, [r, g, b]) =
+        (count(cloud.len()), count(meta.samples_drawn), meta.surface_area_m2, meta.mean_flux_w);
     common.say(format_args!(
-        "{} of {} samples carry light ({}); area {:.4e} m2, mean flux {:.4e} {:.4e} {:.4e} W",
-        count(cloud.len()),
-        count(meta.samples_drawn),
-        if dropped.is_empty() { "none dropped".into() } else { dropped.join(", ") },
-        meta.surface_area_m2,
-        meta.mean_flux_w[0],
-        meta.mean_flux_w[1],
-        meta.mean_flux_w[2]
+        "{lit} of {drawn} samples carry light ({dropped}); area {area:.4e} m2, mean flux {r:.4e} {g:.4e} {b:.4e} W"
     ));
     if cloud.is_empty() {
         common.warn("no sample carries light: the image of this cloud will show no scattered light");

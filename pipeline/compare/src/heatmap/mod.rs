@@ -26,16 +26,11 @@ pub enum HeatmapError {
     /// The layer does not exist.
     #[error(transparent)]
     Layer(#[from] Mismatch),
-    /// The picture would need too much memory.
+    /// The picture of this many columns and rows would need too much memory.
     #[error(
         "a heatmap of {width} x {height} pixels with its legend is too large; at most {MAX_PIXELS} pixels are drawn"
     )]
-    TooLarge {
-        /// The number of pixels in a row.
-        width: usize,
-        /// The number of rows.
-        height: usize,
-    },
+    TooLarge { width: usize, height: usize },
     /// The PNG library failed.
     #[error("the heatmap cannot be packed: {0}")]
     Png(#[from] png::EncodingError),

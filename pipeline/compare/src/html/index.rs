@@ -16,20 +16,12 @@ const HEAD: u64 = 1 << 28;
 /// Why there is no index.
 #[derive(Debug, thiserror::Error)]
 pub enum IndexError {
-    /// The operating system refused to read the file.
+    /// The operating system refused to read a report, or to find the folder of the index.
     #[error("{}: {source}", path.display())]
-    Io {
-        /// The report, or the index itself.
-        path: PathBuf,
-        /// The error of the operating system.
-        source: std::io::Error,
-    },
+    Io { path: PathBuf, source: std::io::Error },
     /// The file is something else, or from another version.
     #[error("{}: the file is not an HTML report of compare", path.display())]
-    NotAReport {
-        /// The file.
-        path: PathBuf,
-    },
+    NotAReport { path: PathBuf },
     /// The page cannot be written.
     #[error(transparent)]
     Json(#[from] serde_json::Error),

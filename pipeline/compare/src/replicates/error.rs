@@ -13,14 +13,9 @@ pub enum ReplicateError {
     /// A file cannot be written, or a folder cannot be read.
     #[error(transparent)]
     File(#[from] formats::Error),
-    /// An image, a folder or a summary is not valid as a part of this test.
+    /// An image, a folder or a summary is not valid as a part of this test: `what` is the fault, and its remedy.
     #[error("{}: {what}", path.display())]
-    Invalid {
-        /// The image, the folder or the summary.
-        path: PathBuf,
-        /// The fault, and its remedy.
-        what: String,
-    },
+    Invalid { path: PathBuf, what: String },
 }
 
 impl ReplicateError {

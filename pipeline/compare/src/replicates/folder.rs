@@ -125,10 +125,8 @@ impl Replicates {
 fn independent(all: &[Replicate]) -> Result<(), ReplicateError> {
     let mut by_cloud: Vec<&Replicate> = all.iter().collect();
     by_cloud.sort_by(|a, b| (&a.cloud, &a.path).cmp(&(&b.cloud, &b.path)));
-    match by_cloud.array_windows().find(|[a, b]| a.cloud == b.cloud) {
-        None => Ok(()),
-        Some([a, b]) => Err(ReplicateError::same_cloud(&b.path, &a.path)),
-    }
+    let same = by_cloud.array_windows().find(|[a, b]| a.cloud == b.cloud);
+    same.map_or(Ok(()), |[a, b]| Err(ReplicateError::same_cloud(&b.path, &a.path)))
 }
 
 fn add(sum: &mut Vec<Vec<f64>>, image: &Image) {

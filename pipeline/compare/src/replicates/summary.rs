@@ -120,13 +120,10 @@ impl Summary {
     /// of them.
     pub fn check_target(folder: &Path) -> Result<(), ReplicateError> {
         let images = if folder.is_dir() { Replicates::paths(folder)? } else { Vec::new() };
-        match images.into_iter().find(|path| !path.ends_with(MEAN_IMAGE)) {
-            Some(image) => {
-                let what = format!("it holds images such as {}; give a folder without images", image.display());
-                Err(ReplicateError::invalid(folder, what))
-            }
-            None => Ok(()),
-        }
+        images.into_iter().find(|path| !path.ends_with(MEAN_IMAGE)).map_or(Ok(()), |image| {
+            let what = format!("it holds images such as {}; give a folder without images", image.display());
+            Err(ReplicateError::invalid(folder, what))
+        })
     }
 
     /// Writes the summary and the mean picture into a folder, which must hold no images and is made if it does not
@@ -173,10 +170,8 @@ impl Summary {
             meaning: self.meaning.clone(),
         };
         test.all[0].check(&structure, &self.scene, &self.folder)?;
-        match test.all.iter().find(|replicate| self.clouds.contains(&replicate.cloud)) {
-            Some(twice) => Err(ReplicateError::same_cloud(&twice.path, &self.folder)),
-            None => Ok(()),
-        }
+        let twice = test.all.iter().find(|replicate| self.clouds.contains(&replicate.cloud));
+        twice.map_or(Ok(()), |twice| Err(ReplicateError::same_cloud(&twice.path, &self.folder)))
     }
 }
 
