@@ -179,7 +179,8 @@ mod tests {
         };
         let error = (transmittance / exact.transmittance - 1.0).abs();
         assert!(error < 6e-7, "eta {eta} cosine {cosine}: {error}");
-        // Into a thinner medium everything across the normal is stretched by 1/η, rounding as well.
+        // Into a thinner medium everything across the normal is stretched by 1/η, rounding as well. The worst of these
+        // vectors is off by 4.1e-7, less than four roundings of float32 (2⁻²³ each).
         let error = (refracted - exact.direction).abs().max_element() * eta.min(1.0);
         assert!(error < 4.5e-7, "eta {eta} cosine {cosine}: {error}");
         cosine < 1e-7
