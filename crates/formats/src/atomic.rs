@@ -235,12 +235,15 @@ fn create_temporary(target: &Path) -> io::Result<(PathBuf, File)> {
     let mode = replaced.as_ref().map_or(0o666, |old| old.permissions().mode() & 0o777);
     loop {
         let path = temporary_name(target)?;
+        // The lock is held until the new file is in the list, so that a signal never finds it missing there.
+        let mut temporaries = registered();
         let file = match OpenOptions::new().write(true).create_new(true).mode(mode).open(&path) {
             // A process with the same number on another machine has it.
             Err(e) if e.kind() == io::ErrorKind::AlreadyExists => continue,
             opened => opened?,
         };
-        registered().push(path.clone());
+        temporaries.push(path.clone());
+        drop(temporaries);
         // Where the system has no locks, no file is ever taken for abandoned.
         let taken = matches!(file.try_lock(), Err(TryLockError::WouldBlock));
         if !taken && path.exists() {

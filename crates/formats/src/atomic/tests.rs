@@ -149,3 +149,31 @@ fn after_two_simultaneous_groups_all_files_are_those_of_one() {
     }
     assert_eq!(fs::read_dir(folder.path()).expect("lists").count(), names.len());
 }
+
+/// A signal removes the temporary files that are in the list, so that each must be there while it exists.
+///
+/// Seen to catch: a file that was added to the list after it had been created.
+#[test]
+fn every_temporary_file_is_in_the_list() {
+    let folder = tempfile::tempdir().expect("the temporary folder is writable");
+    let folder = fs::canonicalize(folder.path()).expect("it exists");
+    let target = folder.join("a.cloud");
+    let done = std::sync::atomic::AtomicBool::new(false);
+    let unlisted = thread::scope(|scope| {
+        scope.spawn(|| {
+            while !done.load(Ordering::Relaxed) {
+                Output::create(&target).expect("the folder is writable");
+            }
+        });
+        let unlisted: usize = (0..5000)
+            .map(|_| {
+                let listed = registered();
+                let files = fs::read_dir(&folder).expect("it exists").map(|entry| entry.expect("it is read").path());
+                files.filter(|path| !listed.contains(path)).count()
+            })
+            .sum();
+        done.store(true, Ordering::Relaxed);
+        unlisted
+    });
+    assert_eq!(unlisted, 0, "files of 5000 readings");
+}
