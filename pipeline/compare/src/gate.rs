@@ -43,9 +43,10 @@ impl Gate {
     /// A gate by the name of its option. Only `max-outliers` has a threshold.
     ///
     /// ```
-    /// let gate = compare::Gate::new("max-outliers", 3.0, Some(0.5)).unwrap();
+    /// let gate = compare::Gate::new("max-outliers", 3.0, Some(0.5))?;
     /// assert_eq!((gate.name(), gate.limit()), ("max-outliers", 3.0));
     /// assert!(compare::Gate::new("max-bias", f64::NAN, None).is_err());
+    /// # Ok::<(), String>(())
     /// ```
     pub fn new(name: &str, limit: f64, threshold: Option<f64>) -> Result<Gate, String> {
         let is_limit = |number: f64| number.is_finite() && number >= 0.0;

@@ -1,7 +1,7 @@
 //! Pixels: layers, mean and variance, and the channels of the image file.
 
 use crate::{
-    Crop,
+    crop::Crop,
     edge::Edge,
     freedom::{self, Cells},
     path_state::{Guide, LAYERS, Layer, Layers, PathLight},

@@ -1,6 +1,6 @@
-//! The input, the settings and the result of rendering an image or a part of it.
+//! The input, the settings and the result of rendering an image.
 
-use crate::{counts::Counts, estimator::Estimator, film::Pixel};
+use crate::{counts::Counts, crop::Crop, estimator::Estimator, film::Pixel};
 use bssrdf::{Medium, Model};
 use formats::cloud::Cloud;
 use glam::DVec2;
@@ -24,27 +24,6 @@ impl Filter {
             Filter::Box => "box",
             Filter::Point => "point",
         }
-    }
-}
-
-/// A part of an image, pixels: its left column, its upper row, its width and height.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Crop {
-    pub x: usize,
-    pub y: usize,
-    pub width: usize,
-    pub height: usize,
-}
-
-impl Crop {
-    /// Number of pixels.
-    pub fn pixels(&self) -> usize {
-        self.width * self.height
-    }
-
-    /// Column and row in the whole image of a pixel of the part, whose index counts row by row.
-    pub fn pixel(&self, index: usize) -> [usize; 2] {
-        [self.x + index % self.width, self.y + index / self.width]
     }
 }
 

@@ -37,6 +37,7 @@
 
 mod calibration;
 pub mod counts;
+mod crop;
 mod edge;
 pub mod film;
 mod freedom;
@@ -49,6 +50,7 @@ pub mod renderer;
 pub mod shards;
 mod subsurface;
 
-pub use image::{Crop, Filter, Input, Rendered, Settings};
+pub use crop::Crop;
+pub use image::{Filter, Input, Rendered, Settings};
 pub use passes::{Passes, render};
 pub use sums::{Summation, estimator, samples};

@@ -3,9 +3,10 @@
 use crate::{
     calibration,
     counts::Counts,
+    crop::Crop,
     edge::{self, Edge},
     film::{Errors, Pixel, PixelSum},
-    image::{Crop, Filter, Input, Rendered, Settings},
+    image::{Filter, Input, Rendered, Settings},
     path_state::{PathIndex, ThreadContext},
     renderer::{Renderer, TranslucentObject},
     shards,

@@ -19,4 +19,5 @@ mod pipeline;
 mod shards;
 mod targets;
 mod user_files;
+mod user_media;
 mod views;

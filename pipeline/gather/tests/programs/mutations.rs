@@ -3,7 +3,7 @@
 //!
 //! The damage is the same in every run; `make slow` tries a thousand scenes.
 
-use crate::user_files::with_medium;
+use crate::user_media::with_medium;
 use serde_json::{Value, json};
 use std::fs;
 use test_support::{
