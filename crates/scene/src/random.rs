@@ -16,8 +16,8 @@ pub enum Purpose {
     Pixel,
     /// Transmittance rays of edge pixels.
     Edge,
-    /// Points at which phase two calibrates its error estimate.
-    Calibration,
+    /// Points at which phase two corrects the error that the cut predicts.
+    CutCorrection,
     /// Scrambles of the sequences of phase one.
     Scramble,
     /// Light that opaque surfaces reflect to the samples of phase one.
@@ -37,7 +37,7 @@ impl Purpose {
             Purpose::Gather => 3,
             Purpose::Scramble => 4,
             Purpose::Pixel => 5,
-            Purpose::Calibration => 6,
+            Purpose::CutCorrection => 6,
             Purpose::Bounce => u64::MAX,
             Purpose::ShardPick => u64::MAX - 1,
             Purpose::Remainder(k) => 7 + k,

@@ -35,9 +35,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod calibration;
 pub mod counts;
 mod crop;
+mod cut_correction;
 mod edge;
 pub mod film;
 mod freedom;

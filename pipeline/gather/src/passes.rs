@@ -1,9 +1,9 @@
 //! Renders pixels in parallel, and adds paths to all of them in passes.
 
 use crate::{
-    calibration,
     counts::Counts,
     crop::Crop,
+    cut_correction,
     edge::{self, Edge},
     film::{Errors, Pixel, PixelSum},
     image::{Filter, Input, Rendered, Settings},
@@ -62,7 +62,7 @@ impl<'a> Passes<'a> {
             gathers: Stream::new(settings.seed, Purpose::Gather),
             shard_picks: Stream::new(settings.seed, Purpose::ShardPick),
         };
-        calibration::calibrate(&mut renderer);
+        cut_correction::correct(&mut renderer);
         let mut passes = Passes {
             renderer,
             edges: vec![None; settings.part().pixels()],
