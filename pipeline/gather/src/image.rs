@@ -32,7 +32,7 @@ impl Filter {
 pub struct Input<'a> {
     pub scene: &'a Scene,
     pub rays: &'a Rays<'a>,
-    /// One cloud of this scene, or several that are gathered as one, see [`crate::shards::join`].
+    /// One cloud of this scene, or several that are gathered as one, see [`formats::cloud::shards::join`].
     pub clouds: &'a [Cloud],
     /// The medium of each material that the clouds sampled, in their order.
     pub media: &'a [Medium],

@@ -3,10 +3,9 @@
 
 use crate::{
     cameras::{Viewpoint, tag, viewpoints},
-    inputs::Inputs,
     settings::{ImageNames, Request},
 };
-use cli::{Common, Failure, Need};
+use cli::{Common, Failure, LitScene, Need};
 use gather::{Crop, Settings};
 use glam::{DMat3, DVec3};
 use scene::{Camera, View, ViewFile};
@@ -35,7 +34,7 @@ pub struct ImageJob {
 }
 
 /// All images of a request. Refuses those that cannot be rendered, before any work is done.
-pub fn image_jobs(request: &Request, inputs: &Inputs) -> Result<Vec<ImageJob>, Failure> {
+pub fn image_jobs(request: &Request, inputs: &LitScene) -> Result<Vec<ImageJob>, Failure> {
     let mut jobs = Vec::new();
     for viewpoint in viewpoints(request, &inputs.scene, || inputs.middle())? {
         jobs.extend(turntable(request, &viewpoint)?);

@@ -47,7 +47,6 @@ mod path;
 pub mod path_state;
 pub mod preview;
 pub mod renderer;
-pub mod shards;
 mod subsurface;
 
 pub use crop::Crop;

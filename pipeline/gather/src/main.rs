@@ -3,11 +3,9 @@
 mod adaptive;
 mod arguments;
 mod cameras;
-mod cloud_files;
 mod image_jobs;
 mod inputs;
 mod lists;
-mod media;
 mod outputs;
 mod report;
 mod scale;
@@ -16,11 +14,10 @@ mod summary;
 
 use arguments::Arguments;
 use clap::Parser;
-use cli::{Failure, Seconds};
+use cli::{Failure, LitScene, Seconds};
 use formats::atomic::Output;
 use gather::Input;
 use image_jobs::{ImageJob, image_jobs, image_paths};
-use inputs::Inputs;
 use report::Facts;
 use scene::{Rays, Scene};
 use settings::{Request, Task};
@@ -52,9 +49,9 @@ fn render(request: &Request) -> Result<(), Failure> {
 }
 
 /// Reads and checks everything, so that what can be refused is refused before the first ray.
-fn prepare(request: &Request) -> Result<(Inputs, Vec<ImageJob>), Failure> {
+fn prepare(request: &Request) -> Result<(LitScene, Vec<ImageJob>), Failure> {
     let mut files = inputs::declare(request)?;
-    let inputs = Inputs::read(request, &mut files)?;
+    let inputs = inputs::read(request, &mut files)?;
     let jobs = image_jobs(request, &inputs)?;
     scale::show(request, &inputs);
     outputs::declare(&mut files, &request.outputs, &jobs)?;
@@ -65,7 +62,7 @@ fn prepare(request: &Request) -> Result<(Inputs, Vec<ImageJob>), Failure> {
 /// Renders one image and writes its files, all or none; `seconds` are those of the steps before it.
 fn render_image(
     request: &Request,
-    inputs: &Inputs,
+    inputs: &LitScene,
     rays: &Rays,
     job: &ImageJob,
     mut seconds: Seconds,

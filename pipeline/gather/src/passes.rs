@@ -9,8 +9,8 @@ use crate::{
     image::{Filter, Input, Rendered, Settings},
     path_state::{PathIndex, ThreadContext},
     renderer::{Renderer, TranslucentObject},
-    shards,
 };
+use formats::cloud::shards;
 use glam::DVec2;
 use rayon::prelude::*;
 use scene::{

@@ -1,14 +1,11 @@
 //! The data that all camera paths of an image share: the scene, and translucent objects with their media and samples.
 
-use crate::{
-    image::{Input, Settings},
-    shards::DrawnCounts,
-};
+use crate::image::{Input, Settings};
 use bsdf::Surface;
 use bssrdf::Medium;
 use scene::{light::LightTree, random::Stream};
 use std::ops::Range;
-use sums::Summation;
+use sums::{Summation, drawn::DrawnCounts};
 
 /// The data of an image, shared by all threads.
 pub struct Renderer<'a> {

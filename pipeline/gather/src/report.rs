@@ -1,16 +1,20 @@
 //! The metadata of an image: the attributes of its header, and its statistics.
 
-use crate::{image_jobs::ImageJob, inputs::Inputs, settings::Request};
+use crate::{image_jobs::ImageJob, settings::Request};
 use bssrdf::Medium;
-use cli::Seconds;
-use formats::{Attribute, cloud::hex};
-use gather::{Rendered, Settings, film, shards};
+use cli::{LitScene, Seconds};
+use formats::{
+    Attribute,
+    cloud::{hex, shards},
+};
+use gather::{Rendered, Settings, film};
 use std::collections::BTreeMap;
+use sums::drawn::DrawnCounts;
 
 /// A rendered image, and the facts that its files state.
 pub struct Facts<'a> {
     pub request: &'a Request,
-    pub inputs: &'a Inputs,
+    pub inputs: &'a LitScene,
     pub job: &'a ImageJob,
     /// The settings of the job, with the number of paths that were rendered.
     pub settings: Settings,
@@ -18,7 +22,7 @@ pub struct Facts<'a> {
 }
 
 impl<'a> Facts<'a> {
-    pub fn new(request: &'a Request, inputs: &'a Inputs, job: &'a ImageJob, rendered: &'a Rendered) -> Facts<'a> {
+    pub fn new(request: &'a Request, inputs: &'a LitScene, job: &'a ImageJob, rendered: &'a Rendered) -> Facts<'a> {
         let settings = Settings { paths_per_pixel: rendered.paths_per_pixel, ..job.settings.clone() };
         Facts { request, inputs, job, settings, rendered }
     }
@@ -130,7 +134,7 @@ impl<'a> Facts<'a> {
 
     /// The sources of error that the variance and the estimated error include.
     pub fn covers(&self) -> &'static str {
-        film::covers(self.settings.paths_per_pixel, shards::DrawnCounts::of(self.inputs.clouds()).half(1))
+        film::covers(self.settings.paths_per_pixel, DrawnCounts::of(self.inputs.clouds()).half(1))
     }
 
     /// Column and row of a pixel in the whole image.

@@ -1,9 +1,9 @@
 //! Compares the lengths of each medium with those of its object, and warns where they do not fit each other.
 
-use crate::{inputs::Inputs, settings::Request};
+use crate::settings::Request;
 use bssrdf::Medium;
-use cli::count_up;
-use gather::shards;
+use cli::{LitScene, count_up};
+use formats::cloud::shards;
 
 /// Samples that are farther apart than this many reduced mean free paths show as grain.
 const SPARSE: f64 = 3.0;
@@ -28,7 +28,7 @@ struct Object<'a> {
 }
 
 /// Prints the lengths of each medium and its object, and warns where they do not fit each other.
-pub fn show(request: &Request, inputs: &Inputs) {
+pub fn show(request: &Request, inputs: &LitScene) {
     let (common, clouds) = (&request.common, inputs.clouds());
     for (slot, (material, medium)) in shards::materials(clouds).iter().zip(&inputs.media).enumerate() {
         let (low, high) = inputs.bounds(|index| index == material.index);

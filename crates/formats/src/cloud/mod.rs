@@ -9,6 +9,7 @@ mod layout;
 mod meta;
 mod record;
 mod settings;
+pub mod shards;
 
 pub use layout::version;
 pub use meta::{Group, Meta, Options, SampledMaterial, Shard, hex};

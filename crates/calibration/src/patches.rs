@@ -1,0 +1,170 @@
+//! The surface of one material in patches of equal area, and smooth functions on them.
+//!
+//! Points that are spread evenly over the surface are split by planes in the six dimensions of position and normal, each
+//! time at the median of the longest dimension, until each part holds the same small number of points. The normal
+//! counts as a length, so that the two sides of a thin part belong to different patches.
+
+use glam::DVec3;
+
+/// A point of the surface: position, m, and the normal of its triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Site {
+    pub position: DVec3,
+    pub normal: DVec3,
+}
+
+/// A point in the six dimensions, m.
+type Six = [f64; 6];
+
+/// A binary tree of splits over `2^depth` patches, the center of each patch, and the patches that are near it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Patches {
+    /// The length that a unit normal counts as, m.
+    normal_scale: f64,
+    /// A heap: node `i` has the children `2i + 1` and `2i + 2`.
+    splits: Vec<Split>,
+    centers: Vec<Six>,
+    /// For each patch, the patches whose weight is positive at some of its points.
+    near: Vec<Vec<u32>>,
+}
+
+/// Points whose coordinate `axis` is below `value` belong to the first child.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Split {
+    pub axis: u8,
+    pub value: f64,
+}
+
+/// The support of a patch's weight, in units of the side of a square patch.
+const SUPPORT: f64 = 2.0;
+
+impl Patches {
+    /// Splits sites that are spread evenly over an area (m²) into `2^depth` patches; the patch of each site is returned
+    /// as well.
+    pub fn new(sites: &[Site], area: f64, depth: u32) -> (Patches, Vec<u32>) {
+        let count = 1usize << depth;
+        let normal_scale = (area / count as f64).sqrt();
+        let points: Vec<Six> = sites.iter().map(|s| six(s, normal_scale)).collect();
+        let mut order: Vec<u32> = (0..points.len() as u32).collect();
+        let mut splits = vec![Split { axis: 0, value: 0.0 }; count - 1];
+        split(&points, &mut order, &mut splits, 0);
+        let mut patches = Patches { normal_scale, splits, centers: vec![[0.0; 6]; count], near: Vec::new() };
+        let of_site: Vec<u32> = sites.iter().map(|s| patches.patch(s)).collect();
+        let mut counts = vec![0u32; count];
+        for (point, patch) in points.iter().zip(&of_site) {
+            counts[*patch as usize] += 1;
+            for k in 0..6 {
+                patches.centers[*patch as usize][k] += point[k];
+            }
+        }
+        for (center, count) in patches.centers.iter_mut().zip(&counts) {
+            center.iter_mut().for_each(|x| *x /= f64::from(*count).max(1.0));
+        }
+        let mut radii = vec![0.0f64; count];
+        for (point, patch) in points.iter().zip(&of_site) {
+            let radius = &mut radii[*patch as usize];
+            *radius = radius.max(distance2(point, &patches.centers[*patch as usize]).sqrt());
+        }
+        patches.near = patches.neighbors(&radii);
+        (patches, of_site)
+    }
+
+    pub fn len(&self) -> usize {
+        self.centers.len()
+    }
+
+    /// The patch of a site.
+    pub fn patch(&self, site: &Site) -> u32 {
+        let point = six(site, self.normal_scale);
+        let mut node = 0;
+        while let Some(split) = self.splits.get(node) {
+            node = 2 * node + 1 + usize::from(point[usize::from(split.axis)] >= split.value);
+        }
+        (node - self.splits.len()) as u32
+    }
+
+    /// Weights that sum to 1 and change smoothly along the surface, of the patches near a site. A function with the value
+    /// `f_j` at patch `j` is interpolated as `Σ w_j f_j`.
+    pub fn weights(&self, site: &Site, mut tell: impl FnMut(u32, f64)) {
+        let patch = self.patch(site);
+        let point = six(site, self.normal_scale);
+        let near = &self.near[patch as usize];
+        let sum: f64 = near.iter().map(|j| self.weight(&point, *j)).sum();
+        if sum <= 0.0 {
+            return tell(patch, 1.0);
+        }
+        for j in near {
+            let weight = self.weight(&point, *j);
+            if weight > 0.0 {
+                tell(*j, weight / sum);
+            }
+        }
+    }
+
+    /// The pairs of patches that are next to each other, with a weight that falls with their distance; each pair once.
+    pub fn links(&self) -> Vec<(u32, u32, f64)> {
+        let mut links = Vec::new();
+        for (i, near) in self.near.iter().enumerate() {
+            for j in near.iter().filter(|j| **j as usize > i) {
+                let weight = self.weight(&self.centers[i], *j);
+                if weight > 0.0 {
+                    links.push((i as u32, *j, weight));
+                }
+            }
+        }
+        links
+    }
+
+    /// `(1 − d²/R²)²` of the distance `d` from the center of patch `j`; 0 beyond the support `R`.
+    fn weight(&self, point: &Six, j: u32) -> f64 {
+        let support2 = (SUPPORT * self.normal_scale).powi(2);
+        let rest = (1.0 - distance2(point, &self.centers[j as usize]) / support2).max(0.0);
+        rest * rest
+    }
+
+    /// The patches whose support meets the ball of each patch with its radius in the six dimensions.
+    fn neighbors(&self, radii: &[f64]) -> Vec<Vec<u32>> {
+        let support = SUPPORT * self.normal_scale;
+        let of = |(center, radius): (&Six, &f64)| {
+            let reach2 = (support + radius).powi(2);
+            let near = |j: &u32| distance2(center, &self.centers[*j as usize]) < reach2;
+            (0..self.centers.len() as u32).filter(near).collect()
+        };
+        self.centers.iter().zip(radii).map(of).collect()
+    }
+}
+
+fn six(site: &Site, normal_scale: f64) -> Six {
+    let (p, n) = (site.position, site.normal * normal_scale);
+    [p.x, p.y, p.z, n.x, n.y, n.z]
+}
+
+fn distance2(a: &Six, b: &Six) -> f64 {
+    (0..6).map(|k| (a[k] - b[k]).powi(2)).sum()
+}
+
+/// Splits the points in `order` at node `node` and below.
+fn split(points: &[Six], order: &mut [u32], splits: &mut [Split], node: usize) {
+    if node >= splits.len() {
+        return;
+    }
+    let extent = |axis: usize| {
+        let values = order.iter().map(|k| points[*k as usize][axis]);
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+        high - low
+    };
+    let axis = (0..6).max_by(|a, b| extent(*a).total_cmp(&extent(*b))).unwrap_or(0);
+    let middle = order.len() / 2;
+    let by = |k: &u32| points[*k as usize][axis];
+    let value = if order.is_empty() {
+        0.0
+    } else {
+        // Equal coordinates are told apart by their order, so that the split does not depend on the sorting algorithm.
+        let (_, at, _) = order.select_nth_unstable_by(middle, |a, b| by(a).total_cmp(&by(b)).then(a.cmp(b)));
+        by(at)
+    };
+    splits[node] = Split { axis: axis as u8, value };
+    let (low, high) = order.split_at_mut(middle);
+    split(points, low, splits, 2 * node + 1);
+    split(points, high, splits, 2 * node + 2);
+}
