@@ -4,7 +4,7 @@
 //! sections start, `tile` and `node` are little-endian arrays of [`Record`] and [`Node`], and `provenance` repeats the
 //! facts as JSON.
 
-mod bounded;
+pub(crate) mod bounded;
 mod layout;
 mod meta;
 mod record;
