@@ -8,8 +8,8 @@ use glam::{DVec3, USizeVec3};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Voxels at most: 16 MiB, and six times that while the grid is built.
-const MAX_VOXELS: usize = 1 << 23;
+/// Voxels at most: 8 MiB, and six times that while the grid is built.
+const MAX_VOXELS: usize = 1 << 22;
 
 /// Voxels along an axis at most: distances are below 1024 voxels, and [`STEPS`] of them fit 16 bits.
 const MAX_SIDE: usize = 512;

@@ -31,7 +31,7 @@ const JUMP_FROM: f64 = 5.0;
 const JUMP_GAP: f64 = 3.0;
 
 /// Where the reduced albedo is less, walks are short, and light does not become diffuse within the gap.
-const JUMP_ALBEDO: f64 = 0.7;
+const JUMP_ALBEDO: f64 = 0.8;
 
 impl Matter {
     /// The channel with these coefficients; none if it does not scatter, so that no walk is needed.
@@ -43,6 +43,8 @@ impl Matter {
         let albedo = coefficients.sigma_s / extinction;
         let reduced_mean_free_path = 1.0 / coefficients.reduced_extinction();
         let jumps = coefficients.reduced_albedo() >= JUMP_ALBEDO;
+        // Where light is scattered back, the memory of a boundary is lost over mean free paths that are not reduced.
+        let memory = reduced_mean_free_path.max(1.0 / extinction);
         Some(Matter {
             extinction,
             mean_free_path: 1.0 / extinction,
@@ -51,8 +53,8 @@ impl Matter {
             eta,
             reduced_mean_free_path,
             decay: extinction * relative_decay(albedo, coefficients.asymmetry),
-            jump_from: if jumps { JUMP_FROM * reduced_mean_free_path } else { f64::INFINITY },
-            jump_gap: JUMP_GAP * reduced_mean_free_path,
+            jump_from: if jumps { JUMP_FROM * memory } else { f64::INFINITY },
+            jump_gap: JUMP_GAP * memory,
         })
     }
 

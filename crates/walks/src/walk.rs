@@ -158,7 +158,7 @@ fn mirrored(direction: DVec3, normal: DVec3) -> DVec3 {
     (direction - 2.0 * direction.dot(normal) * normal).normalize()
 }
 
-/// Moves a walk that was just scattered through balls without any surface (docs/method.md 14.6); false if roulette
+/// Moves a walk that was just scattered through balls without any surface (docs/method.md 14.4); false if roulette
 /// ends it.
 #[inline(always)]
 fn jump<D: Domain>(
@@ -169,7 +169,7 @@ fn jump<D: Domain>(
     clearance: &mut f64,
     random: &mut Sequence,
 ) -> bool {
-    // Light that flies along a direction is scattered about a point ahead.
+    // Light that flies along a direction is scattered about a point ahead (docs/method.md 14.6).
     let ahead = matter.asymmetry * matter.reduced_mean_free_path;
     if ahead != 0.0 {
         let center = flight.position + flight.direction * ahead;
