@@ -24,6 +24,10 @@ pub enum Purpose {
     Bounce,
     /// The shards that the paths of a pixel gather from.
     ShardPick,
+    /// Random walks that light begins.
+    LightWalk,
+    /// Random walks that camera paths begin.
+    CameraWalk,
     /// The bits below those of one of these sequences.
     Remainder(u64),
 }
@@ -40,6 +44,8 @@ impl Purpose {
             Purpose::CutCorrection => 6,
             Purpose::Bounce => u64::MAX,
             Purpose::ShardPick => u64::MAX - 1,
+            Purpose::LightWalk => u64::MAX - 2,
+            Purpose::CameraWalk => u64::MAX - 3,
             Purpose::Remainder(k) => 7 + k,
         }
     }
