@@ -68,6 +68,11 @@ impl Smoothness {
         Smoothness { interpolation, laplacian: Sparse(rows) }
     }
 
+    /// A function of position at each patch, as the mean over the patch.
+    pub fn at_patches(&self, f: &[f64]) -> Vec<f64> {
+        self.interpolation.times(f)
+    }
+
     /// Fits the factor to counts.
     pub fn fit(&self, counts: &Counts) -> Fit {
         let none = vec![0.0; counts.model.len()];

@@ -4,7 +4,8 @@
 //! time at the median of the longest dimension, until each part holds the same small number of points. The normal
 //! counts as a length, so that the two sides of a thin part belong to different patches.
 
-use glam::DVec3;
+use formats::calibration::{CalibratedPatch, CalibratedSurface};
+use glam::{DMat3, DVec3};
 
 /// A point of the surface: position, m, and the normal of its triangle.
 #[derive(Clone, Copy, Debug)]
@@ -24,6 +25,8 @@ pub struct Patches {
     /// A heap: node `i` has the children `2i + 1` and `2i + 2`.
     splits: Vec<Split>,
     centers: Vec<Six>,
+    /// The largest distance of a site from the center of its patch, m.
+    radii: Vec<f64>,
     /// For each patch, the patches whose weight is positive at some of its points.
     near: Vec<Vec<u32>>,
 }
@@ -48,7 +51,8 @@ impl Patches {
         let mut order: Vec<u32> = (0..points.len() as u32).collect();
         let mut splits = vec![Split { axis: 0, value: 0.0 }; count - 1];
         split(&points, &mut order, &mut splits, 0);
-        let mut patches = Patches { normal_scale, splits, centers: vec![[0.0; 6]; count], near: Vec::new() };
+        let mut patches =
+            Patches { normal_scale, splits, centers: vec![[0.0; 6]; count], radii: vec![0.0; count], near: Vec::new() };
         let of_site: Vec<u32> = sites.iter().map(|s| patches.patch(s)).collect();
         let mut counts = vec![0u32; count];
         for (point, patch) in points.iter().zip(&of_site) {
@@ -60,13 +64,67 @@ impl Patches {
         for (center, count) in patches.centers.iter_mut().zip(&counts) {
             center.iter_mut().for_each(|x| *x /= f64::from(*count).max(1.0));
         }
-        let mut radii = vec![0.0f64; count];
         for (point, patch) in points.iter().zip(&of_site) {
-            let radius = &mut radii[*patch as usize];
+            let radius = &mut patches.radii[*patch as usize];
             *radius = radius.max(distance2(point, &patches.centers[*patch as usize]).sqrt());
         }
-        patches.near = patches.neighbors(&radii);
+        patches.near = patches.neighbors();
         (patches, of_site)
+    }
+
+    /// The patches that a file holds.
+    pub fn from_facts(facts: &CalibratedSurface) -> Patches {
+        let mut patches = Patches {
+            normal_scale: facts.normal_scale,
+            splits: facts.splits.iter().map(|(axis, value)| Split { axis: *axis, value: *value }).collect(),
+            centers: facts.patches.iter().map(|p| p.center).collect(),
+            radii: facts.patches.iter().map(|p| p.radius).collect(),
+            near: Vec::new(),
+        };
+        patches.near = patches.neighbors();
+        patches
+    }
+
+    /// The gradient along the surface of a function that is given at the centers of the patches, 1/m: that of the plane
+    /// which fits the differences to the neighbors best. Patches where the function is not finite are left out.
+    pub fn gradient(&self, values: &[f64]) -> Vec<DVec3> {
+        let mut sums = vec![(DMat3::ZERO, DVec3::ZERO); self.len()];
+        for (i, j, weight) in self.links() {
+            let (i, j) = (i as usize, j as usize);
+            let step = position(&self.centers[j]) - position(&self.centers[i]);
+            let change = values[j] - values[i];
+            if change.is_finite() {
+                for k in [i, j] {
+                    let (matrix, vector) = &mut sums[k];
+                    *matrix += DMat3::from_cols(step * step.x, step * step.y, step * step.z) * weight;
+                    *vector += step * (weight * change);
+                }
+            }
+        }
+        let gradient = |((matrix, vector), center): (&(DMat3, DVec3), &Six)| {
+            let normal = DVec3::new(center[3], center[4], center[5]).normalize_or_zero();
+            let (x, y) = normal.any_orthonormal_pair();
+            let [xx, xy, yy] = [x.dot(*matrix * x), x.dot(*matrix * y), y.dot(*matrix * y)];
+            let (bx, by, determinant) = (x.dot(*vector), y.dot(*vector), xx * yy - xy * xy);
+            // Neighbors in a line determine no plane.
+            let is_plane = determinant > 1e-3 * (xx + yy).powi(2) && normal != DVec3::ZERO;
+            let solve = || (x * (yy * bx - xy * by) + y * (xx * by - xy * bx)) / determinant;
+            if is_plane { solve() } else { DVec3::ZERO }
+        };
+        sums.iter().zip(&self.centers).map(gradient).collect()
+    }
+
+    /// What a file holds of them, with the logarithms of the factors of each patch, and the gradients of the light.
+    pub fn facts(&self, log_factors: &[[f32; 3]], gradients: &[[[f32; 3]; 3]]) -> CalibratedSurface {
+        let patches = self.centers.iter().zip(&self.radii).zip(log_factors.iter().zip(gradients));
+        let patch = |((center, radius), (log_factor, gradient)): ((&Six, &f64), (&[f32; 3], &[[f32; 3]; 3]))| {
+            CalibratedPatch { center: *center, radius: *radius, log_factor: *log_factor, gradient: *gradient }
+        };
+        CalibratedSurface {
+            normal_scale: self.normal_scale,
+            splits: self.splits.iter().map(|s| (s.axis, s.value)).collect(),
+            patches: patches.map(patch).collect(),
+        }
     }
 
     pub fn len(&self) -> usize {
@@ -123,20 +181,24 @@ impl Patches {
     }
 
     /// The patches whose support meets the ball of each patch with its radius in the six dimensions.
-    fn neighbors(&self, radii: &[f64]) -> Vec<Vec<u32>> {
+    fn neighbors(&self) -> Vec<Vec<u32>> {
         let support = SUPPORT * self.normal_scale;
         let of = |(center, radius): (&Six, &f64)| {
             let reach2 = (support + radius).powi(2);
             let near = |j: &u32| distance2(center, &self.centers[*j as usize]) < reach2;
             (0..self.centers.len() as u32).filter(near).collect()
         };
-        self.centers.iter().zip(radii).map(of).collect()
+        self.centers.iter().zip(&self.radii).map(of).collect()
     }
 }
 
 fn six(site: &Site, normal_scale: f64) -> Six {
     let (p, n) = (site.position, site.normal * normal_scale);
     [p.x, p.y, p.z, n.x, n.y, n.z]
+}
+
+fn position(six: &Six) -> DVec3 {
+    DVec3::new(six[0], six[1], six[2])
 }
 
 fn distance2(a: &Six, b: &Six) -> f64 {

@@ -54,7 +54,7 @@ pub use count::{count, count_up, parse_count};
 pub use environment::EnvironmentSource;
 pub use failure::{Failure, run};
 pub use files::{Files, file_name, is_same_file};
-pub use lit_scene::{LitScene, declare_inputs};
+pub use lit_scene::{LitScene, Media, declare_inputs};
 pub use medium::{ReadMediumError, is_file, read_medium, scene_medium};
 pub use memory::{Need, available_memory_bytes, peak_memory_bytes, require_memory};
 pub use named::{Candidate, Unclear, the_one, word_for};

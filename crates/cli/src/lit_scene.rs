@@ -16,13 +16,21 @@ pub struct LitScene {
     pub defects: MeshDefects,
 }
 
+/// The media of the sampled materials.
+pub enum Media<'a> {
+    /// As arguments `[MATERIAL=]NAME|FILE.json`; materials without one have the medium of the scene.
+    Named(&'a [String]),
+    /// One for each sampled material.
+    Known(Vec<Medium>),
+}
+
 impl LitScene {
-    /// Reads clouds and their scene, but no samples, and the media `[MATERIAL=]NAME|FILE.json`; refuses inputs that do
+    /// Reads clouds and their scene, but no samples, and the media; refuses inputs that do
     /// not fit each other. The files that the scene's file names are declared as they become known.
     pub fn read(
         clouds: &[PathBuf],
         settings: &SceneSettings,
-        media: &[String],
+        media: Media,
         common: &Common,
         files: &mut Files,
     ) -> Result<LitScene, Failure> {
@@ -33,7 +41,10 @@ impl LitScene {
         let (sampled, defects) = (shards::materials(&cloud_files.clouds), cloud_files.defects());
         let is_sampled = |material| sampled.iter().any(|m| m.index == material);
         settings.check_mesh(&mut scene, is_sampled, defects, common)?;
-        let media = assign_media(media, sampled, &scene.materials)?;
+        let media = match media {
+            Media::Named(arguments) => assign_media(arguments, sampled, &scene.materials)?,
+            Media::Known(media) => media,
+        };
         Ok(LitScene { cloud_files, scene, media, defects })
     }
 

@@ -40,7 +40,7 @@ pub struct Calibration {
     /// Name of the BSSRDF model that the factors belong to.
     #[serde(deserialize_with = "text")]
     pub model: String,
-    /// Random walks of each material and channel.
+    /// Random walks of each channel, over all materials.
     pub walks: u64,
     pub seed: u64,
     /// The sampled materials of the cloud, in their order.
@@ -76,7 +76,7 @@ pub struct MediumFacts {
 }
 
 /// Estimated errors of the light that leaves the surface, as relMSE: the mean of `(a − b)²/(b² + 0.01)`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ChannelErrors {
     /// Of the model without the factor.
     pub before: f64,
@@ -109,6 +109,8 @@ pub struct CalibratedPatch {
     pub radius: f64,
     /// Natural logarithm of the factor of each channel.
     pub log_factor: [f32; 3],
+    /// Gradient of the logarithm of the light that leaves, along the surface, for each channel, 1/m.
+    pub gradient: [[f32; 3]; 3],
 }
 
 fn config() -> impl bincode::config::Config {
@@ -197,7 +199,7 @@ impl CalibratedSurface {
             p.center.iter().all(|x| x.is_finite())
                 && p.radius.is_finite()
                 && p.radius >= 0.0
-                && p.log_factor.iter().all(|f| f.is_finite())
+                && p.log_factor.iter().chain(p.gradient.iter().flatten()).all(|f| f.is_finite())
         };
         fits && self.normal_scale.is_finite()
             && self.normal_scale > 0.0
@@ -211,7 +213,12 @@ mod tests {
     use super::*;
 
     fn calibration() -> Calibration {
-        let patch = CalibratedPatch { center: [0.5; 6], radius: 0.1, log_factor: [0.1, -0.2, 0.0] };
+        let patch = CalibratedPatch {
+            center: [0.5; 6],
+            radius: 0.1,
+            log_factor: [0.1, -0.2, 0.0],
+            gradient: [[1.0, 2.0, 3.0]; 3],
+        };
         let medium = MediumFacts {
             name: "milk".into(),
             source: "a cow".into(),

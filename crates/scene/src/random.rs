@@ -28,6 +28,10 @@ pub enum Purpose {
     LightWalk,
     /// Random walks that camera paths begin.
     CameraWalk,
+    /// Points of the surface where a calibration compares the model with random walks.
+    CalibrationPoint,
+    /// The sums over the cloud at these points.
+    CalibrationSum,
     /// The bits below those of one of these sequences.
     Remainder(u64),
 }
@@ -46,6 +50,8 @@ impl Purpose {
             Purpose::ShardPick => u64::MAX - 1,
             Purpose::LightWalk => u64::MAX - 2,
             Purpose::CameraWalk => u64::MAX - 3,
+            Purpose::CalibrationPoint => u64::MAX - 4,
+            Purpose::CalibrationSum => u64::MAX - 5,
             Purpose::Remainder(k) => 7 + k,
         }
     }

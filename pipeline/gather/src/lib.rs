@@ -29,7 +29,7 @@
 //!     max_depth: 16,
 //!     seed: 0,
 //! };
-//! let input = Input { scene: &scene, rays: &rays, clouds: &[], media: &[], camera: &scene.cameras[0] };
+//! let input = Input { scene: &scene, rays: &rays, clouds: &[], media: &[], calibration: None, camera: &scene.cameras[0] };
 //! let rendered = render(&input, &settings, |_| ());
 //! assert_eq!((rendered.pixels.len(), rendered.counts.paths), (4, 16));
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod arguments;
+mod calibrated;
 mod cameras;
 mod image_jobs;
 mod inputs;
@@ -13,9 +14,10 @@ mod settings;
 mod summary;
 
 use arguments::Arguments;
+use bssrdf::Model;
 use clap::Parser;
 use cli::{Failure, LitScene, Seconds};
-use formats::atomic::Output;
+use formats::{atomic::Output, calibration::Calibration};
 use gather::Input;
 use image_jobs::{ImageJob, image_jobs, image_paths};
 use report::Facts;
@@ -36,27 +38,42 @@ fn main() {
     });
 }
 
+/// Everything that the images of a request need.
+struct Prepared {
+    inputs: LitScene,
+    model: Model,
+    /// The calibration that a file keeps.
+    kept: Option<Calibration>,
+    jobs: Vec<ImageJob>,
+}
+
 /// Renders all images of a request.
 fn render(request: &Request) -> Result<(), Failure> {
     let mut seconds = Seconds::start();
-    let (inputs, jobs) = seconds.time("open", || prepare(request))?;
+    let Prepared { inputs, model, kept, jobs } = seconds.time("open", || prepare(request))?;
     let rays = seconds.time("ray_tree", || request.common.in_pool(|| inputs.rays()))?;
+    let calibration = match kept {
+        Some(kept) => Some(kept),
+        None => seconds.time("calibrate", || calibrated::make(request, &inputs, &rays, model))?,
+    };
     for job in &jobs {
-        render_image(request, &inputs, &rays, job, seconds)?;
+        render_image(request, &inputs, &rays, calibration.as_ref(), job, seconds)?;
         seconds = Seconds::start();
     }
     Ok(())
 }
 
 /// Reads and checks everything, so that what can be refused is refused before the first ray.
-fn prepare(request: &Request) -> Result<(LitScene, Vec<ImageJob>), Failure> {
+fn prepare(request: &Request) -> Result<Prepared, Failure> {
     let mut files = inputs::declare(request)?;
-    let inputs = inputs::read(request, &mut files)?;
-    let jobs = image_jobs(request, &inputs)?;
-    scale::show(request, &inputs);
+    let kept = calibrated::read(request)?;
+    let model = calibrated::model(request, kept.as_ref())?;
+    let inputs = inputs::read(request, kept.as_ref(), &mut files)?;
+    let jobs = image_jobs(request, &inputs, model)?;
+    scale::show(request, &inputs, model);
     outputs::declare(&mut files, &request.outputs, &jobs)?;
     inputs.cloud_files.verify(request.common.thread_count())?;
-    Ok((inputs, jobs))
+    Ok(Prepared { inputs, model, kept, jobs })
 }
 
 /// Renders one image and writes its files, all or none; `seconds` are those of the steps before it.
@@ -64,13 +81,14 @@ fn render_image(
     request: &Request,
     inputs: &LitScene,
     rays: &Rays,
+    calibration: Option<&Calibration>,
     job: &ImageJob,
     mut seconds: Seconds,
 ) -> Result<(), Failure> {
     let (common, settings) = (&request.common, &job.settings);
     let output = Output::create(&job.file(&request.outputs.image))?;
-    let input =
-        Input { scene: &inputs.scene, rays, clouds: inputs.clouds(), media: &inputs.media, camera: &job.camera };
+    let (scene, clouds, media, camera) = (&inputs.scene, inputs.clouds(), &inputs.media, &job.camera);
+    let input = Input { scene, rays, clouds, media, calibration, camera };
     let rendered = seconds.time("render", || {
         common.in_pool(|| match request.target_error {
             None => adaptive::render_all(&input, settings, common),
@@ -78,7 +96,7 @@ fn render_image(
         })
     })?;
     inputs.cloud_files.check_unchanged()?;
-    let facts = Facts::new(request, inputs, job, &rendered);
+    let facts = Facts::new(request, inputs, calibration, job, &rendered);
     outputs::write(&facts, output, seconds)?;
     summary::show(&facts)
 }

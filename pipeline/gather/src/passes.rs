@@ -10,6 +10,7 @@ use crate::{
     path_state::{PathIndex, ThreadContext},
     renderer::{Renderer, TranslucentObject},
 };
+use calibration::Factors;
 use formats::cloud::shards;
 use glam::DVec2;
 use rayon::prelude::*;
@@ -219,7 +220,10 @@ fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<Translucent
     let mut objects: Vec<Option<TranslucentObject>> = input.scene.materials.iter().map(|_| None).collect();
     for (slot, (sampled, medium)) in shards::materials(input.clouds).iter().zip(input.media).enumerate() {
         let scatterer = Arc::new(Scatterer::new(settings.model, medium, sampled.area_m2.sqrt()));
+        let factors = input.calibration.map(|c| Factors::new(&c.materials[slot]));
         objects[sampled.index as usize] = Some(TranslucentObject {
+            lobe: settings.model.exit_lobe(medium),
+            factors,
             unscattered: settings.model.unscattered_extinction(medium),
             summation: Summation::of_clouds(scatterer, input.clouds, slot),
             medium: medium.clone(),

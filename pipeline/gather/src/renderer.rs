@@ -3,6 +3,7 @@
 use crate::image::{Input, Settings};
 use bsdf::Surface;
 use bssrdf::Medium;
+use calibration::Factors;
 use scene::{light::LightTree, random::Stream};
 use std::ops::Range;
 use sums::{Summation, drawn::DrawnCounts};
@@ -33,6 +34,10 @@ pub struct TranslucentObject<'a> {
     /// Extinction `σ̃_t` of unscattered light, 1/m (docs/method.md 5.11).
     pub unscattered: [f64; 3],
     pub summation: Summation<'a>,
+    /// The factors of its surface, if it is calibrated.
+    pub factors: Option<Factors>,
+    /// `a` and `b` of the exit lobe `a + b cosθ` of each channel.
+    pub lobe: [[f64; 2]; 3],
 }
 
 impl TranslucentObject<'_> {

@@ -4,11 +4,23 @@ use crate::{
     path_state::{Layer, PathLight, PathState, ThreadContext},
     renderer::{Renderer, TranslucentObject},
 };
+use calibration::Site;
 use scene::{DVec3, SurfacePoint};
 use sums::{estimator::Estimator, samples::Exit};
 
 /// The largest relative error that is asked of one sum. Above it, the cut does not predict its own error.
 const MAX_ERROR: f64 = 0.5;
+
+impl TranslucentObject<'_> {
+    /// The factor of the light that leaves at a point towards `view`: the exit lobe or, if the object is calibrated, the
+    /// factor of its surface.
+    fn factor(&self, point: &SurfacePoint, normal: DVec3, view: DVec3) -> DVec3 {
+        match &self.factors {
+            None => DVec3::from_array(self.lobe.map(|[a, b]| a + b * normal.dot(view))),
+            Some(factors) => factors.at(&Site { position: point.position, normal: point.geometric_normal }, view),
+        }
+    }
+}
 
 impl Renderer<'_> {
     /// `note: [reflectance]` Adds `L_r` at an exitant point: the mean over all drawn samples (docs/method.md 6.7), or
@@ -28,11 +40,14 @@ impl Renderer<'_> {
         let exit = |half: usize| Exit::new(point.position, normal, state.key.bits(2 * state.dimension + half as u64));
         let estimator = self.estimator_for(state.throughput.max_element());
         let scratch = &mut context.scratch[point.material as usize];
-        let leaving = if self.gathers_by_shard() {
+        let mut leaving = if self.gathers_by_shard() {
             object.summation.by_shard(estimator, state.half, state.shard_pick, exit, scratch)
         } else {
             object.summation.whole(estimator, exit, scratch)
         };
+        let factor = object.factor(point, normal, -state.direction);
+        leaving.radiance *= factor;
+        leaving.halves.iter_mut().for_each(|half| *half *= factor);
         context.counts.gathers += 1;
         context.counts.evaluations += leaving.evaluations;
         context.counts.nodes += leaving.nodes;

@@ -72,6 +72,18 @@ impl Model {
         })
     }
 
+    /// Whether images of this model are calibrated unless the user says otherwise. The dipoles are used as published.
+    pub fn is_for_calibration(self) -> bool {
+        match self {
+            Model::DirectionalDipole | Model::BetterDipole | Model::StandardDipole => false,
+        }
+    }
+
+    /// `a` and `b` of the exit lobe `T21 (a + b cosθ)` of each channel; that of the dipoles is `T21` alone.
+    pub fn exit_lobe(self, _medium: &Medium) -> [[f64; 2]; 3] {
+        [[1.0, 0.0]; 3]
+    }
+
     /// Relative error of this model's reflectance of a half-space under normal incidence, for one channel.
     pub fn reflectance_error(self, channel: &Coefficients, eta: f64) -> f64 {
         let errors = match self {
