@@ -21,17 +21,16 @@ pub use patches::{Patches, Site};
 use bssrdf::{Medium, Model};
 use entries::Entries;
 use errors::{Light, channel_errors};
-use fit::{Counts, Smoothness};
+use fit::Smoothness;
 use formats::{
     calibration::{CalibratedMaterial, Calibration, ChannelErrors, MediumFacts, VERSION},
     cloud::{Cloud, shards},
 };
 use scene::{NormalKind, Rays, Scene};
-use sparse::Sparse;
-use std::{collections::BTreeMap, sync::Arc};
+use std::sync::Arc;
 use sums::{Summation, estimator::Scatterer};
 use surface::Surface;
-use tally::{Tally, Walking};
+use tally::Walking;
 use walks::Solid;
 
 /// What is calibrated, and how.
@@ -146,19 +145,20 @@ fn calibrate_material(
     let dark = || CalibrateError::Dark { material: sampled.name.clone() };
     let surface = Surface::new(mesh, sampled.index, task.normals, POINTS << depth, task.seed);
     let sites = surface.sites();
-    let (patches, patch_of) = Patches::new(&sites, surface.area, depth);
+    let (patches, cell_of) = Patches::new(&sites, surface.area, depth);
     let scatterer = Arc::new(Scatterer::new(task.model, medium, sampled.area_m2.sqrt()));
     let summation = Summation::of_clouds(scatterer, task.clouds, slot);
-    let light =
-        Light::new(&surface.light(&summation, task.seed, progress), &patch_of, &surface, medium.eta, patches.len());
+    let areas = surface.cell_areas(mesh, &patches, sampled.index, task.seed);
+    let sums = surface.light(&summation, task.seed, progress);
+    let light = Light::new(&sums, &cell_of, &areas, medium.eta);
     let is_translucent = |m: u16| shards::materials(task.clouds).iter().any(|s| s.index == m);
     let solid = Solid::new(mesh, task.rays, sampled.index, is_translucent).ok_or_else(dark)?;
     let entries = Entries::new(task.clouds, slot, medium.eta);
     let walking =
         Walking { mesh, solid: &solid, entries: &entries, patches: &patches, eta: medium.eta, seed: task.seed, slot };
-    let smoothness = Smoothness::new(&patches, interpolation(&patches, &sites, &patch_of));
-    let mut log_factors = vec![[0.0f32; 3]; patches.len()];
-    let mut gradients = vec![[[0.0f32; 3]; 3]; patches.len()];
+    let smoothness = Smoothness::new(&patches, &sites, &cell_of);
+    let mut log_factors = vec![[0.0f32; 3]; patches.count()];
+    let mut gradients = vec![[[0.0f32; 3]; 3]; patches.count()];
     let mut lobe = task.model.exit_lobe(medium);
     let mut errors = [ChannelErrors::default(); 3];
     for channel in 0..3 {
@@ -167,18 +167,15 @@ fn calibrate_material(
         if share > HOLES {
             return Err(CalibrateError::Open { material: sampled.name.clone(), share: 100.0 * share });
         }
-        let Some(counts) = counts(&tally, entries.power(channel), &light.power[channel]) else {
+        let Some(counted) = tally.counted(entries.power(channel), &light.power[channel]) else {
             continue;
         };
+        let counts = counted.at_patches(&patches);
         let fit = smoothness.fit(&counts);
         lobe[channel] = exit_lobe(medium.eta, tally.cosines / tally.sum());
-        errors[channel] = channel_errors(&smoothness, &light, channel, &counts, &fit);
-        let leaving = smoothness
-            .at_patches(&fit.both)
-            .iter()
-            .zip(light.radiance(channel))
-            .map(|(f, l)| f + l.ln())
-            .collect::<Vec<_>>();
+        errors[channel] = channel_errors(&smoothness, &patches, &light, channel, &counted, &fit);
+        let fitted = smoothness.at_patches(&fit.both);
+        let leaving: Vec<f64> = fitted.iter().zip(&counts.model).map(|(f, m)| f + m.ln()).collect();
         for (gradient, fitted) in gradients.iter_mut().zip(patches.gradient(&leaving)) {
             gradient[channel] = fitted.as_vec3().to_array();
         }
@@ -194,34 +191,6 @@ fn calibrate_material(
         errors,
         surface: patches.facts(&log_factors, &gradients),
     })
-}
-
-/// The mean weights of [`Patches::weights`] over the sites of each patch.
-fn interpolation(patches: &Patches, sites: &[Site], patch_of: &[u32]) -> Sparse {
-    let mut rows: Vec<BTreeMap<u32, f64>> = vec![BTreeMap::new(); patches.len()];
-    let mut counts = vec![0.0f64; patches.len()];
-    for (site, patch) in sites.iter().zip(patch_of) {
-        counts[*patch as usize] += 1.0;
-        patches.weights(site, |j, weight| *rows[*patch as usize].entry(j).or_default() += weight);
-    }
-    let mean = |(row, count): (BTreeMap<u32, f64>, &f64)| row.into_iter().map(|(j, w)| (j, w / count)).collect();
-    Sparse(rows.into_iter().zip(&counts).map(mean).collect())
-}
-
-/// The counts of a tally; none if nothing leaves, or the model says so.
-///
-/// Weights of walks are not counts: as many counts of one mean weight `Σw²/Σw` have the same sum and variance.
-fn counts(tally: &Tally, power: f64, model: &[f64]) -> Option<Counts> {
-    let sum = tally.sum();
-    let unit = tally.squares / sum;
-    // Each half has half of the walks.
-    let scale = 2.0 * power / tally.walks as f64 * unit;
-    let usable = sum > 0.0 && scale > 0.0 && model.iter().any(|m| *m > 0.0);
-    let counts = Counts {
-        model: model.iter().map(|m| m / scale).collect(),
-        halves: [0, 1].map(|half| tally.weights[half].iter().map(|w| w / unit).collect()),
-    };
-    usable.then_some(counts)
 }
 
 fn facts(medium: &Medium) -> MediumFacts {

@@ -1,7 +1,8 @@
-//! Walks from the samples of a cloud to the patches that they leave through.
+//! Walks from the samples of a cloud to the cells of the surface that they leave through.
 
 use crate::{
     entries::Entries,
+    fit::Counts,
     patches::{Patches, Site},
 };
 use bssrdf::Coefficients;
@@ -24,12 +25,12 @@ pub struct Walking<'a> {
     pub slot: usize,
 }
 
-/// The light of one channel that leaves each patch, in weights of walks.
+/// The light of one channel that leaves each cell, in weights of walks.
 #[derive(Clone, Debug, Default)]
 pub struct Tally {
     /// Walks that were begun.
     pub walks: u64,
-    /// For each half of the walks, the sum of the weights that leave each patch.
+    /// For each half of the walks, the sum of the weights that leave each cell.
     pub weights: [Vec<f64>; 2],
     /// The sum of the squared weights, and of the weights times the cosine outside.
     pub squares: f64,
@@ -51,9 +52,46 @@ impl Tally {
     pub fn sum(&self) -> f64 {
         self.weights.iter().flatten().sum()
     }
+
+    /// The tally as counts, and the `power` of the model, W, in the same unit; none if nothing leaves, or the model says
+    /// so. `entering` is the power that enters, W.
+    ///
+    /// Weights of walks are not counts: as many counts of one mean weight `Σw²/Σw` have the same sum and variance.
+    pub fn counted(&self, entering: f64, power: &[f64]) -> Option<Counted> {
+        let sum = self.sum();
+        let unit = self.squares / sum;
+        // Each half has half of the walks.
+        let watts = 2.0 * entering / self.walks as f64 * unit;
+        let usable = sum > 0.0 && watts > 0.0 && power.iter().any(|m| *m > 0.0);
+        let counted = Counted {
+            model: power.iter().map(|m| m / watts).collect(),
+            halves: [0, 1].map(|half| self.weights[half].iter().map(|w| w / unit).collect()),
+        };
+        usable.then_some(counted)
+    }
 }
 
-/// Where a walk left: patch, weight, cosine outside.
+/// Counts of walks at each cell.
+pub struct Counted {
+    /// What the model predicts for each half of the walks.
+    pub model: Vec<f64>,
+    /// What left in each half of the walks.
+    pub halves: [Vec<f64>; 2],
+}
+
+impl Counted {
+    /// The same at each patch.
+    pub fn at_patches(&self, patches: &Patches) -> Counts {
+        let sum = |cells: &Vec<f64>| {
+            let mut sums = vec![0.0; patches.count()];
+            cells.iter().enumerate().for_each(|(cell, n)| sums[patches.patch_of_cell(cell as u32) as usize] += n);
+            sums
+        };
+        Counts { model: sum(&self.model), halves: [0, 1].map(|half| sum(&self.halves[half])) }
+    }
+}
+
+/// Where a walk left: cell, weight, cosine outside.
 type Left = (u32, f64, f64);
 
 #[derive(Default)]
@@ -73,7 +111,7 @@ impl Walking<'_> {
         count: u64,
         progress: impl Fn(u64) + Sync,
     ) -> Tally {
-        let none = || vec![0.0; self.patches.len()];
+        let none = || vec![0.0; self.patches.cells()];
         let mut tally = Tally { walks: count, weights: [none(), none()], ..Tally::default() };
         let Some(matter) = Matter::new(coefficients, self.eta) else {
             return tally;
@@ -88,8 +126,8 @@ impl Walking<'_> {
         let chunks: Vec<Chunk> = (0..count.div_ceil(CHUNK)).into_par_iter().map(chunk).collect();
         for chunk in chunks {
             for (half, left) in chunk.left.iter().enumerate() {
-                for (patch, weight, cosine) in left {
-                    tally.weights[half][*patch as usize] += weight;
+                for (cell, weight, cosine) in left {
+                    tally.weights[half][*cell as usize] += weight;
                     tally.squares += weight * weight;
                     tally.cosines += weight * cosine;
                 }
@@ -120,8 +158,8 @@ impl Walking<'_> {
             match walk(self.solid, matter, &start, &mut random, |_, _| ()) {
                 End::Scattered(exit) => {
                     let point = self.mesh.point(exit.face, [1.0, 0.0, 0.0], NormalKind::Geometric);
-                    let patch = self.patches.patch(&Site { position: exit.position, normal: point.geometric_normal });
-                    chunk.left[index as usize % 2].push((patch, exit.weight, exit.cosine));
+                    let cell = self.patches.cell(&Site { position: exit.position, normal: point.geometric_normal });
+                    chunk.left[index as usize % 2].push((cell, exit.weight, exit.cosine));
                 }
                 End::Unscattered(_) => chunk.unscattered += 1,
                 End::Opaque => chunk.opaque += 1,

@@ -30,6 +30,8 @@ pub enum Purpose {
     CameraWalk,
     /// Points of the surface where a calibration compares the model with random walks.
     CalibrationPoint,
+    /// More points of the surface, which measure its parts.
+    CalibrationArea,
     /// The sums over the cloud at these points.
     CalibrationSum,
     /// The bits below those of one of these sequences.
@@ -52,6 +54,7 @@ impl Purpose {
             Purpose::CameraWalk => u64::MAX - 3,
             Purpose::CalibrationPoint => u64::MAX - 4,
             Purpose::CalibrationSum => u64::MAX - 5,
+            Purpose::CalibrationArea => u64::MAX - 6,
             Purpose::Remainder(k) => 7 + k,
         }
     }
