@@ -24,6 +24,8 @@ pub enum Purpose {
     Bounce,
     /// The shards that the paths of a pixel gather from.
     ShardPick,
+    /// Random walks behind the table of the half-space model.
+    HalfSpaceTable,
     /// The bits below those of one of these sequences.
     Remainder(u64),
 }
@@ -40,6 +42,7 @@ impl Purpose {
             Purpose::Calibration => 6,
             Purpose::Bounce => u64::MAX,
             Purpose::ShardPick => u64::MAX - 1,
+            Purpose::HalfSpaceTable => u64::MAX - 3,
             Purpose::Remainder(k) => 7 + k,
         }
     }

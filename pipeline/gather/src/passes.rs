@@ -221,6 +221,7 @@ fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<Translucent
         let scatterer = Arc::new(Scatterer::new(settings.model, medium, sampled.area_m2.sqrt()));
         objects[sampled.index as usize] = Some(TranslucentObject {
             unscattered: settings.model.unscattered_extinction(medium),
+            lobe: settings.model.exit_lobe(medium),
             summation: Summation::of_clouds(scatterer, input.clouds, slot),
             medium: medium.clone(),
         });

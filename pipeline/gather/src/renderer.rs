@@ -6,7 +6,7 @@ use crate::{
 };
 use bsdf::Surface;
 use bssrdf::Medium;
-use scene::{light::LightTree, random::Stream};
+use scene::{DVec3, light::LightTree, random::Stream};
 use std::ops::Range;
 use sums::Summation;
 
@@ -35,6 +35,8 @@ pub struct TranslucentObject<'a> {
     pub medium: Medium,
     /// Extinction `σ̃_t` of unscattered light, 1/m (docs/method.md 5.11).
     pub unscattered: [f64; 3],
+    /// `a` and `b` of the light that leaves in proportion to `T21 (a + b μ)`, for each channel (docs/method.md 14.8).
+    pub lobe: [[f64; 2]; 3],
     pub summation: Summation<'a>,
 }
 
@@ -42,6 +44,11 @@ impl TranslucentObject<'_> {
     /// What happens to light at its surface.
     pub fn surface(&self) -> Surface {
         Surface::dielectric(self.medium.eta)
+    }
+
+    /// The factors `a + b μ` of the channels for a view whose cosine outside is `cosine`.
+    pub fn exit_lobe(&self, cosine: f64) -> DVec3 {
+        DVec3::from_array(self.lobe.map(|[a, b]| a + b * cosine))
     }
 
     /// True if no scattered light leaves it.

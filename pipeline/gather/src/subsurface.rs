@@ -4,7 +4,8 @@ use crate::{
     path_state::{Layer, PathLight, PathState, ThreadContext},
     renderer::{Renderer, TranslucentObject},
 };
-use scene::{DVec3, SurfacePoint};
+use bsdf::View;
+use scene::SurfacePoint;
 use sums::{estimator::Estimator, samples::Exit};
 
 /// The largest relative error that is asked of one sum. Above it, the cut does not predict its own error.
@@ -12,20 +13,22 @@ const MAX_ERROR: f64 = 0.5;
 
 impl Renderer<'_> {
     /// `note: [reflectance]` Adds `L_r` at an exitant point: the mean over all drawn samples (docs/method.md 6.7), or
-    /// over those of the half and shard that this path gathers from.
+    /// over those of the half and shard that this path gathers from. `view` is that of the eye, by whose angle the
+    /// exit lobe of the model varies.
     pub(crate) fn gather(
         &self,
         state: &PathState,
         object: &TranslucentObject,
         point: &SurfacePoint,
-        normal: DVec3,
+        view: &View,
         light: &mut PathLight,
         context: &mut ThreadContext,
     ) {
         if object.is_dark() {
             return;
         }
-        let exit = |half: usize| Exit::new(point.position, normal, state.key.bits(2 * state.dimension + half as u64));
+        let exit =
+            |half: usize| Exit::new(point.position, view.normal, state.key.bits(2 * state.dimension + half as u64));
         let estimator = self.estimator_for(state.throughput.max_element());
         let scratch = &mut context.scratch[point.material as usize];
         let leaving = if self.gathers_by_shard() {
@@ -36,7 +39,8 @@ impl Renderer<'_> {
         context.counts.gathers += 1;
         context.counts.evaluations += leaving.evaluations;
         context.counts.nodes += leaving.nodes;
-        light.add_halves(state, Layer::Subsurface, leaving.radiance, leaving.halves);
+        let lobe = object.exit_lobe(view.normal.dot(view.direction));
+        light.add_halves(state, Layer::Subsurface, lobe * leaving.radiance, leaving.halves.map(|half| lobe * half));
     }
 
     /// Whether each path of a pixel gathers from one half of one shard, round-robin, instead of from all samples.

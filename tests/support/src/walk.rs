@@ -105,6 +105,29 @@ fn walk(matter: &Matter, thickness: f64, cosine: f64, random: &mut Random) -> En
     }
 }
 
+/// Where light that entered a half-space along `refracted` leaves it scattered: the offset along the surface; none if
+/// it is absorbed. The normal is Z.
+pub fn exit(matter: &Matter, refracted: DVec3, random: &mut Random) -> Option<DVec3> {
+    let (mut position, mut direction, mut scattered) = (DVec3::ZERO, refracted, false);
+    loop {
+        position += direction * free_path(random);
+        if position.z > 0.0 {
+            // The walk continues at the boundary: free paths have no memory.
+            position -= direction * (position.z / direction.z);
+            if random.uniform() < fresnel::transmittance(direction.z, 1.0 / matter.eta) {
+                return scattered.then_some(position);
+            }
+            direction.z = -direction.z;
+            continue;
+        }
+        if random.uniform() >= matter.albedo {
+            return None;
+        }
+        direction = scatter(direction, matter.asymmetry, random);
+        scattered = true;
+    }
+}
+
 /// Exponential with mean 1.
 pub fn free_path(random: &mut Random) -> f64 {
     -(1.0 - random.uniform()).ln()
