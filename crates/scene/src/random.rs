@@ -34,6 +34,8 @@ pub enum Purpose {
     CalibrationArea,
     /// The sums over the cloud at these points.
     CalibrationSum,
+    /// Random walks behind the table of the half-space model.
+    HalfSpaceTable,
     /// The bits below those of one of these sequences.
     Remainder(u64),
 }
@@ -51,10 +53,11 @@ impl Purpose {
             Purpose::Bounce => u64::MAX,
             Purpose::ShardPick => u64::MAX - 1,
             Purpose::LightWalk => u64::MAX - 2,
-            Purpose::CameraWalk => u64::MAX - 3,
+            Purpose::CameraWalk => u64::MAX - 7,
             Purpose::CalibrationPoint => u64::MAX - 4,
             Purpose::CalibrationSum => u64::MAX - 5,
             Purpose::CalibrationArea => u64::MAX - 6,
+            Purpose::HalfSpaceTable => u64::MAX - 3,
             Purpose::Remainder(k) => 7 + k,
         }
     }

@@ -222,9 +222,9 @@ fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<Translucent
         let scatterer = Arc::new(Scatterer::new(settings.model, medium, sampled.area_m2.sqrt()));
         let factors = input.calibration.map(|c| Factors::new(&c.materials[slot]));
         objects[sampled.index as usize] = Some(TranslucentObject {
-            lobe: settings.model.exit_lobe(medium),
             factors,
             unscattered: settings.model.unscattered_extinction(medium),
+            lobe: settings.model.exit_lobe(medium),
             summation: Summation::of_clouds(scatterer, input.clouds, slot),
             medium: medium.clone(),
         });

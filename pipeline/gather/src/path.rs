@@ -202,7 +202,7 @@ impl Renderer<'_> {
         }
         let emission = self.input.scene.materials[point.material as usize].emission;
         trace.light.add(state, Layer::Emission, emission);
-        self.gather(state, object, point, meeting.view.normal, &mut trace.light, context);
+        self.gather(state, object, point, &meeting.view, &mut trace.light, context);
         state.inside = Some(point.material);
         // If only the interpolated normal lets light through, the path ends here.
         meeting.scatter(state, Lobe::Transmission, Layer::Transmission, &mut context.counts)

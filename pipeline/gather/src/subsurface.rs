@@ -4,6 +4,7 @@ use crate::{
     path_state::{Layer, PathLight, PathState, ThreadContext},
     renderer::{Renderer, TranslucentObject},
 };
+use bsdf::View;
 use calibration::Site;
 use scene::{DVec3, SurfacePoint};
 use sums::{estimator::Estimator, samples::Exit};
@@ -12,32 +13,36 @@ use sums::{estimator::Estimator, samples::Exit};
 const MAX_ERROR: f64 = 0.5;
 
 impl TranslucentObject<'_> {
-    /// The factor of the light that leaves at a point towards `view`: the exit lobe or, if the object is calibrated, the
+    /// The factor of the light that leaves at a point for the eye's `view`: the exit lobe or, if the object is calibrated, the
     /// factor of its surface.
-    fn factor(&self, point: &SurfacePoint, normal: DVec3, view: DVec3) -> DVec3 {
+    fn factor(&self, point: &SurfacePoint, view: &View) -> DVec3 {
         match &self.factors {
-            None => DVec3::from_array(self.lobe.map(|[a, b]| a + b * normal.dot(view))),
-            Some(factors) => factors.at(&Site { position: point.position, normal: point.geometric_normal }, view),
+            None => self.exit_lobe(view.normal.dot(view.direction)),
+            Some(factors) => {
+                factors.at(&Site { position: point.position, normal: point.geometric_normal }, view.direction)
+            }
         }
     }
 }
 
 impl Renderer<'_> {
     /// `note: [reflectance]` Adds `L_r` at an exitant point: the mean over all drawn samples (docs/method.md 6.7), or
-    /// over those of the half and shard that this path gathers from.
+    /// over those of the half and shard that this path gathers from. `view` is that of the eye, by whose angle the
+    /// exit lobe of the model varies.
     pub(crate) fn gather(
         &self,
         state: &PathState,
         object: &TranslucentObject,
         point: &SurfacePoint,
-        normal: DVec3,
+        view: &View,
         light: &mut PathLight,
         context: &mut ThreadContext,
     ) {
         if object.is_dark() {
             return;
         }
-        let exit = |half: usize| Exit::new(point.position, normal, state.key.bits(2 * state.dimension + half as u64));
+        let exit =
+            |half: usize| Exit::new(point.position, view.normal, state.key.bits(2 * state.dimension + half as u64));
         let estimator = self.estimator_for(state.throughput.max_element());
         let scratch = &mut context.scratch[point.material as usize];
         let mut leaving = if self.gathers_by_shard() {
@@ -45,7 +50,7 @@ impl Renderer<'_> {
         } else {
             object.summation.whole(estimator, exit, scratch)
         };
-        let factor = object.factor(point, normal, -state.direction);
+        let factor = object.factor(point, view);
         leaving.radiance *= factor;
         leaving.halves.iter_mut().for_each(|half| *half *= factor);
         context.counts.gathers += 1;
