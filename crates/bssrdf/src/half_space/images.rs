@@ -35,6 +35,7 @@ impl Images {
     /// The exitance over `α'` (docs/method.md 15.3, 15.4) at the squared distance `r2`, of which `along = x_t·ω12` along
     /// the surface and `depth` below it; `cosine` is `μ12`.
     pub fn exitance(&self, r2: f64, along: f64, depth: f64, cosine: f64) -> f64 {
+        let depth = saturated(depth);
         let real2 = r2 + 1.0 - 2.0 * (along + depth * cosine) + SOFTNESS2;
         let delta2 = 4.0 * (depth + self.extrapolation) * (cosine + self.extrapolation);
         let (real, mirrored) = (real2.sqrt(), (real2 + delta2).sqrt());
@@ -43,6 +44,12 @@ impl Images {
         // e^{−κ d_r}/d_r − e^{−κ d_v}/d_v without cancellation
         self.strength * (-self.transport * real).exp() * (delta / real - (-q).exp_m1()) / mirrored
     }
+}
+
+/// `z̃ = z/(1 + z)`: the depth below the tangent plane counts in full near it, as at a crease, and as one mean free path
+/// far from it, because there the surface ends the object.
+fn saturated(depth: f64) -> f64 {
+    depth / (1.0 + depth)
 }
 
 /// `−log₂(1.01 − w)`, by powers of which the light is stronger in the direction of the beam, `w` being the cosine to it
