@@ -26,8 +26,6 @@ pub enum Purpose {
     ShardPick,
     /// Random walks that light begins.
     LightWalk,
-    /// Random walks that camera paths begin.
-    CameraWalk,
     /// The bits below those of one of these sequences.
     Remainder(u64),
 }
@@ -45,7 +43,6 @@ impl Purpose {
             Purpose::Bounce => u64::MAX,
             Purpose::ShardPick => u64::MAX - 1,
             Purpose::LightWalk => u64::MAX - 2,
-            Purpose::CameraWalk => u64::MAX - 3,
             Purpose::Remainder(k) => 7 + k,
         }
     }

@@ -87,6 +87,7 @@ fn settings(request: &Request, viewpoint: &Viewpoint) -> Result<Settings, Failur
         filter: request.filter,
         estimator: request.estimator,
         model: request.model,
+        reference: request.reference,
         normals: cli::normal_kind(request.scene.how.normals),
         max_depth: request.max_depth,
         seed: request.common.seed,

@@ -82,6 +82,7 @@ fn render_image(
     })?;
     inputs.cloud_files.check_unchanged()?;
     let facts = Facts::new(request, inputs, job, &rendered);
+    summary::check_walks(&facts)?;
     outputs::write(&facts, output, seconds)?;
     summary::show(&facts)
 }

@@ -2,6 +2,7 @@
 
 use crate::{
     image::{Input, Settings},
+    reference::Walks,
     shards::DrawnCounts,
 };
 use bsdf::Surface;
@@ -23,6 +24,8 @@ pub struct Renderer<'a> {
     pub paths_per_pixel: u32,
     /// Paths of each pixel that the current pass adds.
     pub pass: Range<u32>,
+    /// Whether random walks can meet light where they leave.
+    pub meets_light: bool,
     /// Distance beyond a surface at which a ray continues that crosses it straight, m.
     pub clearance: f64,
     pub paths: Stream,
@@ -36,6 +39,8 @@ pub struct TranslucentObject<'a> {
     /// Extinction `σ̃_t` of unscattered light, 1/m (docs/method.md 5.11).
     pub unscattered: [f64; 3],
     pub summation: Summation<'a>,
+    /// Random walks, if they take the place of the summation.
+    pub walks: Option<Walks<'a>>,
 }
 
 impl TranslucentObject<'_> {
@@ -46,6 +51,6 @@ impl TranslucentObject<'_> {
 
     /// True if no scattered light leaves it.
     pub fn is_dark(&self) -> bool {
-        self.medium.is_clear() || self.summation.is_empty()
+        self.medium.is_clear() || self.walks.is_none() && self.summation.is_empty()
     }
 }
