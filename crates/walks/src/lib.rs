@@ -28,17 +28,23 @@
 //! assert!((reflected / 10_000.0 - 0.415).abs() < 0.02);
 //! ```
 
+mod beams;
+mod cells;
 mod clearance;
+mod connect;
 mod domain;
 mod matter;
 mod phase;
 mod random;
+mod refraction;
 mod solid;
 mod walk;
 
+pub use beams::{Arrival, Beams};
+pub use connect::Connections;
 pub use domain::{Crossing, Domain, Flight, Slab};
 pub use matter::Matter;
 pub use phase::{density, scatter};
 pub use random::Sequence;
 pub use solid::Solid;
-pub use walk::{Collision, End, Exit, MAX_REFLECTIONS, Start, walk};
+pub use walk::{Collision, End, Exit, MAX_REFLECTIONS, Observer, Start, observed_walk, walk};

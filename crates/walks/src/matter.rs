@@ -23,12 +23,18 @@ pub struct Matter {
     pub jump_from: f64,
     /// What a jump leaves of the clearance, m.
     pub jump_gap: f64,
+    /// The collisions inside the ball of a jump without absorption, over the square of its radius, 1/m²
+    /// (docs/method.md 14.7).
+    pub jump_collisions: f64,
 }
 
 /// Walks jump where the next boundary is at least this many reduced mean free paths away, and end a jump this many
 /// before it. At 5 and 3 no bias was seen at 0.1 % (`tests/jumps.rs`).
 const JUMP_FROM: f64 = 5.0;
 const JUMP_GAP: f64 = 3.0;
+
+/// [`JUMP_GAP`] of walks that are connected to lights.
+const CONNECTED_GAP: f64 = 6.0;
 
 /// Where the reduced albedo is less, walks are short, and light does not become diffuse within the gap.
 const JUMP_ALBEDO: f64 = 0.8;
@@ -41,6 +47,10 @@ impl Matter {
             return None;
         }
         let albedo = coefficients.sigma_s / extinction;
+        let decay = extinction * relative_decay(albedo, coefficients.asymmetry);
+        // D = σ_a/κ², whose limit without absorption is 1/(3σ_t').
+        let diffusion =
+            if decay > 1e-6 * extinction { coefficients.sigma_a / (decay * decay) } else { coefficients.diffusion() };
         let reduced_mean_free_path = 1.0 / coefficients.reduced_extinction();
         let jumps = coefficients.reduced_albedo() >= JUMP_ALBEDO;
         // Where light is scattered back, the memory of a boundary is lost over mean free paths that are not reduced.
@@ -52,10 +62,19 @@ impl Matter {
             asymmetry: coefficients.asymmetry,
             eta,
             reduced_mean_free_path,
-            decay: extinction * relative_decay(albedo, coefficients.asymmetry),
+            decay,
             jump_from: if jumps { JUMP_FROM * memory } else { f64::INFINITY },
             jump_gap: JUMP_GAP * memory,
+            jump_collisions: coefficients.sigma_s / (6.0 * diffusion),
         })
+    }
+
+    /// The same for walks that are connected to lights at their collisions: their jumps keep away from the boundary,
+    /// where the light is.
+    pub fn with_connections(self) -> Matter {
+        let scale = CONNECTED_GAP / JUMP_GAP;
+        let jump_from = self.jump_from + self.jump_gap * (scale - 1.0);
+        Matter { jump_from, jump_gap: self.jump_gap * scale, ..self }
     }
 
     /// The same without jumps: every collision is simulated.

@@ -13,7 +13,12 @@ pub struct Sequence {
 impl Sequence {
     /// The sequence of one item (a walk) of a stream.
     pub fn new(item: Item) -> Sequence {
-        Sequence { state: item.bits(0) }
+        Sequence::of_dimension(item, 0)
+    }
+
+    /// The sequence that starts at one dimension of an item.
+    pub fn of_dimension(item: Item, dimension: u64) -> Sequence {
+        Sequence { state: item.bits(dimension) }
     }
 
     /// The next uniform number in [0, 1).

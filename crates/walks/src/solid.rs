@@ -62,6 +62,32 @@ impl<'a> Solid<'a> {
         Some(Solid { mesh, rays, kinds, clearance, bounds, nudge: NUDGE * mesh.diagonal() })
     }
 
+    pub fn mesh(&self) -> &'a Mesh {
+        self.mesh
+    }
+
+    /// The box around the boundary, m.
+    pub fn bounds(&self) -> [DVec3; 2] {
+        self.bounds
+    }
+
+    /// The triangles of the boundary.
+    pub fn triangles(&self) -> impl Iterator<Item = u32> + '_ {
+        (0..self.mesh.triangles.len() as u32).filter(|k| self.kind(*k) == Kind::Boundary)
+    }
+
+    /// Whether light passes straight from a point inside to the boundary at this distance, m.
+    pub(crate) fn is_clear(&self, position: DVec3, direction: DVec3, distance: f64, nesting: u32) -> bool {
+        let mut flight = Flight { position, direction, from: None, nesting };
+        self.rays.visible(position, direction, distance, None)
+            || matches!(self.crossing(&mut flight, distance * (1.0 - 1e-9)), Crossing::Free)
+    }
+
+    /// Whether a light is visible from a point of the boundary.
+    pub(crate) fn is_lit(&self, at: &SurfacePoint, direction: DVec3, distance: f64) -> bool {
+        self.rays.visible(at.position, direction, distance, Some(at.triangle))
+    }
+
     fn kind(&self, triangle: u32) -> Kind {
         self.kinds[usize::from(self.mesh.triangles[triangle as usize].material)]
     }

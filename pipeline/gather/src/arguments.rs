@@ -69,7 +69,12 @@ pub struct Arguments {
     #[arg(long, value_name = "RULE", default_value = "mixture", default_value_if("note", "true", "mean"),
         value_parser = one_of(&Rule::ALL, Rule::name))]
     pub roulette: Rule,
-    /// Camera paths per pixel; with --target-error, the largest number [default: 16; with --target-error 4096]
+    /// Follow random walks through the medium instead of a BSSRDF, exact but slow: the truth to compare images with. Of
+    /// CLOUD only its materials count
+    #[arg(long, conflicts_with_all = ["bssrdf", "estimator", "accuracy", "roulette"])]
+    pub reference: bool,
+    /// Camera paths per pixel; with --target-error, the largest number [default: 16, with --target-error 4096; with
+    /// --reference 64 and 65536]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_048_576))]
     pub spp: Option<u32>,
     /// Add paths until the image has this relative standard error, that of the cloud included: 95 of 100 images have an

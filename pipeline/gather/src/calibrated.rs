@@ -77,7 +77,8 @@ pub fn check_fit(request: &Request, lit: &LitScene, kept: &Calibration) -> Resul
 /// Calibrates in memory if the request leaves that to the program and the model is made for it. A scene that cannot be
 /// calibrated is rendered without, with a warning.
 pub fn make(request: &Request, lit: &LitScene, rays: &Rays, model: Model) -> Result<Option<Calibration>, Failure> {
-    let automatic = request.calibration == CalibrationSource::Automatic && model.is_for_calibration();
+    let automatic =
+        request.calibration == CalibrationSource::Automatic && model.is_for_calibration() && !request.reference;
     if !automatic || lit.media.iter().all(Medium::is_clear) {
         return Ok(None);
     }

@@ -34,7 +34,7 @@ const RANGE: (f64, f64) = (0.01, 8.0);
 
 /// Measures the correction of each object.
 pub fn correct(renderer: &mut Renderer) {
-    if renderer.estimator_for(1.0).accuracy().is_none() {
+    if renderer.settings.reference || renderer.estimator_for(1.0).accuracy().is_none() {
         return;
     }
     let stream = Stream::new(renderer.settings.seed, Purpose::CutCorrection);

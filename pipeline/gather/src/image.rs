@@ -53,6 +53,8 @@ pub struct Settings {
     pub filter: Filter,
     pub estimator: Estimator,
     pub model: Model,
+    /// Random walks take the place of the sum over the cloud.
+    pub reference: bool,
     pub normals: NormalKind,
     pub max_depth: u32,
     pub seed: u64,

@@ -87,6 +87,7 @@ fn settings(request: &Request, viewpoint: &Viewpoint, model: Model) -> Result<Se
         filter: request.filter,
         estimator: request.estimator,
         model,
+        reference: request.reference,
         normals: cli::normal_kind(request.scene.how.normals),
         max_depth: request.max_depth,
         seed: request.common.seed,

@@ -25,6 +25,7 @@
 //!     filter: Filter::Box,
 //!     estimator: Estimator::Exhaustive,
 //!     model: Model::DirectionalDipole,
+//!     reference: false,
 //!     normals: NormalKind::Shading,
 //!     max_depth: 16,
 //!     seed: 0,
@@ -46,6 +47,7 @@ mod passes;
 mod path;
 pub mod path_state;
 pub mod preview;
+mod reference;
 pub mod renderer;
 mod subsurface;
 

@@ -97,6 +97,7 @@ fn render_image(
     })?;
     inputs.cloud_files.check_unchanged()?;
     let facts = Facts::new(request, inputs, calibration, job, &rendered);
+    summary::check_walks(&facts)?;
     outputs::write(&facts, output, seconds)?;
     summary::show(&facts)
 }

@@ -8,6 +8,7 @@ use crate::{
     film::{Errors, Pixel, PixelSum},
     image::{Filter, Input, Rendered, Settings},
     path_state::{PathIndex, ThreadContext},
+    reference::{Walks, meets_light},
     renderer::{Renderer, TranslucentObject},
 };
 use calibration::Factors;
@@ -50,11 +51,13 @@ type Sums = (PixelSum, Option<Box<Edge>>);
 impl<'a> Passes<'a> {
     /// Prepares an image; the cut is as accurate as `settings.paths_per_pixel` paths need.
     pub fn new(input: &Input<'a>, settings: &Settings) -> Self {
+        let objects = objects(input, settings);
         let mut renderer = Renderer {
             input: *input,
+            meets_light: meets_light(input, |material| objects[material as usize].is_none()),
             settings: settings.clone(),
             lights: LightTree::new(input.scene.lights()),
-            objects: objects(input, settings),
+            objects,
             drawn: DrawnCounts::of(input.clouds),
             paths_per_pixel: settings.paths_per_pixel,
             pass: 0..settings.paths_per_pixel,
@@ -220,10 +223,13 @@ fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<Translucent
     let mut objects: Vec<Option<TranslucentObject>> = input.scene.materials.iter().map(|_| None).collect();
     for (slot, (sampled, medium)) in shards::materials(input.clouds).iter().zip(input.media).enumerate() {
         let scatterer = Arc::new(Scatterer::new(settings.model, medium, sampled.area_m2.sqrt()));
-        let factors = input.calibration.map(|c| Factors::new(&c.materials[slot]));
+        let is_translucent = |material| shards::materials(input.clouds).iter().any(|m| m.index == material);
+        let walks = settings.reference.then(|| Walks::new(input, sampled.index, medium, is_translucent));
+        let extinction = || medium.map(|c| c.extinction());
         objects[sampled.index as usize] = Some(TranslucentObject {
-            factors,
-            unscattered: settings.model.unscattered_extinction(medium),
+            unscattered: if settings.reference { extinction() } else { settings.model.unscattered_extinction(medium) },
+            walks: walks.flatten(),
+            factors: input.calibration.map(|c| Factors::new(&c.materials[slot])),
             lobe: settings.model.exit_lobe(medium),
             summation: Summation::of_clouds(scatterer, input.clouds, slot),
             medium: medium.clone(),

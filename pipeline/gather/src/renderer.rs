@@ -1,6 +1,9 @@
 //! The data that all camera paths of an image share: the scene, and translucent objects with their media and samples.
 
-use crate::image::{Input, Settings};
+use crate::{
+    image::{Input, Settings},
+    reference::Walks,
+};
 use bsdf::Surface;
 use bssrdf::Medium;
 use calibration::Factors;
@@ -21,6 +24,8 @@ pub struct Renderer<'a> {
     pub paths_per_pixel: u32,
     /// Paths of each pixel that the current pass adds.
     pub pass: Range<u32>,
+    /// Whether random walks can meet light where they leave.
+    pub meets_light: bool,
     /// Distance beyond a surface at which a ray continues that crosses it straight, m.
     pub clearance: f64,
     pub paths: Stream,
@@ -38,6 +43,8 @@ pub struct TranslucentObject<'a> {
     pub summation: Summation<'a>,
     /// The factors of its surface, if it is calibrated.
     pub factors: Option<Factors>,
+    /// Random walks, if they take the place of the summation.
+    pub walks: Option<Walks<'a>>,
 }
 
 impl TranslucentObject<'_> {
@@ -53,6 +60,6 @@ impl TranslucentObject<'_> {
 
     /// True if no scattered light leaves it.
     pub fn is_dark(&self) -> bool {
-        self.medium.is_clear() || self.summation.is_empty()
+        self.medium.is_clear() || self.walks.is_none() && self.summation.is_empty()
     }
 }

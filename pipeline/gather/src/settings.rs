@@ -46,6 +46,8 @@ pub struct Request {
     pub model: Option<Model>,
     pub calibration: CalibrationSource,
     pub estimator: Estimator,
+    /// Random walks instead of model and estimator.
+    pub reference: bool,
     /// Paths per pixel; with a target error, the largest number.
     pub paths: u32,
     pub target_error: Option<f64>,
@@ -86,6 +88,10 @@ pub struct Outputs {
 const PATHS: u32 = 16;
 const MAX_PATHS: u32 = 4096;
 
+/// Their defaults for random walks, whose paths are noisier.
+const REFERENCE_PATHS: u32 = 64;
+const MAX_REFERENCE_PATHS: u32 = 65536;
+
 impl Task {
     /// The task that the arguments describe.
     pub fn of(mut arguments: Arguments) -> Result<Task, Failure> {
@@ -117,7 +123,12 @@ impl Task {
 }
 
 fn request(arguments: Arguments, scene: PathBuf, image: PathBuf) -> Result<Request, Failure> {
-    let paths = if arguments.target_error.is_some() { MAX_PATHS } else { PATHS };
+    let paths = match (arguments.target_error.is_some(), arguments.reference) {
+        (false, false) => PATHS,
+        (true, false) => MAX_PATHS,
+        (false, true) => REFERENCE_PATHS,
+        (true, true) => MAX_REFERENCE_PATHS,
+    };
     Ok(Request {
         estimator: estimator(&arguments)?,
         clouds: arguments.files,
@@ -129,6 +140,7 @@ fn request(arguments: Arguments, scene: PathBuf, image: PathBuf) -> Result<Reque
         media: arguments.medium,
         model: arguments.bssrdf,
         calibration: calibration(arguments.calibration),
+        reference: arguments.reference,
         paths: arguments.spp.unwrap_or(paths),
         target_error: arguments.target_error,
         filter: arguments.filter,

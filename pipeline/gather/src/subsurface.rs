@@ -41,6 +41,9 @@ impl Renderer<'_> {
         if object.is_dark() {
             return;
         }
+        if let Some(walks) = &object.walks {
+            return self.walk(state, walks, point, view.normal, light, context);
+        }
         let exit =
             |half: usize| Exit::new(point.position, view.normal, state.key.bits(2 * state.dimension + half as u64));
         let estimator = self.estimator_for(state.throughput.max_element());
