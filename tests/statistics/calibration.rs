@@ -1,7 +1,7 @@
 //! The calibrated light of whole objects against what must leave them.
 //!
-//! Seen to catch: walks that leave without a collision counted; no Fresnel reflection inside; a patch found by position
-//! alone, so that the light of a thin sheet is on its wrong side; the area of cells taken as equal.
+//! Seen to catch: walks that leave without a collision counted; a patch found by position alone, so that the light of a
+//! thin sheet is on its wrong side; the areas of cells taken as equal. The walks themselves are tested in `crates/walks`.
 
 use bssrdf::{DVec3, Medium, Model, fresnel};
 use calibration::{Factors, Site, Task, calibrate};
