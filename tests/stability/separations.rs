@@ -6,7 +6,10 @@ use crate::evaluate::{along_plane, assert_close, assert_is, bare, gather, onto_p
 use bssrdf::{Exitant, Medium, Model, Separation, fresnel};
 use glam::DVec3;
 use std::f64::consts::PI;
-use test_support::{pipeline::gray, random::Random};
+use test_support::{
+    pipeline::{MODELS, gray},
+    random::Random,
+};
 
 /// α' = 0.9.
 fn medium() -> Medium {
@@ -170,7 +173,7 @@ fn light_and_viewer_below_the_surface() {
         }
     }
     let behind = Exitant { direction: DVec3::NEG_Z, ..out_of_plane(1.0) };
-    for model in [Model::DirectionalDipole, Model::BetterDipole, Model::StandardDipole] {
+    for model in MODELS {
         let values = bssrdf::evaluate(&*model.of(&medium()), 1.3, 0, &onto_plane(DVec3::Z), &behind);
         assert!(values.full == 0.0 && values.gather > 0.0);
     }

@@ -8,7 +8,7 @@ use super::{
     boundary::critical_cosine,
     images::{Images, forwardness},
     layout::{FIRST, UNIT},
-    table::Corrections,
+    table::{Corrections, forward_ratio},
 };
 
 /// Steps of the squared distance for each doubling: as many as the mantissa of a float32 has values of its first bits.
@@ -29,16 +29,18 @@ pub struct Profile {
     pub images: Images,
     /// The terms of each step in pairs of 16 bits: `c₀` above `c₁`, then `c₂` above `p`, in units of [`UNIT`].
     pub words: Box<[u32; WORDS]>,
-    /// The coefficients of `m³` and `m⁴`.
-    pub high: [f64; 2],
+    /// The coefficients of `m⁰` to `m⁴` that hold at any distance.
+    pub constant: [f64; 5],
     /// `m = scale μ12 + shift`.
     pub place: [f64; 2],
 }
 
 impl Profile {
     /// The profile for an absorbed share `1 − α'` of each collision.
-    pub fn new(absorbed: f64, eta: f64) -> Profile {
+    pub fn new(absorbed: f64, asymmetry: f64, eta: f64) -> Profile {
         let corrections = Corrections::new(absorbed, eta);
+        let [a, b, c] = forward_ratio(absorbed, asymmetry, eta);
+        let [d, e] = corrections.high;
         let mut words = Box::new([0; WORDS]);
         let steps = (FARTHEST2.to_bits() >> SHIFT) - START + 1;
         for step in 0..steps {
@@ -53,7 +55,12 @@ impl Profile {
         }
         let critical = critical_cosine(eta);
         let scale = 1.0 / (1.0 - critical);
-        Profile { images: Images::new(absorbed, eta), words, high: corrections.high, place: [scale, -critical * scale] }
+        Profile {
+            images: Images::new(absorbed, eta),
+            words,
+            constant: [a, b, c, d, e],
+            place: [scale, -critical * scale],
+        }
     }
 
     /// The exitance over `α'` (docs/method.md 14.6) of a place on the surface, per unit of power that entered.
@@ -69,7 +76,8 @@ impl Profile {
                 [high >> 16, high & 0xFFFF, low >> 16, low & 0xFFFF].map(|word| f64::from(word as u16 as i16));
             a + m * (b + m * c) + d * forward
         };
-        let exponent = (at(step) * (1.0 - t) + at(step + 1) * t) * UNIT + m * m * m * (self.high[0] + m * self.high[1]);
+        let exponent = (at(step) * (1.0 - t) + at(step + 1) * t) * UNIT;
+        let exponent = self.constant.iter().rev().fold(0.0, |sum, c| sum * m + c) + exponent;
         self.images.exitance(place.r2, place.along, place.depth, place.cosine) * exponent.exp2()
     }
 }

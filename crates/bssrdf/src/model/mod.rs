@@ -30,12 +30,12 @@ use crate::{
 pub enum Model {
     /// Frisvad, Hachisuka, Kjeldsen 2014.
     DirectionalDipole,
-    /// Ours: exact on a half-space, from random walks.
-    HalfSpace,
     /// d'Eon 2012.
     BetterDipole,
     /// Jensen, Marschner, Levoy, Hanrahan 2001.
     StandardDipole,
+    /// Ours: exact on a half-space, from random walks.
+    HalfSpace,
 }
 
 impl Model {
