@@ -30,7 +30,9 @@ fn exit_point_exactly_at_a_sample() {
     let at = gather(&medium, &light, &out_of_plane(0.0));
     assert_close(&at, 1e-5);
     for (at, near) in at.iter().zip(gather(&medium, &light, &out_of_plane(1e-9))) {
-        assert_is("beside the sample", near.exact, at.exact, 1e-7);
+        // The azimuth of the half-space model turns within 5·10⁻⁴ mean free paths.
+        let tolerance = if at.model == Model::HalfSpace { 1e-5 } else { 1e-7 };
+        assert_is("beside the sample", near.exact, at.exact, tolerance);
     }
     let transport = 0.3f64.sqrt();
     let source = |z: f64| (1.0 + transport * z) * (-transport * z).exp() / (z * z);

@@ -69,13 +69,20 @@ fn reflectances_of_built_in_media_are_exact() {
     assert!(worst.0 < 0.02, "{}", worst.1);
 }
 
+/// Within 2 % or 10⁻⁴ of the light for any index, albedo and angle, and within 0.2 % of all light where nothing is
+/// absorbed, but for grazing light of an index near 1.
+///
+/// Seen to catch: nodes of the index on the other side of 1; the carrier's κ of a neighbor.
 #[test]
 fn reflectances_between_the_places_of_the_table_are_exact() {
     for eta in [0.41, 0.55, 0.85, 0.98, 1.0, 1.01, 1.04, 1.1, 1.18, 1.3, 1.36, 1.6, 2.0, 2.4] {
         for albedo in [1.0, 0.9999, 0.999, 0.993, 0.96, 0.85, 0.7, 0.5, 0.3, 0.1, 0.02] {
-            let errors =
-                [0.0, 30.0, 60.0, 80.0, 88.0].map(|angle| error(1.0 - albedo, eta, degrees(angle)).map(|e| e.0));
-            println!("{eta} {albedo}: {errors:.4?}");
+            for angle in [0.0, 30.0, 60.0, 80.0, 88.0] {
+                let Some((error, reflectance)) = error(1.0 - albedo, eta, degrees(angle)) else { continue };
+                let what = format!("index {eta} albedo {albedo} {angle}°: {error:.4} of {reflectance:.5}");
+                assert!(error.abs() < 0.02 || error.abs() * reflectance < 1e-4, "{what}");
+                assert!(albedo < 1.0 || error.abs() < 0.002 || eta <= 1.01, "{what}");
+            }
         }
     }
 }
