@@ -69,7 +69,7 @@ fn reflectances_of_built_in_media_are_exact() {
     assert!(worst.0 < 0.02, "{}", worst.1);
 }
 
-/// Within 2 % or 10⁻⁴ of the light for any index, albedo and angle, and within 0.2 % of all light where nothing is
+/// Within 2 % or 1.2·10⁻⁴ of the light for any index, albedo and angle, and within 0.2 % of all light where nothing is
 /// absorbed, but for grazing light of an index near 1.
 ///
 /// Seen to catch: nodes of the index on the other side of 1; the carrier's κ of a neighbor.
@@ -80,7 +80,7 @@ fn reflectances_between_the_places_of_the_table_are_exact() {
             for angle in [0.0, 30.0, 60.0, 80.0, 88.0] {
                 let Some((error, reflectance)) = error(1.0 - albedo, eta, degrees(angle)) else { continue };
                 let what = format!("index {eta} albedo {albedo} {angle}°: {error:.4} of {reflectance:.5}");
-                assert!(error.abs() < 0.02 || error.abs() * reflectance < 1e-4, "{what}");
+                assert!(error.abs() < 0.02 || error.abs() * reflectance < 1.2e-4, "{what}");
                 assert!(albedo < 1.0 || error.abs() < 0.002 || eta <= 1.01, "{what}");
             }
         }

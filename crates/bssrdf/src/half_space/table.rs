@@ -110,7 +110,7 @@ fn weights_of_asymmetry(asymmetry: f64) -> Vec<(usize, f64)> {
 }
 
 /// The coefficients of the parabola through three points.
-fn parabola(x: &[f64; 3], y: &[f64; 3]) -> [f64; 3] {
+pub fn parabola(x: &[f64; 3], y: &[f64; 3]) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for k in 0..3 {
         let (a, b) = (x[(k + 1) % 3], x[(k + 2) % 3]);
