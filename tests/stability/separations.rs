@@ -6,7 +6,10 @@ use crate::evaluate::{along_plane, assert_close, assert_is, bare, gather, onto_p
 use bssrdf::{Exitant, Medium, Model, Separation, fresnel};
 use glam::DVec3;
 use std::f64::consts::PI;
-use test_support::{pipeline::gray, random::Random};
+use test_support::{
+    pipeline::{MODELS, gray},
+    random::Random,
+};
 
 /// α' = 0.9.
 fn medium() -> Medium {
@@ -27,7 +30,9 @@ fn exit_point_exactly_at_a_sample() {
     let at = gather(&medium, &light, &out_of_plane(0.0));
     assert_close(&at, 1e-5);
     for (at, near) in at.iter().zip(gather(&medium, &light, &out_of_plane(1e-9))) {
-        assert_is("beside the sample", near.exact, at.exact, 1e-7);
+        // The azimuth of the half-space model turns within 5·10⁻⁴ mean free paths.
+        let tolerance = if at.model == Model::HalfSpace { 1e-5 } else { 1e-7 };
+        assert_is("beside the sample", near.exact, at.exact, tolerance);
     }
     let transport = 0.3f64.sqrt();
     let source = |z: f64| (1.0 + transport * z) * (-transport * z).exp() / (z * z);
@@ -170,7 +175,7 @@ fn light_and_viewer_below_the_surface() {
         }
     }
     let behind = Exitant { direction: DVec3::NEG_Z, ..out_of_plane(1.0) };
-    for model in [Model::DirectionalDipole, Model::BetterDipole, Model::StandardDipole] {
+    for model in MODELS {
         let values = bssrdf::evaluate(&*model.of(&medium()), 1.3, 0, &onto_plane(DVec3::Z), &behind);
         assert!(values.full == 0.0 && values.gather > 0.0);
     }
