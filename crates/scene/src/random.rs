@@ -24,6 +24,8 @@ pub enum Purpose {
     Bounce,
     /// The shards that the paths of a pixel gather from.
     ShardPick,
+    /// The first numbers of random walks that camera paths begin.
+    WalkStart,
     /// Random walks that light begins.
     LightWalk,
     /// The bits below those of one of these sequences.
@@ -43,6 +45,7 @@ impl Purpose {
             Purpose::Bounce => u64::MAX,
             Purpose::ShardPick => u64::MAX - 1,
             Purpose::LightWalk => u64::MAX - 2,
+            Purpose::WalkStart => u64::MAX - 3,
             Purpose::Remainder(k) => 7 + k,
         }
     }

@@ -34,7 +34,7 @@ const JUMP_FROM: f64 = 5.0;
 const JUMP_GAP: f64 = 3.0;
 
 /// [`JUMP_GAP`] of walks that are connected to lights.
-const CONNECTED_GAP: f64 = 6.0;
+const CONNECTED_GAP: f64 = 4.0;
 
 /// Where the reduced albedo is less, walks are short, and light does not become diffuse within the gap.
 const JUMP_ALBEDO: f64 = 0.8;
@@ -49,11 +49,8 @@ impl Matter {
         let albedo = coefficients.sigma_s / extinction;
         let decay = extinction * relative_decay(albedo, coefficients.asymmetry);
         // D = σ_a/κ², whose limit without absorption is 1/(3σ_t').
-        let diffusion = if decay > 1e-6 * extinction {
-            coefficients.sigma_a / (decay * decay)
-        } else {
-            coefficients.diffusion()
-        };
+        let diffusion =
+            if decay > 1e-6 * extinction { coefficients.sigma_a / (decay * decay) } else { coefficients.diffusion() };
         let reduced_mean_free_path = 1.0 / coefficients.reduced_extinction();
         let jumps = coefficients.reduced_albedo() >= JUMP_ALBEDO;
         // Where light is scattered back, the memory of a boundary is lost over mean free paths that are not reduced.

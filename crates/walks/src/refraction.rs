@@ -32,11 +32,15 @@ fn share(h: f64, d: f64, eta: f64) -> f64 {
     for _ in 0..100 {
         let (v, a, b) = (1.0 - u, (u * u + h * h).sqrt(), ((1.0 - u) * (1.0 - u) + d * d).sqrt());
         let value = u / a - eta * v / b;
-        if value < 0.0 { low = u } else { high = u }
+        if value < 0.0 {
+            low = u
+        } else {
+            high = u
+        }
         let slope = h * h / (a * a * a) + eta * d * d / (b * b * b);
         let next = u - value / slope;
         let next = if next > low && next < high { next } else { 0.5 * (low + high) };
-        if (next - u).abs() <= 1e-15 {
+        if (next - u).abs() <= 1e-14 {
             return next;
         }
         u = next;

@@ -56,10 +56,13 @@ impl Renderer<'_> {
         let mut radiance = DVec3::ZERO;
         for channel in 0..3 {
             if let Some(matter) = &walks.matter[channel] {
-                let mut random = Sequence::of_dimension(state.key, 3 * state.dimension + channel as u64);
+                let random = Sequence::of_dimension(state.key, 3 * state.dimension + channel as u64);
+                let mut random = match &state.walks {
+                    Some(first) => random.beginning_with(first[channel]),
+                    None => random,
+                };
                 let (solid, beams) = (&walks.solid, &walks.beams);
-                let mut light =
-                    Connections { solid, beams, matter, channel, radiance: 0.0, count: 0, collisions: 0 };
+                let mut light = Connections::new(solid, beams, matter, channel);
                 let end = observed_walk(solid, matter, &start, &mut random, &mut light);
                 let counts = &mut context.counts;
                 counts.walks += 1;

@@ -35,7 +35,8 @@ pub fn show(facts: &Facts) -> Result<(), Failure> {
     }
     if counts.walks_trapped > 0 {
         let share = 100.0 * counts.walks_trapped as f64 / counts.walks as f64;
-        common.warn(format_args!("{share:.3} % of the walks were reflected inside without end: the medium is too clear"));
+        common
+            .warn(format_args!("{share:.3} % of the walks were reflected inside without end: the medium is too clear"));
     }
     if let Some(warning) = odd_view(counts, &facts.settings) {
         common.warn(facts.job.line(&warning));
