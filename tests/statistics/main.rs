@@ -16,6 +16,7 @@ mod objects;
 mod paths;
 mod patterns;
 mod picks;
+mod reference;
 mod reflectance;
 mod roulette;
 mod sampling;

@@ -99,6 +99,11 @@ impl<'a> Beams<'a> {
         Some(Beams { light, delta, eta, facets, shadows, cells, typical, complete })
     }
 
+    /// Whether the light comes from one direction.
+    pub fn is_parallel(&self) -> bool {
+        matches!(self.delta, Delta::Direction(_))
+    }
+
     /// Calls `found` with every way in which the light may arrive at a point inside, shadows aside.
     #[inline(always)]
     pub fn each_at(&self, mesh: &Mesh, position: DVec3, mut found: impl FnMut(&Arrival)) {

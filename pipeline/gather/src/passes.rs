@@ -77,6 +77,8 @@ impl<'a> Passes<'a> {
             pixel_stream: Stream::new(settings.seed, Purpose::Pixel),
             edge_stream: Stream::new(settings.seed, Purpose::Edge),
         };
+        let walks = passes.renderer.objects.iter().flatten().filter_map(|object| object.walks.as_ref());
+        passes.counts.reflections_left_out = walks.map(Walks::incomplete).sum();
         passes.find_edges();
         passes
     }

@@ -36,6 +36,13 @@ impl<'a> Walks<'a> {
     }
 }
 
+impl Walks<'_> {
+    /// The directional lights whose reflections inside are left out.
+    pub fn incomplete(&self) -> u64 {
+        self.beams.iter().filter(|beams| beams.is_parallel() && !beams.complete).count() as u64
+    }
+}
+
 impl Renderer<'_> {
     /// Adds the scattered light at an exitant point, by one walk for each channel: a walk that all channels shared would
     /// have to be weighted by the ratio of their densities, which after many collisions leaves it to one of them.
