@@ -4,6 +4,7 @@
 #   settings.mk  when a file is made again            tests.mk    lint, tests, fuzzing, benchmarks
 #   gallery.mk   the scenes of data/                  reports.mk  the documents that programs write
 #   own.mk       your own scene: make SCENE=...       clean.mk    removal of what was made
+#   table.mk     the table of the half-space model
 #
 # Every recipe that renders is $(SUBMIT) PROGRAM --threads $(THREADS) ... -o $@: it reads files, writes one and never
 # asks, so that SUBMIT may hand it to a queue of machines (docs/farm.md).
@@ -55,6 +56,7 @@ include $(MAKE_FILES)/own.mk
 include $(MAKE_FILES)/tests.mk
 include $(MAKE_FILES)/check.mk
 include $(MAKE_FILES)/reports.mk
+include $(MAKE_FILES)/table.mk
 include $(MAKE_FILES)/clean.mk
 
 .PHONY: .FORCE build scenes help

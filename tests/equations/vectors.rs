@@ -10,7 +10,7 @@ use bssrdf::{
 };
 use glam::DVec3;
 use serde_json::Value;
-use test_support::pipeline::{MODELS, gray};
+use test_support::pipeline::{DIPOLES, gray};
 
 /// One reference vector.
 struct Vector {
@@ -22,7 +22,7 @@ struct Vector {
     refracted: Option<DVec3>,
     /// `−n_o·ω12`.
     mu0: Option<f64>,
-    /// Values and condition number, in the order of [`MODELS`].
+    /// Values and condition number, in the order of [`DIPOLES`].
     expected: [(Values, f64); 3],
 }
 
@@ -68,7 +68,7 @@ fn relative(value: f64, expected: f64) -> f64 {
 fn float64_agrees_with_the_reference() {
     let mut worst = (0.0, String::new());
     for v in vectors() {
-        for (model, (expected, condition)) in MODELS.into_iter().zip(v.expected) {
+        for (model, (expected, condition)) in DIPOLES.into_iter().zip(v.expected) {
             let values = evaluate(&*model.of(&v.medium), v.medium.eta, 0, &v.incident, &v.exitant);
             let tolerance = 1e-12 * (1.0 + condition);
             let pairs = [(values.full, expected.full), (values.gather, expected.gather), (values.bare, expected.bare)];
@@ -120,7 +120,7 @@ fn float32_agrees_with_the_reference() {
     let mut worst = (0.0, String::new());
     for v in vectors() {
         let Some(refracted) = v.refracted else { continue };
-        for (model, (expected, condition)) in MODELS.into_iter().zip(v.expected) {
+        for (model, (expected, condition)) in DIPOLES.into_iter().zip(v.expected) {
             // At |μ0| < 10⁻⁵ the branch of d_r, and with it a factor of S, depends on the rounding of n_o and ω12.
             let undecided = model == Model::DirectionalDipole && v.mu0.is_some_and(|mu0| mu0.abs() < 1e-5);
             if undecided {

@@ -58,7 +58,7 @@ fn assert_sane(value: DVec3, what: impl std::fmt::Debug) {
 }
 
 /// `S_bare` by the three models.
-pub fn bare(medium: &Medium, separation: &Separation) -> [Value; 3] {
+pub fn bare(medium: &Medium, separation: &Separation) -> [Value; MODELS.len()] {
     MODELS.map(|model| {
         let of = model.of(medium);
         let exact = DVec3::from_array([0, 1, 2].map(|c| of.bare(c, separation)));
@@ -80,7 +80,7 @@ thread_local! {
     /// Caches the last cloud of one sample and the last scatterers of a medium: sweeps ask for the same ones again
     /// and again.
     static CLOUD: RefCell<Option<(Sample, Rc<Cloud>)>> = const { RefCell::new(None) };
-    static SCATTERERS: RefCell<Option<(Medium, Rc<[Scatterer; 3]>)>> = const { RefCell::new(None) };
+    static SCATTERERS: RefCell<Option<(Medium, Rc<[Scatterer; MODELS.len()]>)>> = const { RefCell::new(None) };
 }
 
 /// The cached value of this key, or a new one.
@@ -98,7 +98,7 @@ fn kept<K: Clone + PartialEq, V>(last: &RefCell<Option<(K, Rc<V>)>>, key: &K, ma
 /// `S_gather` by the three models, as the exhaustive sum gives it for a cloud of one sample. The cut, which has
 /// nothing to choose from, must give exactly that. Every rule of the roulette must give it divided by the acceptance
 /// probability, or zero; at the sample itself it must accept.
-pub fn gather(medium: &Medium, incident: &Incident, exitant: &Exitant) -> [Value; 3] {
+pub fn gather(medium: &Medium, incident: &Incident, exitant: &Exitant) -> [Value; MODELS.len()] {
     let Incident { position, normal, direction } = *incident;
     let sample = Sample { position: position.as_vec3(), normal, direction, flux: Vec3::ONE };
     let cloud = CLOUD.with(|last| kept(last, &sample, || cloud_of(&alternating([sample]))));

@@ -10,6 +10,7 @@ mod cut;
 mod edges;
 mod environment;
 mod error_bars;
+mod half_space;
 mod knob;
 mod means;
 mod objects;

@@ -4,7 +4,7 @@ use bssrdf::Coefficients;
 use test_support::{
     EFFORT,
     half_space::reflectance,
-    pipeline::MODELS,
+    pipeline::DIPOLES,
     walk::{Matter, slab},
 };
 
@@ -24,7 +24,7 @@ fn the_table_of_reflectance_errors_is_what_random_walks_say() {
         for (j, eta) in [1.3, 1.5].into_iter().enumerate() {
             let matter = Matter { albedo, asymmetry: 0.0, eta };
             let walk = slab(&matter, f64::INFINITY, 1.0, 20_000 * EFFORT, 900 + (2 * k + j) as u64).reflected;
-            for model in MODELS {
+            for model in DIPOLES {
                 let value = reflectance(model, albedo, eta, 1.0);
                 let channel = Coefficients { sigma_a: 1.0 - albedo, sigma_s: albedo, asymmetry: 0.0 };
                 let table = model.reflectance_error(&channel, eta);

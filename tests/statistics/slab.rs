@@ -125,8 +125,14 @@ fn scattered_light_is_seen_through_the_interface() {
     let media = [skin()];
     let run = |seed: u64| {
         let cloud = cloud(&world, &sampling(10_000, seed));
-        let input =
-            Input { scene: &world.scene, rays: &world.rays, clouds: from_ref(&cloud), media: &media, camera: &camera };
+        let input = Input {
+            scene: &world.scene,
+            rays: &world.rays,
+            clouds: from_ref(&cloud),
+            media: &media,
+            calibration: None,
+            camera: &camera,
+        };
         let settings = Settings { paths_per_pixel: 256, seed, ..settings(Model::BetterDipole, 1, 1) };
         gather::render(&input, &settings, |_| ()).pixels[0].beauty()
     };

@@ -9,7 +9,10 @@
 
 use bssrdf::{
     DVec3, Medium, built_in, fresnel,
-    lanes::{BetterLanes, Block, DirectionalLanes, Directions, EntryRefraction, LANES, Lane, LaneModel, StandardLanes},
+    lanes::{
+        BetterLanes, Block, DirectionalLanes, Directions, EntryRefraction, HalfSpaceLanes, LANES, Lane, LaneModel,
+        StandardLanes,
+    },
     simd::{self, Kernel, Level},
 };
 use divan::{Bencher, black_box, counter::ItemsCount};
@@ -68,7 +71,7 @@ fn blocks(medium: &Medium) -> Vec<Block> {
 }
 
 #[divan::bench(
-    types = [StandardLanes, BetterLanes, DirectionalLanes],
+    types = [StandardLanes, BetterLanes, DirectionalLanes, HalfSpaceLanes],
     args = Level::ALL,
 )]
 fn model<M: LaneModel>(bencher: Bencher, level: Level) {

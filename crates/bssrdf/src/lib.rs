@@ -1,4 +1,4 @@
-//! What happens to light below a surface: coefficients of media, and three models of the BSSRDF, in float64 and sixteen
+//! What happens to light below a surface: coefficients of media, and four models of the BSSRDF, in float64 and sixteen
 //! samples at a time in float32. What happens *at* a surface is in [`bsdf`].
 //!
 //! The crate has no I/O and no random numbers. Lengths are in m, coefficients in 1/m, `S` is in 1/(m² sr). Three values
@@ -28,6 +28,7 @@
 mod accuracy;
 mod albedo;
 mod evaluate;
+pub mod half_space;
 pub mod lanes;
 mod media;
 mod medium;
@@ -42,5 +43,5 @@ pub use glam::DVec3;
 pub use media::{built_in, built_in_names};
 pub use medium::{Coefficients, ETA_MAX, ETA_MIN, Interface, Medium};
 pub use medium_file::{MediumError, MediumFile, Optics, Unit};
-pub use model::{AnyLanes, BetterDipole, DirectionalDipole, LaneWork, Model, StandardDipole};
+pub use model::{AnyLanes, BetterDipole, DirectionalDipole, HalfSpace, LaneWork, Model, StandardDipole};
 pub use simd;

@@ -4,8 +4,8 @@
 use bssrdf::{
     Bssrdf, Coefficients, DVec3, Interface, Medium, Model, Separation, fresnel,
     lanes::{
-        BetterLanes, Block, DirectionalLanes, Directions, Entered, EntryRefraction, LANES, Lane, LaneModel,
-        StandardLanes,
+        BetterLanes, Block, DirectionalLanes, Directions, Entered, EntryRefraction, HalfSpaceLanes, LANES, Lane,
+        LaneModel, StandardLanes,
     },
     simd::{self, Kernel, Level},
 };
@@ -126,7 +126,7 @@ fn errors<M: LaneModel>(model: Model, range: [f64; 2], plane: bool) -> (Vec<f64>
     (errors, worst.1)
 }
 
-fn assert_close<M: LaneModel>(model: Model) {
+fn assert_close<M: LaneModel>(model: Model, tolerance: f64) {
     for plane in [false, true] {
         for range in RANGES {
             let (errors, worst) = errors::<M>(model, range, plane);
@@ -141,24 +141,30 @@ fn assert_close<M: LaneModel>(model: Model) {
                 at(1.0)
             );
             assert!(errors.len() > 10_000, "{name} {shape} {range:?}: only {} values", errors.len());
-            assert!(error < TOLERANCE, "{name} {shape} {range:?}: {error:.1e}");
+            assert!(error < tolerance, "{name} {shape} {range:?}: {error:.1e}");
         }
     }
 }
 
 #[test]
 fn directional_dipole_is_close_to_float64() {
-    assert_close::<DirectionalLanes>(Model::DirectionalDipole);
+    assert_close::<DirectionalLanes>(Model::DirectionalDipole, TOLERANCE);
+}
+
+#[test]
+fn half_space_model_is_close_to_float64() {
+    // On a plane x·n_i is a sum that cancels, and its rounding a depth: 7·10⁻⁵ mean free paths at a distance of 1000.
+    assert_close::<HalfSpaceLanes>(Model::HalfSpace, 5e-5);
 }
 
 #[test]
 fn better_dipole_is_close_to_float64() {
-    assert_close::<BetterLanes>(Model::BetterDipole);
+    assert_close::<BetterLanes>(Model::BetterDipole, TOLERANCE);
 }
 
 #[test]
 fn standard_dipole_is_close_to_float64() {
-    assert_close::<StandardLanes>(Model::StandardDipole);
+    assert_close::<StandardLanes>(Model::StandardDipole, TOLERANCE);
 }
 
 fn bits(values: [Lane; 3]) -> [[u32; LANES]; 3] {
@@ -191,6 +197,7 @@ fn assert_same_bits<M: LaneModel>() {
 #[test]
 fn all_vector_widths_give_the_same_bits() {
     assert_same_bits::<DirectionalLanes>();
+    assert_same_bits::<HalfSpaceLanes>();
     assert_same_bits::<BetterLanes>();
     assert_same_bits::<StandardLanes>();
 }

@@ -1,8 +1,8 @@
 //! Renders with a given number of paths, or with as many paths as a target error needs.
 
 use cli::{Common, Progress, count, count_up};
-use formats::cloud::{Cloud, Pattern};
-use gather::{Input, Passes, Rendered, Settings, estimator::Estimator, film::Errors, render, shards};
+use formats::cloud::{Cloud, Pattern, shards};
+use gather::{Input, Passes, Rendered, Settings, estimator::Estimator, film::Errors, render};
 use sums::confidence::Estimate;
 
 /// Renders `settings.paths_per_pixel` paths.

@@ -50,10 +50,14 @@ pub struct Arguments {
     /// [default: the media that SCENE gives its materials]
     #[arg(long, value_name = "[MATERIAL=]NAME|FILE.json")]
     pub medium: Vec<String>,
-    /// BSSRDF model: how light scatters from point to point
-    #[arg(long, value_name = "MODEL", default_value = "directional-dipole",
+    /// BSSRDF model: how light scatters from point to point [default: that of --calibration, or half-space]
+    #[arg(long, value_name = "MODEL", default_value_if("note", "true", "directional-dipole"),
         value_parser = one_of(&Model::ALL, Model::name))]
-    pub bssrdf: Model,
+    pub bssrdf: Option<Model>,
+    /// Calibration of `calibrate`, which brings its media along, or none [default: with --bssrdf half-space the shape is
+    /// calibrated in memory first; other models are used as they were published]
+    #[arg(long, value_name = "FILE|none", value_parser = file_name())]
+    pub calibration: Option<PathBuf>,
     /// Sum over the cloud: hierarchical (cut), by the note's roulette, or over all samples (exhaustive)
     #[arg(long, value_name = "HOW", default_value = "cut", default_value_if("note", "true", "roulette"),
         value_parser = one_of(&Estimator::ALL, Estimator::name))]

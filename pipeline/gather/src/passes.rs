@@ -1,17 +1,18 @@
 //! Renders pixels in parallel, and adds paths to all of them in passes.
 
 use crate::{
-    calibration,
     counts::Counts,
     crop::Crop,
+    cut_correction,
     edge::{self, Edge},
     film::{Errors, Pixel, PixelSum},
     image::{Filter, Input, Rendered, Settings},
     path_state::{PathIndex, ThreadContext},
     reference::{Walks, meets_light},
     renderer::{Renderer, TranslucentObject},
-    shards,
 };
+use calibration::Factors;
+use formats::cloud::shards;
 use glam::DVec2;
 use rayon::prelude::*;
 use scene::{
@@ -66,7 +67,7 @@ impl<'a> Passes<'a> {
             shard_picks: Stream::new(settings.seed, Purpose::ShardPick),
             walk_starts: Stream::new(settings.seed, Purpose::WalkStart),
         };
-        calibration::calibrate(&mut renderer);
+        cut_correction::correct(&mut renderer);
         let mut passes = Passes {
             renderer,
             edges: vec![None; settings.part().pixels()],
@@ -238,6 +239,8 @@ fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<Translucent
         objects[sampled.index as usize] = Some(TranslucentObject {
             unscattered: if settings.reference { extinction() } else { settings.model.unscattered_extinction(medium) },
             walks: walks.flatten(),
+            factors: input.calibration.map(|c| Factors::new(&c.materials[slot])),
+            lobe: settings.model.exit_lobe(medium),
             summation: Summation::of_clouds(scatterer, input.clouds, slot),
             medium: medium.clone(),
         });

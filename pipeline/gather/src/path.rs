@@ -5,10 +5,10 @@ use crate::{
     counts::Counts,
     path_state::{Guide, Layer, PathIndex, PathLight, PathState, ThreadContext, Trace},
     renderer::{Renderer, TranslucentObject},
-    shards::ShardPick,
 };
 use bsdf::{Bsdf, Lobe, Side, Surface, View};
 use scene::{DVec3, Hit, SurfacePoint, light::all_light_at};
+use sums::drawn::ShardPick;
 
 /// The second branch of a path uses the random numbers from this dimension on.
 const BRANCH: u64 = 1 << 32;
@@ -204,7 +204,7 @@ impl Renderer<'_> {
         }
         let emission = self.input.scene.materials[point.material as usize].emission;
         trace.light.add(state, Layer::Emission, emission);
-        self.gather(state, object, point, meeting.view.normal, &mut trace.light, context);
+        self.gather(state, object, point, &meeting.view, &mut trace.light, context);
         state.walks = None;
         state.inside = Some(point.material);
         // If only the interpolated normal lets light through, the path ends here.

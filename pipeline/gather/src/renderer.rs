@@ -3,13 +3,13 @@
 use crate::{
     image::{Input, Settings},
     reference::Walks,
-    shards::DrawnCounts,
 };
 use bsdf::Surface;
 use bssrdf::Medium;
-use scene::{light::LightTree, random::Stream};
+use calibration::Factors;
+use scene::{DVec3, light::LightTree, random::Stream};
 use std::ops::Range;
-use sums::Summation;
+use sums::{Summation, drawn::DrawnCounts};
 
 /// The data of an image, shared by all threads.
 pub struct Renderer<'a> {
@@ -39,7 +39,11 @@ pub struct TranslucentObject<'a> {
     pub medium: Medium,
     /// Extinction `σ̃_t` of unscattered light, 1/m (docs/method.md 5.11).
     pub unscattered: [f64; 3],
+    /// `a` and `b` of the light that leaves in proportion to `T21 (a + b μ)`, for each channel (docs/method.md 15.8).
+    pub lobe: [[f64; 2]; 3],
     pub summation: Summation<'a>,
+    /// The factors of its surface, if it is calibrated.
+    pub factors: Option<Factors>,
     /// Random walks, if they take the place of the summation.
     pub walks: Option<Walks<'a>>,
 }
@@ -48,6 +52,11 @@ impl TranslucentObject<'_> {
     /// What happens to light at its surface.
     pub fn surface(&self) -> Surface {
         Surface::dielectric(self.medium.eta)
+    }
+
+    /// The factors `a + b μ` of the channels for a view whose cosine outside is `cosine`.
+    pub fn exit_lobe(&self, cosine: f64) -> DVec3 {
+        DVec3::from_array(self.lobe.map(|[a, b]| a + b * cosine))
     }
 
     /// True if no scattered light leaves it.

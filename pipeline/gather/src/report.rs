@@ -1,16 +1,22 @@
 //! The metadata of an image: the attributes of its header, and its statistics.
 
-use crate::{image_jobs::ImageJob, inputs::Inputs, settings::Request};
+use crate::{image_jobs::ImageJob, settings::Request};
 use bssrdf::Medium;
-use cli::Seconds;
-use formats::{Attribute, cloud::hex};
-use gather::{Rendered, Settings, film, shards};
+use cli::{LitScene, Seconds};
+use formats::{
+    Attribute,
+    calibration::{CalibratedMaterial, Calibration},
+    cloud::{hex, shards},
+};
+use gather::{Rendered, Settings, film};
 use std::collections::BTreeMap;
+use sums::drawn::DrawnCounts;
 
 /// A rendered image, and the facts that its files state.
 pub struct Facts<'a> {
     pub request: &'a Request,
-    pub inputs: &'a Inputs,
+    pub inputs: &'a LitScene,
+    pub calibration: Option<&'a Calibration>,
     pub job: &'a ImageJob,
     /// The settings of the job, with the number of paths that were rendered.
     pub settings: Settings,
@@ -18,9 +24,15 @@ pub struct Facts<'a> {
 }
 
 impl<'a> Facts<'a> {
-    pub fn new(request: &'a Request, inputs: &'a Inputs, job: &'a ImageJob, rendered: &'a Rendered) -> Facts<'a> {
+    pub fn new(
+        request: &'a Request,
+        inputs: &'a LitScene,
+        calibration: Option<&'a Calibration>,
+        job: &'a ImageJob,
+        rendered: &'a Rendered,
+    ) -> Facts<'a> {
         let settings = Settings { paths_per_pixel: rendered.paths_per_pixel, ..job.settings.clone() };
-        Facts { request, inputs, job, settings, rendered }
+        Facts { request, inputs, calibration, job, settings, rendered }
     }
 
     /// Attributes of the image's header. None depends on the machine or the threads, and only `capDate` on the time, by
@@ -57,6 +69,10 @@ impl<'a> Facts<'a> {
         put("pcsss/originM", Attribute::Vector(first.exchange_origin_m()));
         put("pcsss/seed", Attribute::Text(self.settings.seed.to_string()));
         put("pcsss/bssrdf", text(self.model()));
+        if let Some(calibration) = self.calibration {
+            put("pcsss/calibration", Attribute::Text(hex(&calibration.content)));
+            put("pcsss/modelError", Attribute::Texts(calibration.materials.iter().map(model_error).collect()));
+        }
         put("pcsss/estimator", Attribute::Text(self.estimator()));
         put("pcsss/version", text(version));
         put("pcsss/arguments", Attribute::Text(self.arguments()));
@@ -128,6 +144,10 @@ impl<'a> Facts<'a> {
             "samples_drawn": shards::drawn(clouds),
             "estimator": self.estimator(),
             "bssrdf": self.model(),
+            "calibration": self.calibration.map(|c| hex(&c.content)),
+            "model_error_relmse": self.calibration.map(|c| {
+                c.materials.iter().map(|m| (m.name.clone(), m.errors.map(|e| e.after))).collect::<BTreeMap<_, _>>()
+            }),
         });
         if self.request.outputs.timings {
             let rate = seconds.of("render").map(|s| counts.evaluations as f64 / s.max(1e-9));
@@ -143,7 +163,7 @@ impl<'a> Facts<'a> {
         if self.settings.reference {
             return film::covers_of_walks(self.settings.paths_per_pixel);
         }
-        film::covers(self.settings.paths_per_pixel, shards::DrawnCounts::of(self.inputs.clouds()).half(1))
+        film::covers(self.settings.paths_per_pixel, DrawnCounts::of(self.inputs.clouds()).half(1))
     }
 
     fn model(&self) -> &'static str {
@@ -158,6 +178,12 @@ impl<'a> Facts<'a> {
     pub fn pixel(&self, index: usize) -> [usize; 2] {
         self.settings.part().pixel(index)
     }
+}
+
+/// What a calibration says of the error of the model that is left, in one line.
+fn model_error(material: &CalibratedMaterial) -> String {
+    let [r, g, b] = material.errors.map(|e| format!("{:.1e} +- {:.0e}", e.after, e.uncertainty));
+    format!("{}: relMSE of the model about {r}, {g}, {b}", material.name)
 }
 
 /// A medium and its material in one line.

@@ -1,9 +1,9 @@
 //! Compares the lengths of each medium with those of its object, and warns where they do not fit each other.
 
-use crate::{inputs::Inputs, settings::Request};
-use bssrdf::Medium;
-use cli::count_up;
-use gather::shards;
+use crate::settings::Request;
+use bssrdf::{Medium, Model};
+use cli::{LitScene, count_up};
+use formats::cloud::shards;
 
 /// Samples that are farther apart than this many reduced mean free paths show as grain.
 const SPARSE: f64 = 3.0;
@@ -28,7 +28,7 @@ struct Object<'a> {
 }
 
 /// Prints the lengths of each medium and its object, and warns where they do not fit each other.
-pub fn show(request: &Request, inputs: &Inputs) {
+pub fn show(request: &Request, inputs: &LitScene, model: Model) {
     let (common, clouds) = (&request.common, inputs.clouds());
     for (slot, (material, medium)) in shards::materials(clouds).iter().zip(&inputs.media).enumerate() {
         let (low, high) = inputs.bounds(|index| index == material.index);
@@ -39,13 +39,13 @@ pub fn show(request: &Request, inputs: &Inputs) {
             drawn: shards::drawn(clouds),
             rounding: 0.5 * f64::from(f32::EPSILON) * low.abs().max(high.abs()).max_element(),
         };
-        lines(&object, medium, request.model.of(medium).transport()).iter().for_each(|line| common.say(line));
+        lines(&object, medium, model.of(medium).transport()).iter().for_each(|line| common.say(line));
         warnings(&object, medium, request.reference).iter().for_each(|warning| common.warn(warning));
-        if let Some(errors) = request.model.poor_reflectance(medium).filter(|_| !request.reference) {
+        if let Some(errors) = model.poor_reflectance(medium).filter(|_| !request.reference) {
             let [r, g, b] = errors.map(|e| format!("{:+.0}", 100.0 * e));
             common.say(format_args!(
                 "  {} reflects {r} {g} {b} % more than {} does (red, green, blue; docs/reports/accuracy.md)",
-                request.model.name(),
+                model.name(),
                 medium.name
             ));
         }

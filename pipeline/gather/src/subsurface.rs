@@ -4,21 +4,37 @@ use crate::{
     path_state::{Layer, PathLight, PathState, ThreadContext},
     renderer::{Renderer, TranslucentObject},
 };
+use bsdf::View;
+use calibration::Site;
 use scene::{DVec3, SurfacePoint};
 use sums::{estimator::Estimator, samples::Exit};
 
 /// The largest relative error that is asked of one sum. Above it, the cut does not predict its own error.
 const MAX_ERROR: f64 = 0.5;
 
+impl TranslucentObject<'_> {
+    /// The factor of the light that leaves at a point for the eye's `view`: the exit lobe or, if the object is calibrated, the
+    /// factor of its surface.
+    fn factor(&self, point: &SurfacePoint, view: &View) -> DVec3 {
+        match &self.factors {
+            None => self.exit_lobe(view.normal.dot(view.direction)),
+            Some(factors) => {
+                factors.at(&Site { position: point.position, normal: point.geometric_normal }, view.direction)
+            }
+        }
+    }
+}
+
 impl Renderer<'_> {
     /// `note: [reflectance]` Adds `L_r` at an exitant point: the mean over all drawn samples (docs/method.md 6.7), or
-    /// over those of the half and shard that this path gathers from.
+    /// over those of the half and shard that this path gathers from. `view` is that of the eye, by whose angle the
+    /// exit lobe of the model varies.
     pub(crate) fn gather(
         &self,
         state: &PathState,
         object: &TranslucentObject,
         point: &SurfacePoint,
-        normal: DVec3,
+        view: &View,
         light: &mut PathLight,
         context: &mut ThreadContext,
     ) {
@@ -26,16 +42,20 @@ impl Renderer<'_> {
             return;
         }
         if let Some(walks) = &object.walks {
-            return self.walk(state, walks, point, normal, light, context);
+            return self.walk(state, walks, point, view.normal, light, context);
         }
-        let exit = |half: usize| Exit::new(point.position, normal, state.key.bits(2 * state.dimension + half as u64));
+        let exit =
+            |half: usize| Exit::new(point.position, view.normal, state.key.bits(2 * state.dimension + half as u64));
         let estimator = self.estimator_for(state.throughput.max_element());
         let scratch = &mut context.scratch[point.material as usize];
-        let leaving = if self.gathers_by_shard() {
+        let mut leaving = if self.gathers_by_shard() {
             object.summation.by_shard(estimator, state.half, state.shard_pick, exit, scratch)
         } else {
             object.summation.whole(estimator, exit, scratch)
         };
+        let factor = object.factor(point, view);
+        leaving.radiance *= factor;
+        leaving.halves.iter_mut().for_each(|half| *half *= factor);
         context.counts.gathers += 1;
         context.counts.evaluations += leaving.evaluations;
         context.counts.nodes += leaving.nodes;

@@ -6,7 +6,7 @@ use scene::Camera;
 use std::{error::Error, f64::consts::PI, fs, path::Path};
 use test_support::{
     meshes::repository_scene,
-    pipeline::{Lit, MODELS, by_area, cloud, orthographic},
+    pipeline::{DIPOLES, Lit, by_area, cloud, orthographic},
 };
 
 /// Number of photons of each channel.
@@ -41,7 +41,7 @@ pub fn spheres(folder: &Path) -> Result<Vec<Ratios>, Box<dyn Error>> {
     let world = repository_scene("sphere");
     let cloud = cloud(&world, &by_area(SAMPLES, 1));
     let mut all = Vec::new();
-    for kind in MODELS {
+    for kind in DIPOLES {
         let shown = model(&setting, &Lit::new(&cloud, &medium, kind), medium.eta);
         fs::write(folder.join(format!("sphere-{}.png", kind.name())), panels(&exact, &shown)?)?;
         all.push(ratios(&setting, kind, &exact, &shown));

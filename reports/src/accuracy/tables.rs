@@ -5,7 +5,7 @@ use bssrdf::fresnel;
 use std::fmt::{Error, Write};
 use test_support::{
     half_space::{reflectance, transmission},
-    pipeline::MODELS,
+    pipeline::DIPOLES,
     transfer::chandrasekhar,
     walk::{Balance, Matter, slab},
 };
@@ -92,7 +92,7 @@ fn reflectances(text: &mut String, eta: f64) -> Result<(), Error> {
                 _ => half_space(albedo, 0.0, eta, cosine, seed).reflected.mean,
             };
             write!(text, "| {albedo} | {angle} | {walk:.4} |")?;
-            for model in MODELS {
+            for model in DIPOLES {
                 let value = reflectance(model, albedo, eta, cosine);
                 write!(text, " {value:.4} ({}) |", percent(value / walk - 1.0))?;
             }
@@ -142,7 +142,7 @@ fn slabs(text: &mut String) -> Result<(), Error> {
             let matter = Matter { albedo, asymmetry: 0.0, eta: 1.3 };
             let walk = slab(&matter, thickness, 1.0, WALKS, 7000 + (10 * i + j) as u64);
             write!(text, "| {albedo} | {thickness} | {:.4} | {:.4} |", walk.reflected.mean, walk.transmitted.mean)?;
-            for model in MODELS {
+            for model in DIPOLES {
                 let value = transmission(model, albedo, 1.3, thickness);
                 write!(text, " {value:.4} ({}) |", percent(value / walk.transmitted.mean - 1.0))?;
             }

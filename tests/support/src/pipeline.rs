@@ -124,8 +124,11 @@ pub fn settings(model: Model, width: usize, height: usize) -> gather::Settings {
     }
 }
 
-/// All three models.
-pub const MODELS: [Model; 3] = [Model::DirectionalDipole, Model::BetterDipole, Model::StandardDipole];
+/// All models.
+pub const MODELS: [Model; 4] = Model::ALL;
+
+/// The published models, whose values and errors are tabulated.
+pub const DIPOLES: [Model; 3] = [Model::DirectionalDipole, Model::BetterDipole, Model::StandardDipole];
 
 /// All rules of the roulette.
 pub const RULES: [Rule; 3] = [Rule::Mixture, Rule::Mean, Rule::Min];

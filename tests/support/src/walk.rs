@@ -69,3 +69,14 @@ pub fn slab(matter: &Matter, thickness: f64, cosine: f64, walks: u64, seed: u64)
     };
     Balance { reflected: share(Slab::FRONT), transmitted: share(Slab::BACK) }
 }
+
+/// Where light that entered a half-space below z = 0 along `refracted` leaves it scattered: the offset along the surface,
+/// and the share of the light; none if it is absorbed.
+pub fn exit(matter: &walks::Matter, refracted: DVec3, random: &mut Sequence) -> Option<(DVec3, f64)> {
+    let down = DVec3::new(refracted.x, refracted.y, -refracted.z);
+    let start = Start { position: DVec3::ZERO, direction: down, face: Some(Slab::FRONT) };
+    match walk(&Slab { thickness: f64::INFINITY }, matter, &start, random, |_, _| ()) {
+        End::Scattered(exit) => Some((exit.position, exit.weight)),
+        _ => None,
+    }
+}

@@ -21,11 +21,25 @@ pub fn exp_negative(x: f32) -> f32 {
     power + power * power_less_one(f * LOG2_E)
 }
 
-/// `2ˣ` for `x ≤ 1`; 0 below −126.5. It is cheaper than `eˣ`, and as exact where `x` itself is rounded.
+/// `2ˣ` for `x ≤ 100`; 0 below −126.5. It is cheaper than `eˣ`, and as exact where `x` itself is rounded.
 #[inline(always)]
 pub(crate) fn exp2_negative(x: f32) -> f32 {
     let (power, less_one) = split(x);
     power + power * less_one
+}
+
+/// `log₂ x` for `x` between 10⁻³ and 10³, within 3·10⁻⁷ of it or, near 1, of `x − 1`.
+#[inline(always)]
+pub(crate) fn log2_near_one(x: f32) -> f32 {
+    // The exponent of the power of two next to x, so that the mantissa lies between √½ and √2.
+    let shifted = x.to_bits().wrapping_sub(0x3F35_04F3);
+    let exponent = shifted as i32 >> 23;
+    let f = f32::from_bits((shifted & 0x007F_FFFF) + 0x3F35_04F3) - 1.0;
+    // ln(1 + f) = 2 artanh s
+    let s = f / (2.0 + f);
+    let squared = s * s;
+    let series = 1.0 + squared * (0.333_333_34 + squared * (0.2 + squared * (0.142_857_15 + squared * 0.111_111_11)));
+    exponent as f32 + (2.0 * LOG2_E) * s * series
 }
 
 /// `2ˣ` and `1 − 2ˣ` for `x ≤ 2`, each without cancellation.

@@ -8,7 +8,7 @@ pub(crate) mod distances;
 mod entry;
 pub(crate) mod exp;
 
-pub use crate::model::{BetterLanes, DirectionalLanes, StandardLanes};
+pub use crate::model::{BetterLanes, DirectionalLanes, HalfSpaceLanes, StandardLanes};
 pub use block::{Block, LANES, Lane, LaneModel};
 pub use entry::{Directions, Entered, EntryRefraction};
 pub use exp::exp_negative;

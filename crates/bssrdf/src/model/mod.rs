@@ -4,6 +4,8 @@ mod better_dipole;
 mod better_lanes;
 mod directional_dipole;
 mod directional_lanes;
+mod half_space;
+mod half_space_lanes;
 mod standard_dipole;
 mod standard_lanes;
 
@@ -11,6 +13,8 @@ pub use better_dipole::BetterDipole;
 pub use better_lanes::BetterLanes;
 pub use directional_dipole::DirectionalDipole;
 pub use directional_lanes::DirectionalLanes;
+pub use half_space::HalfSpace;
+pub use half_space_lanes::HalfSpaceLanes;
 pub use standard_dipole::StandardDipole;
 pub use standard_lanes::StandardLanes;
 
@@ -24,6 +28,8 @@ use crate::{
 /// A model of the BSSRDF.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Model {
+    /// Ours: exact on a half-space, from random walks.
+    HalfSpace,
     /// Frisvad, Hachisuka, Kjeldsen 2014.
     DirectionalDipole,
     /// d'Eon 2012.
@@ -34,12 +40,14 @@ pub enum Model {
 
 impl Model {
     /// All models, the default first.
-    pub const ALL: [Model; 3] = [Model::DirectionalDipole, Model::BetterDipole, Model::StandardDipole];
+    pub const ALL: [Model; 4] =
+        [Model::HalfSpace, Model::DirectionalDipole, Model::BetterDipole, Model::StandardDipole];
 
     /// The name that users type.
     pub fn name(self) -> &'static str {
         match self {
             Model::DirectionalDipole => "directional-dipole",
+            Model::HalfSpace => "half-space",
             Model::BetterDipole => "better-dipole",
             Model::StandardDipole => "standard-dipole",
         }
@@ -49,6 +57,7 @@ impl Model {
     pub fn of(self, medium: &Medium) -> Box<dyn Bssrdf> {
         match self {
             Model::DirectionalDipole => Box::new(DirectionalDipole::new(medium)),
+            Model::HalfSpace => Box::new(HalfSpace::new(medium)),
             Model::BetterDipole => Box::new(BetterDipole::new(medium)),
             Model::StandardDipole => Box::new(StandardDipole::new(medium)),
         }
@@ -58,6 +67,7 @@ impl Model {
     pub fn lanes(self, medium: &Medium) -> AnyLanes {
         match self {
             Model::DirectionalDipole => AnyLanes::Directional(DirectionalLanes::new(medium)),
+            Model::HalfSpace => AnyLanes::HalfSpace(HalfSpaceLanes::new(medium)),
             Model::BetterDipole => AnyLanes::Better(BetterLanes::new(medium)),
             Model::StandardDipole => AnyLanes::Standard(StandardLanes::new(medium)),
         }
@@ -68,13 +78,28 @@ impl Model {
     pub fn unscattered_extinction(self, medium: &Medium) -> [f64; 3] {
         medium.channels.map(|c| match self {
             Model::DirectionalDipole => c.sigma_a + (1.0 - c.asymmetry * c.asymmetry) * c.sigma_s,
-            Model::BetterDipole | Model::StandardDipole => c.extinction(),
+            Model::HalfSpace | Model::BetterDipole | Model::StandardDipole => c.extinction(),
         })
+    }
+
+    /// Whether images of this model are calibrated unless the user says otherwise. The dipoles are used as published.
+    pub fn is_for_calibration(self) -> bool {
+        self == Model::HalfSpace
+    }
+
+    /// `a` and `b` of the light that leaves in proportion to `T21 (a + b μ)`, `μ` being its cosine outside, for each
+    /// channel: with as much power as `T21` alone (docs/method.md 15.8). `[1, 0]` for the dipoles.
+    pub fn exit_lobe(self, medium: &Medium) -> [[f64; 2]; 3] {
+        match self {
+            Model::HalfSpace => half_space::exit_lobe(medium),
+            Model::DirectionalDipole | Model::BetterDipole | Model::StandardDipole => [[1.0, 0.0]; 3],
+        }
     }
 
     /// Relative error of this model's reflectance of a half-space under normal incidence, for one channel.
     pub fn reflectance_error(self, channel: &Coefficients, eta: f64) -> f64 {
         let errors = match self {
+            Model::HalfSpace => return 0.0,
             Model::DirectionalDipole => &directional_dipole::REFLECTANCE_ERRORS,
             Model::BetterDipole => &better_dipole::REFLECTANCE_ERRORS,
             Model::StandardDipole => &standard_dipole::REFLECTANCE_ERRORS,
@@ -92,9 +117,9 @@ impl Model {
 
 /// A model in float32 that is chosen when the program runs.
 #[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "an object has one, and a box would be another pointer in each sum")]
 pub enum AnyLanes {
     Directional(DirectionalLanes),
+    HalfSpace(HalfSpaceLanes),
     Better(BetterLanes),
     Standard(StandardLanes),
 }
@@ -111,6 +136,7 @@ impl AnyLanes {
     pub fn bare(&self, block: &Block, normal_out: [f32; 3]) -> [Lane; 3] {
         match self {
             AnyLanes::Directional(model) => model.bare(block, normal_out),
+            AnyLanes::HalfSpace(model) => model.bare(block, normal_out),
             AnyLanes::Better(model) => model.bare(block, normal_out),
             AnyLanes::Standard(model) => model.bare(block, normal_out),
         }
@@ -120,6 +146,7 @@ impl AnyLanes {
     pub fn run<W: LaneWork>(&self, work: W) -> W::Output {
         match self {
             AnyLanes::Directional(model) => work.run(model),
+            AnyLanes::HalfSpace(model) => work.run(model),
             AnyLanes::Better(model) => work.run(model),
             AnyLanes::Standard(model) => work.run(model),
         }

@@ -1,0 +1,93 @@
+//! The half-space model of one channel: the images and their corrections, ready to be evaluated.
+//!
+//! Lengths are reduced mean free paths, `1/σ_t'`. Corrections are kept at fixed steps of the squared distance, as integers: the
+//! reference in float64 and the lanes read the same ones.
+
+use super::{
+    GRAZING,
+    boundary::critical_cosine,
+    images::{Images, forwardness},
+    layout::{FIRST, UNIT},
+    table::Corrections,
+};
+
+/// Steps of the squared distance for each doubling: as many as the mantissa of a float32 has values of its first bits.
+const STEPS_PER_DOUBLING: u32 = 8;
+/// The shift that leaves the exponent and those bits.
+pub const SHIFT: u32 = 20;
+/// The squared distances within which corrections vary: `FIRST²` and `2¹⁴`.
+pub const NEAREST2: f32 = (FIRST * FIRST) as f32;
+pub const FARTHEST2: f32 = 16384.0;
+/// The number that belongs to [`NEAREST2`].
+pub const START: u32 = NEAREST2.to_bits() >> SHIFT;
+/// Words of a profile, two for each step, rounded up to a power of two, so that a mask keeps indices in bounds.
+pub const WORDS: usize = 1024;
+
+/// The constants of one channel.
+#[derive(Clone, Debug)]
+pub struct Profile {
+    pub images: Images,
+    /// The terms of each step in pairs of 16 bits: `c₀` above `c₁`, then `c₂` above `p`, in units of [`UNIT`].
+    pub words: Box<[u32; WORDS]>,
+    /// The coefficients of `m³` and `m⁴`.
+    pub high: [f64; 2],
+    /// `m = scale μ12 + shift`.
+    pub place: [f64; 2],
+}
+
+impl Profile {
+    /// The profile for an absorbed share `1 − α'` of each collision.
+    pub fn new(absorbed: f64, eta: f64) -> Profile {
+        let corrections = Corrections::new(absorbed, eta);
+        let mut words = Box::new([0; WORDS]);
+        let steps = (FARTHEST2.to_bits() >> SHIFT) - START + 1;
+        for step in 0..steps {
+            let r2 = f64::from(f32::from_bits((START + step) << SHIFT));
+            let octave = 0.5 * (r2 / (FIRST * FIRST)).log2();
+            let [a, b, c, d] = corrections.at(octave).map(|term| {
+                let bounded = (term / UNIT).round().clamp(f64::from(i16::MIN), f64::from(i16::MAX));
+                bounded as i16 as u16
+            });
+            let pair = |high: u16, low: u16| u32::from(high) << 16 | u32::from(low);
+            (words[2 * step as usize], words[2 * step as usize + 1]) = (pair(a, b), pair(c, d));
+        }
+        let critical = critical_cosine(eta);
+        let scale = 1.0 / (1.0 - critical);
+        Profile { images: Images::new(absorbed, eta), words, high: corrections.high, place: [scale, -critical * scale] }
+    }
+
+    /// The exitance over `α'` (docs/method.md 15.6) of a place on the surface, per unit of power that entered.
+    pub fn exitance(&self, place: &Place) -> f64 {
+        let m = (self.place[0] * place.cosine + self.place[1]).clamp(0.0, 1.0);
+        let forward = forwardness(place.forward.min(GRAZING - 0.01));
+        let near = (place.r2 as f32).clamp(NEAREST2, FARTHEST2.next_down());
+        let step = (near.to_bits() >> SHIFT) - START;
+        let t = f64::from(near.to_bits() & ((1 << SHIFT) - 1)) / f64::from(1u32 << SHIFT);
+        let at = |step: u32| {
+            let [high, low] = [self.words[2 * step as usize], self.words[2 * step as usize + 1]];
+            let [a, b, c, d] =
+                [high >> 16, high & 0xFFFF, low >> 16, low & 0xFFFF].map(|word| f64::from(word as u16 as i16));
+            a + m * (b + m * c) + d * forward
+        };
+        let exponent = (at(step) * (1.0 - t) + at(step + 1) * t) * UNIT + m * m * m * (self.high[0] + m * self.high[1]);
+        self.images.exitance(place.r2, place.along, place.depth, place.cosine) * exponent.exp2()
+    }
+}
+
+/// An exitant point as seen from where light enters.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// The squared distance.
+    pub r2: f64,
+    /// `x_t·ω12`, of the part of the offset along the surface.
+    pub along: f64,
+    /// `|x·n_i|`.
+    pub depth: f64,
+    /// `μ12`.
+    pub cosine: f64,
+    /// `w`, the cosine of the angle between `x_t` and `ω12` where the offset lies in the surface.
+    pub forward: f64,
+}
+
+const _: () = assert!(STEPS_PER_DOUBLING == 1 << (23 - SHIFT));
+const _: () = assert!((((FARTHEST2.to_bits() >> SHIFT) - START + 1) * 2) as usize <= WORDS);
