@@ -4,24 +4,28 @@
 use bssrdf::{Medium, Model};
 use gather::{Filter, Input, Settings};
 use glam::DVec3;
+use scene::Camera;
 use std::{f64::consts::PI, slice::from_ref};
 use test_support::{
     EFFORT,
     meshes::{Light, Mesh, Part, World, quad, sphere, world},
     pipeline::{cloud, gray, orthographic, settings, stratified},
-    z_test::{Estimate, assert_equal, assert_mean},
+    z_test::{Estimate, assert_equal},
 };
 
 /// Mean beauty of the green channel of images of an object about the origin, one for each seed.
 fn images(world: &World, medium: &Medium, towards: DVec3, seeds: u64) -> Estimate {
     let cloud = cloud(world, &stratified(64, 1));
     let camera = orthographic(towards, 0.6e-2);
+    // It stands inside the shells below.
+    let camera = Camera { position: -0.3 * camera.forward, ..camera };
     let input = Input {
         scene: &world.scene,
         rays: &world.rays,
         clouds: from_ref(&cloud),
         media: from_ref(medium),
         camera: &camera,
+        calibration: None,
     };
     let image = |seed: u64| {
         let settings = Settings {
@@ -53,7 +57,9 @@ fn a_furnace() {
         let world = world(&[ball()], &[], DVec3::splat(2.0));
         let estimate = images(&world, &gray(0.0, scattering, g, eta), DVec3::new(1.0, 2.0, 3.0), 8 * EFFORT);
         assert!(estimate.relative_error() < 0.02, "{estimate:?} is too rough to tell");
-        assert_mean("furnace", estimate, 2.0);
+        println!("{estimate:?}");
+        // Where no light passes unscattered, every walk brings the same light, and there is no error.
+        assert!((estimate.mean - 2.0).abs() < 4.5 * estimate.error + 1e-9, "{estimate:?}");
     }
 }
 
@@ -67,8 +73,8 @@ fn shells_that_emit_or_reflect() {
         let shell = sphere(1.0, 2);
         Mesh { triangles: shell.triangles.iter().map(|[a, b, c]| [*a, *c, *b]).collect(), ..shell }
     };
-    let emitting = Part { emission: DVec3::ONE, ..Part::opaque(inward()) };
-    let seeds = 8 * EFFORT;
+    let emitting = Part { color: DVec3::ZERO, emission: DVec3::ONE, ..Part::opaque(inward()) };
+    let seeds = 12 * EFFORT;
     let view = DVec3::new(0.2, 0.3, 1.0);
     let lit = images(&world(&[ball(), emitting], &[], DVec3::ZERO), &medium, view, seeds);
     let sky = images(&world(&[ball()], &[], DVec3::ONE), &medium, view, seeds);

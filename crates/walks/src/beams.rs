@@ -132,12 +132,12 @@ impl<'a> Beams<'a> {
                     }
                 }
             }
-            Delta::Point(point) => self.from_point(mesh, facet, position, point),
+            Delta::Point(point) => self.of_point(mesh, facet, position, point),
         }
     }
 
     /// The way of a point's light through one triangle.
-    fn from_point(&self, mesh: &Mesh, facet: &Facet, position: DVec3, point: DVec3) -> Option<Arrival> {
+    fn of_point(&self, mesh: &Mesh, facet: &Facet, position: DVec3, point: DVec3) -> Option<Arrival> {
         let corners = mesh.corners(facet.triangle as usize);
         let normal = mesh.point(facet.triangle, [1.0, 0.0, 0.0], NormalKind::Geometric).geometric_normal;
         let crossing = crossing(Plane { point: corners[0], normal }, point, position, self.eta)?;

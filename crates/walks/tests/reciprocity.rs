@@ -54,7 +54,7 @@ impl Case {
     }
 
     /// The power that walks from the light bring out.
-    fn from_light(&self, walks: u64) -> Powers {
+    fn by_light(&self, walks: u64) -> Powers {
         let (solid, stream) = (self.solid(), Stream::new(1, LIGHT));
         powers(walks, |k| {
             let mut random = Sequence::new(stream.item(k));
@@ -74,7 +74,7 @@ impl Case {
     }
 
     /// The power that walks from the camera see.
-    fn from_camera(&self, walks: u64) -> Powers {
+    fn by_camera(&self, walks: u64) -> Powers {
         let (solid, stream) = (self.solid(), Stream::new(2, CAMERA));
         let matter = self.matter.with_connections();
         let beams = Beams::new(&solid, &*self.light, matter.eta, matter.extinction).expect("light that arrives");
@@ -95,7 +95,7 @@ impl Case {
     }
 
     fn compare(&self, what: &str, walks: u64) {
-        let (light, camera) = (self.from_light(walks), self.from_camera(walks));
+        let (light, camera) = (self.by_light(walks), self.by_camera(walks));
         for (half, (a, b)) in light.into_iter().zip(camera).enumerate() {
             let error = (a[1] + b[1]).sqrt();
             println!("{what}, half {half}: {:.4} from the light, {:.4} from the camera, error {error:.4}", a[0], b[0]);
@@ -163,7 +163,7 @@ fn light_of_a_point() {
     let far = point(DVec3::new(0.5, 0.1, 0.8).normalize() * 1e6, 1e12, None);
     let far = Case::new(meshes::sphere(4.0, 3), far, [0.9, 0.0, 1.3]);
     let sun = Case::new(meshes::sphere(4.0, 3), sun(DVec3::new(0.5, 0.1, 0.8)), [0.9, 0.0, 1.3]);
-    let [a, b] = [far.from_camera(20_000), sun.from_camera(20_000)];
+    let [a, b] = [far.by_camera(20_000), sun.by_camera(20_000)];
     for half in 0..2 {
         assert!((a[half][0] / b[half][0] - 1.0).abs() < 0.02, "{a:?} {b:?}");
     }
