@@ -18,6 +18,7 @@ mod objects;
 mod paths;
 mod patterns;
 mod picks;
+mod reference;
 mod reflectance;
 mod roulette;
 mod sampling;
