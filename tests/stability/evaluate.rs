@@ -57,6 +57,10 @@ fn assert_sane(value: DVec3, what: impl std::fmt::Debug) {
     assert!(value.is_finite() && value.min_element() >= 0.0, "{value}: {what:?}");
 }
 
+/// The directional dipole among [`MODELS`].
+pub const DIRECTIONAL: usize = 1;
+const _: () = assert!(matches!(MODELS[DIRECTIONAL], Model::DirectionalDipole));
+
 /// `S_bare` by all models.
 pub fn bare(medium: &Medium, separation: &Separation) -> [Value; MODELS.len()] {
     MODELS.map(|model| {
