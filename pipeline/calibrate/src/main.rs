@@ -39,7 +39,7 @@ fn run(mut arguments: Arguments) -> Result<(), Failure> {
     let progress = Progress::start(common, "calibrating", task.work(), "walks and points");
     let calibration = seconds
         .time("walks", || common.in_pool(|| calibrate(&task, |done| progress.add(done))))?
-        .map_err(|e| Failure::usage(e.to_string()))?;
+        .map_err(|e| Failure::usage(format!("{}: {e}", request.scene.path.display())))?;
     progress.finish();
     lit.cloud_files.check_unchanged()?;
     let mut files = Group::default();
