@@ -28,10 +28,10 @@ use crate::{
 /// A model of the BSSRDF.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Model {
-    /// Frisvad, Hachisuka, Kjeldsen 2014.
-    DirectionalDipole,
     /// Ours: exact on a half-space, from random walks.
     HalfSpace,
+    /// Frisvad, Hachisuka, Kjeldsen 2014.
+    DirectionalDipole,
     /// d'Eon 2012.
     BetterDipole,
     /// Jensen, Marschner, Levoy, Hanrahan 2001.
@@ -41,7 +41,7 @@ pub enum Model {
 impl Model {
     /// All models, the default first.
     pub const ALL: [Model; 4] =
-        [Model::DirectionalDipole, Model::HalfSpace, Model::BetterDipole, Model::StandardDipole];
+        [Model::HalfSpace, Model::DirectionalDipole, Model::BetterDipole, Model::StandardDipole];
 
     /// The name that users type.
     pub fn name(self) -> &'static str {
