@@ -56,7 +56,7 @@ fn gathering(bench: &Bench) -> Victim<'_> {
     let run = |seed: &str| {
         let size = ["--width", "96", "--height", "96", "--spp", "2"];
         let inputs = ["sphere.cloud", scene.as_str(), "--view", &view, "--medium", "marble"];
-        let rest = ["--seed", seed, "-j", "1", "-o", "a.exr"];
+        let rest = ["--calibration", "none", "--seed", seed, "-j", "1", "-o", "a.exr"];
         [&inputs[..], &size, &rest].concat().into_iter().map(str::to_owned).collect()
     };
     Victim::new(bench, "gather", "a.exr", [run("1"), run("2")])
