@@ -39,7 +39,8 @@ fn run(mut arguments: Arguments) -> Result<(), Failure> {
     let calibration = seconds.time("walks", || match request.arguments.target_error {
         None => once(&task, common),
         Some(target) => until(target, &task, common),
-    })?;
+    });
+    let calibration = calibration.map_err(|failure| failure.within(request.scene.path.display()))?;
     lit.cloud_files.check_unchanged()?;
     let mut files = Group::default();
     let output = &request.arguments.output;
