@@ -85,6 +85,7 @@ fn render(world: &World, cloud: &Cloud, estimator: Estimator) -> Rendered {
         rays: &world.rays,
         clouds: std::slice::from_ref(cloud),
         media: &media,
+        calibration: None,
         camera: &camera,
     };
     gather::render(&input, &settings, |_| ())

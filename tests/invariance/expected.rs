@@ -57,7 +57,14 @@ fn picture(world: &World, media: &[&str]) -> Image {
     assert_eq!(cloud.meta().materials.len(), media.len());
     let media: Vec<_> = media.iter().map(|name| built_in(name).expect("a built-in medium")).collect();
     let camera = &world.scene.cameras[0];
-    let input = Input { scene: &world.scene, rays: &world.rays, clouds: from_ref(&cloud), media: &media, camera };
+    let input = Input {
+        scene: &world.scene,
+        rays: &world.rays,
+        clouds: from_ref(&cloud),
+        media: &media,
+        calibration: None,
+        camera,
+    };
     let settings = Settings { paths_per_pixel: 4, ..settings(bssrdf::Model::DirectionalDipole, SIZE, SIZE) };
     gather::film::image(&gather::render(&input, &settings, |_| ()).pixels, SIZE, SIZE)
 }

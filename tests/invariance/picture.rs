@@ -79,8 +79,14 @@ impl Shot {
     pub fn of_cloud(&self, world: &World, cloud: &Cloud) -> Image {
         let media = std::slice::from_ref(&self.medium);
         let camera = &world.scene.cameras[0];
-        let input =
-            Input { scene: &world.scene, rays: &world.rays, clouds: std::slice::from_ref(cloud), media, camera };
+        let input = Input {
+            scene: &world.scene,
+            rays: &world.rays,
+            clouds: std::slice::from_ref(cloud),
+            media,
+            calibration: None,
+            camera,
+        };
         let settings =
             Settings { estimator: self.estimator, normals: self.normals, ..settings(self.model, SIZE, SIZE) };
         let rendered = gather::render(&input, &settings, |_| ());

@@ -23,8 +23,14 @@ fn deviation_and_firefly(name: &str, rule: Rule) -> (f64, f64) {
     let world = world(&[Part::translucent(sphere(0.5, 5))], &[sun], DVec3::ZERO);
     let cloud = cloud(&world, &by_area(20_000, 7));
     let (media, camera) = ([built_in(name).expect("a built-in medium")], orthographic(DVec3::Z, 0.5));
-    let input =
-        Input { scene: &world.scene, rays: &world.rays, clouds: from_ref(&cloud), media: &media, camera: &camera };
+    let input = Input {
+        scene: &world.scene,
+        rays: &world.rays,
+        clouds: from_ref(&cloud),
+        media: &media,
+        calibration: None,
+        camera: &camera,
+    };
     let red = |estimator: Estimator| -> Vec<f64> {
         let settings = Settings { estimator, ..settings(Model::DirectionalDipole, SIDE, SIDE) };
         let rendered = render(&input, &settings, |_| ());

@@ -27,8 +27,14 @@ fn rendered(flux: Vec3, twins: bool, settings: &Settings) -> Rendered {
     let halves = if twins { [one.clone(), one] } else { [one, other] };
     let cloud = filed(&planted(drawn.meta(), &[halves]));
     let (media, camera) = ([gray(0.0, 1e3, 0.0, 1.3)], orthographic(DVec3::Z, 0.1));
-    let input =
-        Input { scene: &world.scene, rays: &world.rays, clouds: from_ref(&cloud), media: &media, camera: &camera };
+    let input = Input {
+        scene: &world.scene,
+        rays: &world.rays,
+        clouds: from_ref(&cloud),
+        media: &media,
+        calibration: None,
+        camera: &camera,
+    };
     render(&input, settings, |_| ())
 }
 

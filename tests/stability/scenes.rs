@@ -16,7 +16,14 @@ pub const SKY: DVec3 = DVec3::new(1.0, 0.5, 4.0);
 
 /// Renders, and fails if a number of the image is not finite or a radiance is negative.
 pub fn render(world: &World, cloud: &Cloud, media: &[Medium], camera: &Camera, settings: &Settings) -> Rendered {
-    let input = Input { scene: &world.scene, rays: &world.rays, clouds: std::slice::from_ref(cloud), media, camera };
+    let input = Input {
+        scene: &world.scene,
+        rays: &world.rays,
+        clouds: std::slice::from_ref(cloud),
+        media,
+        calibration: None,
+        camera,
+    };
     let rendered = gather::render(&input, settings, |_| ());
     assert_eq!((rendered.non_finite_count, &rendered.non_finite), (0, &Vec::new()));
     let image = film::image(&rendered.pixels, settings.width, settings.height);

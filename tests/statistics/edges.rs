@@ -23,6 +23,7 @@ fn brightness(scene: &Scene, paths_per_pixel: u32) -> Estimate {
         rays: &scene.world.rays,
         clouds: from_ref(&cloud),
         media: &media,
+        calibration: None,
         camera: &camera,
     };
     let settings = of_paths(Estimator::Exhaustive, paths_per_pixel);

@@ -35,8 +35,14 @@ fn render(environment: Environment, sigma_s: f64, seed: u64) -> Rendered {
     let world = ball(environment);
     let (cloud, media) = (cloud(&world, &stratified(1 << 12, seed)), [gray(20.0, sigma_s, 0.0, 1.3)]);
     let camera = orthographic(DVec3::new(1.0, 2.0, 3.0), 1.1e-2);
-    let input =
-        Input { scene: &world.scene, rays: &world.rays, clouds: from_ref(&cloud), media: &media, camera: &camera };
+    let input = Input {
+        scene: &world.scene,
+        rays: &world.rays,
+        clouds: from_ref(&cloud),
+        media: &media,
+        calibration: None,
+        camera: &camera,
+    };
     let settings = settings(Model::StandardDipole, 8, 8);
     gather::render(&input, &Settings { filter: Filter::Box, paths_per_pixel: 2, ..settings }, |_| ())
 }

@@ -1,14 +1,16 @@
 //! The half-space model against random walks that its table was not made from.
 
-use bssrdf::{DVec3, Model, Separation, built_in, built_in_names, fresnel};
+use bssrdf::{Coefficients, DVec3, Model, Separation, built_in, built_in_names, fresnel};
 use rayon::prelude::*;
+use scene::random::{Purpose, Stream};
 use std::f64::consts::{LN_2, TAU};
 use test_support::{
-    EFFORT, Random,
+    EFFORT,
     half_space::{medium, reflectance_of},
     pipeline::gray,
-    walk::{Matter, exit, slab},
+    walk::{self, exit, slab},
 };
+use walks::{Matter, Sequence};
 
 /// Cosines outside of 0, 45 and 75 degrees.
 fn cosines() -> [f64; 3] {
@@ -36,7 +38,7 @@ fn worst_reflectance(name: &str) -> (f64, String) {
     for (k, c) in medium.channels.iter().enumerate().filter(|(_, c)| c.scatters()) {
         let path = 1.0 / c.reduced_extinction();
         let unit = gray(c.sigma_a * path, c.sigma_s * path, c.asymmetry, medium.eta);
-        let matter = Matter { albedo: c.sigma_s / c.extinction(), asymmetry: c.asymmetry, eta: medium.eta };
+        let matter = walk::Matter { albedo: c.sigma_s / c.extinction(), asymmetry: c.asymmetry, eta: medium.eta };
         for cosine in cosines() {
             let walk = slab(&matter, f64::INFINITY, cosine, 20_000 * EFFORT, 4000 + k as u64).reflected;
             let value = reflectance_of(Model::HalfSpace, &unit, cosine);
@@ -72,22 +74,24 @@ impl Edge {
     /// The share of the light that leaves which does so more than each place further along x than it entered: the exitance
     /// at that place, if the half-plane `x < 0` is lit.
     fn walked(&self, walks: u64, seed: u64) -> [f64; PLACES.len()] {
-        let matter = Matter { albedo: self.albedo, asymmetry: 0.0, eta: self.eta };
+        let coefficients = Coefficients { sigma_a: 1.0 - self.albedo, sigma_s: self.albedo, asymmetry: 0.0 };
+        let matter = Matter::new(&coefficients, self.eta).expect("it scatters");
+        let stream = Stream::new(seed, Purpose::LightWalk);
         let portion = |index: u64| {
-            let mut random = Random(seed.wrapping_mul(0x9E37_79B9).wrapping_add(index << 40));
-            let mut counts = [0u64; PLACES.len() + 1];
-            for _ in 0..10_000 {
-                if let Some(offset) = exit(&matter, self.refracted(), &mut random) {
-                    counts[PLACES.len()] += 1;
-                    for (count, place) in counts.iter_mut().zip(PLACES) {
-                        *count += u64::from(offset.x > place);
+            let mut sums = [0.0; PLACES.len() + 1];
+            for k in 0..10_000 {
+                let mut random = Sequence::new(stream.item(index * 10_000 + k));
+                if let Some((offset, weight)) = exit(&matter, self.refracted(), &mut random) {
+                    sums[PLACES.len()] += weight;
+                    for (sum, place) in sums.iter_mut().zip(PLACES) {
+                        *sum += if offset.x > place { weight } else { 0.0 };
                     }
                 }
             }
-            counts
+            sums
         };
         let portions: Vec<_> = (0..walks / 10_000).into_par_iter().map(portion).collect();
-        let sum = |k: usize| portions.iter().map(|counts| counts[k]).sum::<u64>() as f64;
+        let sum = |k: usize| portions.iter().map(|sums| sums[k]).sum::<f64>();
         std::array::from_fn(|k| sum(k) / sum(PLACES.len()))
     }
 

@@ -52,6 +52,7 @@ impl View {
             rays: &self.world.rays,
             clouds: std::slice::from_ref(&self.cloud),
             media,
+            calibration: None,
             camera,
         };
         let settings = Settings { estimator, ..settings(Model::DirectionalDipole, SIZE, SIZE) };

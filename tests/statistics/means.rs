@@ -56,7 +56,14 @@ pub fn image_sum(world: &World, camera: &Camera, cloud: &Cloud, model: Model) ->
 
 /// The same picture, of objects of several media.
 pub fn rendered(world: &World, camera: &Camera, cloud: &Cloud, media: &[Medium], model: Model) -> Rendered {
-    let input = Input { scene: &world.scene, rays: &world.rays, clouds: std::slice::from_ref(cloud), media, camera };
+    let input = Input {
+        scene: &world.scene,
+        rays: &world.rays,
+        clouds: std::slice::from_ref(cloud),
+        media,
+        calibration: None,
+        camera,
+    };
     gather::render(&input, &settings(model, 12, 8), |_| ())
 }
 

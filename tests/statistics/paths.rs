@@ -15,7 +15,14 @@ use test_support::{
 /// An image of an object of index 1.5 that scatters nothing; `sigma_a` in 1/m.
 fn render(world: &World, camera: &Camera, sigma_a: f64, settings: &Settings) -> Rendered {
     let (cloud, media) = (cloud(world, &by_area(16, 0)), [gray(sigma_a, 0.0, 0.0, 1.5)]);
-    let input = Input { scene: &world.scene, rays: &world.rays, clouds: from_ref(&cloud), media: &media, camera };
+    let input = Input {
+        scene: &world.scene,
+        rays: &world.rays,
+        clouds: from_ref(&cloud),
+        media: &media,
+        calibration: None,
+        camera,
+    };
     gather::render(&input, settings, |_| ())
 }
 

@@ -78,6 +78,7 @@ fn few_samples_have_the_mean_of_many() {
                 rays: &world.rays,
                 clouds: from_ref(&cloud),
                 media: &media,
+                calibration: None,
                 camera: &camera,
             };
             let settings = Settings { paths_per_pixel: 2, estimator, seed, ..settings(Model::BetterDipole, 4, 3) };

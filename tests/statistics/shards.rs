@@ -23,7 +23,14 @@ const RUNS: u64 = 128 * EFFORT;
 /// Mean of an image, all channels.
 fn brightness(scene: &Scene, clouds: &[Cloud], settings: &Settings) -> f64 {
     let (media, camera) = ([scene.medium.clone()], orthographic(DVec3::new(1.0, 1.2, 1.5), scene.half_height));
-    let input = Input { scene: &scene.world.scene, rays: &scene.world.rays, clouds, media: &media, camera: &camera };
+    let input = Input {
+        scene: &scene.world.scene,
+        rays: &scene.world.rays,
+        clouds,
+        media: &media,
+        calibration: None,
+        camera: &camera,
+    };
     let pixels = gather::render(&input, settings, |_| ()).pixels;
     pixels.iter().map(|p| p.beauty().element_sum()).sum::<f64>() / pixels.len() as f64
 }

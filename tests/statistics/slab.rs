@@ -144,8 +144,14 @@ fn seen_at_75_degrees(model: Model, integral: DVec3) {
     let media = [skin()];
     let run = |seed: u64| {
         let cloud = cloud(&world, &sampling(10_000, seed));
-        let input =
-            Input { scene: &world.scene, rays: &world.rays, clouds: from_ref(&cloud), media: &media, camera: &camera };
+        let input = Input {
+            scene: &world.scene,
+            rays: &world.rays,
+            clouds: from_ref(&cloud),
+            media: &media,
+            calibration: None,
+            camera: &camera,
+        };
         let settings = Settings { paths_per_pixel: 256, seed, ..settings(model, 1, 1) };
         gather::render(&input, &settings, |_| ()).pixels[0].beauty()
     };

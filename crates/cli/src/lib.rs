@@ -26,11 +26,14 @@
 //! ```
 
 mod allocator;
+mod assign_media;
+mod cloud_files;
 mod common;
 mod count;
 mod environment;
 mod failure;
 mod files;
+mod lit_scene;
 mod medium;
 mod memory;
 mod named;
@@ -44,11 +47,14 @@ mod threads;
 mod truncated;
 mod values;
 
+pub use assign_media::{AssignError, assign_media};
+pub use cloud_files::CloudFiles;
 pub use common::{Common, print};
 pub use count::{count, count_up, parse_count};
 pub use environment::EnvironmentSource;
 pub use failure::{Failure, run};
 pub use files::{Files, file_name, is_same_file};
+pub use lit_scene::{LitScene, Media, declare_inputs};
 pub use medium::{ReadMediumError, is_file, read_medium, scene_medium};
 pub use memory::{Need, available_memory_bytes, peak_memory_bytes, require_memory};
 pub use named::{Candidate, Unclear, the_one, word_for};

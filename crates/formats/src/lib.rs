@@ -18,6 +18,7 @@
 compile_error!("clouds are mapped little-endian; this target is big-endian");
 
 pub mod atomic;
+pub mod calibration;
 pub mod cloud;
 mod error;
 pub mod image;

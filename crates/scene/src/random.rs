@@ -16,14 +16,24 @@ pub enum Purpose {
     Pixel,
     /// Transmittance rays of edge pixels.
     Edge,
-    /// Points at which phase two calibrates its error estimate.
-    Calibration,
+    /// Points at which phase two corrects the error that the cut predicts.
+    CutCorrection,
     /// Scrambles of the sequences of phase one.
     Scramble,
     /// Light that opaque surfaces reflect to the samples of phase one.
     Bounce,
     /// The shards that the paths of a pixel gather from.
     ShardPick,
+    /// Random walks that light begins.
+    LightWalk,
+    /// Random walks that camera paths begin.
+    CameraWalk,
+    /// Points of the surface where a calibration compares the model with random walks.
+    CalibrationPoint,
+    /// More points of the surface, which measure its parts.
+    CalibrationArea,
+    /// The sums over the cloud at these points.
+    CalibrationSum,
     /// Random walks behind the table of the half-space model.
     HalfSpaceTable,
     /// The bits below those of one of these sequences.
@@ -39,9 +49,14 @@ impl Purpose {
             Purpose::Gather => 3,
             Purpose::Scramble => 4,
             Purpose::Pixel => 5,
-            Purpose::Calibration => 6,
+            Purpose::CutCorrection => 6,
             Purpose::Bounce => u64::MAX,
             Purpose::ShardPick => u64::MAX - 1,
+            Purpose::LightWalk => u64::MAX - 2,
+            Purpose::CameraWalk => u64::MAX - 7,
+            Purpose::CalibrationPoint => u64::MAX - 4,
+            Purpose::CalibrationSum => u64::MAX - 5,
+            Purpose::CalibrationArea => u64::MAX - 6,
             Purpose::HalfSpaceTable => u64::MAX - 3,
             Purpose::Remainder(k) => 7 + k,
         }

@@ -83,6 +83,16 @@ impl<'a> LitSamples<'a> {
         self.len == 0
     }
 
+    /// The number of tiles.
+    pub fn tile_count(&self) -> usize {
+        self.tiles.len()
+    }
+
+    /// One sample as it is stored.
+    pub fn record(&self, index: usize) -> &Record {
+        &self.tiles.as_flattened()[index]
+    }
+
     /// The positions of one tile, m.
     #[inline(always)]
     pub fn positions(&self, index: usize) -> [Lane; 3] {

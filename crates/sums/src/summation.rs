@@ -4,7 +4,7 @@
 
 use crate::{
     drawn::{DrawnCounts, ShardPick},
-    estimator::{Calibration, Estimator, Scatterer, Scratch, Sum},
+    estimator::{CutCorrection, Estimator, Scatterer, Scratch, Sum},
     samples::{Exit, LitSamples},
 };
 use formats::cloud::Cloud;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 pub struct Summation<'a> {
     scatterer: Arc<Scatterer>,
     /// Corrects the cut's prediction of its own error; it starts as 1.
-    pub calibration: Calibration,
+    pub correction: CutCorrection,
     /// The two independent halves of each shard.
     shards: Vec<[LitSamples<'a>; 2]>,
     drawn: DrawnCounts,
@@ -37,7 +37,7 @@ pub struct Leaving {
 impl<'a> Summation<'a> {
     /// Takes the two halves of each shard; `drawn` counts the samples of all materials.
     pub fn new(scatterer: Arc<Scatterer>, shards: Vec<[LitSamples<'a>; 2]>, drawn: DrawnCounts) -> Summation<'a> {
-        Summation { scatterer, calibration: Calibration::default(), shards, drawn }
+        Summation { scatterer, correction: CutCorrection::default(), shards, drawn }
     }
 
     /// The samples of the sampled material `slot` in shards of one cloud.
@@ -59,7 +59,7 @@ impl<'a> Summation<'a> {
 
     /// The sum over one half of one shard, before the division by K.
     pub fn sum(&self, estimator: Estimator, half: usize, shard: usize, exit: &Exit, scratch: &mut Scratch) -> Sum {
-        estimator.sum(&self.scatterer, &self.calibration, &self.shards[shard][half], exit, scratch)
+        estimator.sum(&self.scatterer, &self.correction, &self.shards[shard][half], exit, scratch)
     }
 
     /// The sum over one half of all shards, each with random numbers of its own.

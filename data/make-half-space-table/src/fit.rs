@@ -1,4 +1,4 @@
-//! The terms of the table from walks and exact reflectances (docs/method.md 14.6).
+//! The terms of the table from walks and exact reflectances (docs/method.md 15.6).
 
 use crate::{
     grid::{ALBEDOS, ANGLES, PLACES, STEPS, cosines},

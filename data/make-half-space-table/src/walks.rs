@@ -4,7 +4,7 @@
 //! isotropic source of power 1 at depth `z`. By reciprocity it is `∫ μ T dω/(4π)` times the fluence at `(z, ρ)` of a
 //! source on the boundary whose directions into the medium have the density `μ T(μ)`, and the density of collisions is
 //! the fluence. A beam that enters at the cosine `μ12` is a row of isotropic sources: its exitance is
-//! `M = α ∫ e^{−s} P(s μ12, ‖r − s ω12‖) ds`, r and ω12 along the surface (docs/method.md 14.9). So one set of walks serves
+//! `M = α ∫ e^{−s} P(s μ12, ‖r − s ω12‖) ds`, r and ω12 along the surface (docs/method.md 15.9). So one set of walks serves
 //! every albedo, by the number of collisions, and every direction, by their depths.
 
 use crate::grid::{ALBEDOS, ANGLES, BINS, albedo, bin_of, cosines};

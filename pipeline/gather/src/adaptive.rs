@@ -1,8 +1,8 @@
 //! Renders with a given number of paths, or with as many paths as a target error needs.
 
 use cli::{Common, Progress, count, count_up};
-use formats::cloud::{Cloud, Pattern};
-use gather::{Input, Passes, Rendered, Settings, estimator::Estimator, film::Errors, render, shards};
+use formats::cloud::{Cloud, Pattern, shards};
+use gather::{Input, Passes, Rendered, Settings, estimator::Estimator, film::Errors, render};
 use sums::confidence::Estimate;
 
 /// Renders `settings.paths_per_pixel` paths.
@@ -89,6 +89,10 @@ impl Round<'_> {
                 ))
             };
         };
+        if settings.reference {
+            // No cloud limits the error.
+            return if estimate.safe() <= self.target { Verdict::Met } else { Verdict::More };
+        }
         let lit_error = errors.scattered * self.lit_count_error();
         if estimate.safe().max(lit_error) <= self.target {
             return Verdict::Met;

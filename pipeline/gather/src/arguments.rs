@@ -50,10 +50,14 @@ pub struct Arguments {
     /// [default: the media that SCENE gives its materials]
     #[arg(long, value_name = "[MATERIAL=]NAME|FILE.json")]
     pub medium: Vec<String>,
-    /// BSSRDF model: how light scatters from point to point
-    #[arg(long, value_name = "MODEL", default_value = "directional-dipole",
+    /// BSSRDF model: how light scatters from point to point [default: that of --calibration, or half-space]
+    #[arg(long, value_name = "MODEL", default_value_if("note", "true", "directional-dipole"),
         value_parser = one_of(&Model::ALL, Model::name))]
-    pub bssrdf: Model,
+    pub bssrdf: Option<Model>,
+    /// Calibration of `calibrate`, which brings its media along, or none [default: with --bssrdf half-space the shape is
+    /// calibrated in memory first; other models are used as they were published]
+    #[arg(long, value_name = "FILE|none", value_parser = file_name())]
+    pub calibration: Option<PathBuf>,
     /// Sum over the cloud: hierarchical (cut), by the note's roulette, or over all samples (exhaustive)
     #[arg(long, value_name = "HOW", default_value = "cut", default_value_if("note", "true", "roulette"),
         value_parser = one_of(&Estimator::ALL, Estimator::name))]
@@ -65,7 +69,12 @@ pub struct Arguments {
     #[arg(long, value_name = "RULE", default_value = "mixture", default_value_if("note", "true", "mean"),
         value_parser = one_of(&Rule::ALL, Rule::name))]
     pub roulette: Rule,
-    /// Camera paths per pixel; with --target-error, the largest number [default: 16; with --target-error 4096]
+    /// Follow random walks through the medium instead of a BSSRDF, exact but slow: the truth to compare images with. Of
+    /// CLOUD only its materials count
+    #[arg(long, conflicts_with_all = ["bssrdf", "estimator", "accuracy", "roulette"])]
+    pub reference: bool,
+    /// Camera paths per pixel; with --target-error, the largest number [default: 16, with --target-error 4096; with
+    /// --reference 64 and 65536]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_048_576))]
     pub spp: Option<u32>,
     /// Add paths until the image has this relative standard error, that of the cloud included: 95 of 100 images have an

@@ -27,6 +27,16 @@ pub struct Counts {
     pub edge_pixels: u64,
     /// Rays of edge pixels, and the rays that search for them.
     pub edge_rays: u64,
+    /// Random walks, their simulated collisions, and the connections of these to lights, blocked ones included.
+    pub walks: u64,
+    pub collisions: u64,
+    pub connections: u64,
+    /// Walks that left their medium through a hole of its surface.
+    pub walks_escaped: u64,
+    /// Walks that were reflected inside without end, see [`walks::MAX_REFLECTIONS`].
+    pub walks_trapped: u64,
+    /// Walks that met an opaque surface inside a medium.
+    pub walks_absorbed_inside: u64,
 }
 
 impl Counts {
@@ -45,5 +55,11 @@ impl Counts {
         self.geometric_normals += other.geometric_normals;
         self.edge_pixels += other.edge_pixels;
         self.edge_rays += other.edge_rays;
+        self.walks += other.walks;
+        self.collisions += other.collisions;
+        self.connections += other.connections;
+        self.walks_escaped += other.walks_escaped;
+        self.walks_trapped += other.walks_trapped;
+        self.walks_absorbed_inside += other.walks_absorbed_inside;
     }
 }

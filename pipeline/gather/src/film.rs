@@ -229,6 +229,11 @@ pub fn relative_error(pixels: &[Pixel]) -> Option<f64> {
     (power > 0.0).then(|| (variance.max(0.0) / power).sqrt())
 }
 
+/// The sources of error that [`relative_error`] and the variance of an image without a cloud include.
+pub fn covers_of_walks(paths_per_pixel: u32) -> &'static str {
+    if paths_per_pixel == 1 { "nothing: one path a pixel" } else { "camera paths and their walks" }
+}
+
 /// The sources of error that [`relative_error`] and the variance of an image include, by the number of samples drawn
 /// for the second half of the cloud.
 pub fn covers(paths_per_pixel: u32, second_half: u64) -> &'static str {

@@ -85,7 +85,7 @@ mod tests {
     use scene::random::{Purpose, Stream};
 
     fn freedom(size: [usize; 2], seed: u64, difference: impl Fn(usize, f64) -> f64) -> f64 {
-        let stream = Stream::new(seed, Purpose::Calibration);
+        let stream = Stream::new(seed, Purpose::CutCorrection);
         let mut cells = Cells::new(size);
         for pixel in 0..size[0] * size[1] {
             let normal = (0..12).map(|d| stream.item(pixel as u64).uniform(d)).sum::<f64>() - 6.0;

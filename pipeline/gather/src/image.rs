@@ -2,7 +2,7 @@
 
 use crate::{counts::Counts, crop::Crop, estimator::Estimator, film::Pixel};
 use bssrdf::{Medium, Model};
-use formats::cloud::Cloud;
+use formats::{calibration::Calibration, cloud::Cloud};
 use glam::DVec2;
 use scene::{Camera, NormalKind, Rays, Scene};
 
@@ -32,10 +32,12 @@ impl Filter {
 pub struct Input<'a> {
     pub scene: &'a Scene,
     pub rays: &'a Rays<'a>,
-    /// One cloud of this scene, or several that are gathered as one, see [`crate::shards::join`].
+    /// One cloud of this scene, or several that are gathered as one, see [`formats::cloud::shards::join`].
     pub clouds: &'a [Cloud],
     /// The medium of each material that the clouds sampled, in their order.
     pub media: &'a [Medium],
+    /// The factors of the media on this shape, if it is calibrated.
+    pub calibration: Option<&'a Calibration>,
     pub camera: &'a Camera,
 }
 
@@ -51,6 +53,8 @@ pub struct Settings {
     pub filter: Filter,
     pub estimator: Estimator,
     pub model: Model,
+    /// Random walks take the place of the sum over the cloud.
+    pub reference: bool,
     pub normals: NormalKind,
     pub max_depth: u32,
     pub seed: u64,

@@ -3,10 +3,10 @@
 
 use crate::{
     cameras::{Viewpoint, tag, viewpoints},
-    inputs::Inputs,
     settings::{ImageNames, Request},
 };
-use cli::{Common, Failure, Need};
+use bssrdf::Model;
+use cli::{Common, Failure, LitScene, Need};
 use gather::{Crop, Settings};
 use glam::{DMat3, DVec3};
 use scene::{Camera, View, ViewFile};
@@ -35,10 +35,10 @@ pub struct ImageJob {
 }
 
 /// All images of a request. Refuses those that cannot be rendered, before any work is done.
-pub fn image_jobs(request: &Request, inputs: &Inputs) -> Result<Vec<ImageJob>, Failure> {
+pub fn image_jobs(request: &Request, inputs: &LitScene, model: Model) -> Result<Vec<ImageJob>, Failure> {
     let mut jobs = Vec::new();
     for viewpoint in viewpoints(request, &inputs.scene, || inputs.middle())? {
-        jobs.extend(turntable(request, &viewpoint)?);
+        jobs.extend(turntable(request, &viewpoint, model)?);
     }
     warn_of_aspects(&jobs, &request.common);
     jobs.iter().try_for_each(|job| check_memory(&job.settings).map_err(|e| job.failure(e)))?;
@@ -46,8 +46,8 @@ pub fn image_jobs(request: &Request, inputs: &Inputs) -> Result<Vec<ImageJob>, F
 }
 
 /// The images of one camera: one, or as many as a turntable has steps.
-fn turntable(request: &Request, viewpoint: &Viewpoint) -> Result<Vec<ImageJob>, Failure> {
-    let settings = settings(request, viewpoint).map_err(|e| named(e, viewpoint.tag.as_deref()))?;
+fn turntable(request: &Request, viewpoint: &Viewpoint, model: Model) -> Result<Vec<ImageJob>, Failure> {
+    let settings = settings(request, viewpoint, model).map_err(|e| named(e, viewpoint.tag.as_deref()))?;
     let count = request.orbit.unwrap_or(1);
     let job = |index: u32| {
         let degrees = 360.0 * f64::from(index) / f64::from(count);
@@ -77,7 +77,7 @@ pub fn image_paths(names: &ImageNames) -> Result<Vec<PathBuf>, Failure> {
 }
 
 /// How to render the image of a camera.
-fn settings(request: &Request, viewpoint: &Viewpoint) -> Result<Settings, Failure> {
+fn settings(request: &Request, viewpoint: &Viewpoint, model: Model) -> Result<Settings, Failure> {
     let (width, height) = size(request, viewpoint)?;
     Ok(Settings {
         width,
@@ -86,7 +86,8 @@ fn settings(request: &Request, viewpoint: &Viewpoint) -> Result<Settings, Failur
         paths_per_pixel: request.paths,
         filter: request.filter,
         estimator: request.estimator,
-        model: request.model,
+        model,
+        reference: request.reference,
         normals: cli::normal_kind(request.scene.how.normals),
         max_depth: request.max_depth,
         seed: request.common.seed,

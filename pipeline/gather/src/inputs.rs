@@ -1,94 +1,31 @@
-//! The inputs of all images of a run: the clouds, their scene, and the media.
+//! The inputs of a run: declared, read, and checked against each other.
 
 use crate::{
-    cloud_files::CloudFiles,
-    media,
-    settings::{CameraSource, Request},
+    calibrated,
+    settings::{CalibrationSource, CameraSource, Request},
 };
-use bssrdf::Medium;
-use cli::{Failure, Files, is_file};
-use formats::cloud::Cloud;
-use gather::shards;
-use scene::{DVec3, MeshDefects, Rays, Scene};
-use std::path::PathBuf;
-
-/// The inputs of all images, except for their cameras.
-pub struct Inputs {
-    pub cloud_files: CloudFiles,
-    pub scene: Scene,
-    /// The medium of each sampled material, in their order.
-    pub media: Vec<Medium>,
-    /// Defects of the sampled surfaces.
-    pub defects: MeshDefects,
-}
-
-impl Inputs {
-    /// Reads all inputs except the samples of the clouds; refuses inputs that do not fit each other. The files that the
-    /// scene's file names are declared as they become known.
-    pub fn read(request: &Request, files: &mut Files) -> Result<Inputs, Failure> {
-        let cloud_files = CloudFiles::open(&request.clouds)?;
-        let mut scene = import(request)?;
-        scene.files.iter().try_for_each(|path| files.reads("a file that SCENE names", path))?;
-        cloud_files.check_fit(&scene, request)?;
-        let (sampled, defects) = (shards::materials(&cloud_files.clouds), cloud_files.defects());
-        let is_sampled = |material| sampled.iter().any(|m| m.index == material);
-        request.scene.check_mesh(&mut scene, is_sampled, defects, &request.common)?;
-        let media = media::assign(&request.media, sampled, &scene.materials)?;
-        Ok(Inputs { cloud_files, scene, media, defects })
-    }
-
-    pub fn clouds(&self) -> &[Cloud] {
-        &self.cloud_files.clouds
-    }
-
-    /// The triangles of the scene, prepared for rays.
-    pub fn rays(&self) -> Rays<'_> {
-        Rays::of_scene(&self.scene, |material| self.is_sampled(material))
-    }
-
-    fn is_sampled(&self, material: u16) -> bool {
-        shards::materials(self.clouds()).iter().any(|m| m.index == material)
-    }
-
-    /// The middle of the box around the translucent surfaces, world, m.
-    pub fn middle(&self) -> DVec3 {
-        let (low, high) = self.bounds(|material| self.is_sampled(material));
-        self.scene.origin + 0.5 * (low + high)
-    }
-
-    /// The box around the triangles of these materials, m from the scene's origin.
-    pub fn bounds(&self, of: impl Fn(u16) -> bool) -> (DVec3, DVec3) {
-        let mesh = &self.scene.mesh;
-        let own = (0..mesh.triangles.len()).filter(|k| of(mesh.triangles[*k].material));
-        let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        own.flat_map(|k| mesh.corners(k)).fold(start, |(low, high), p| (low.min(p), high.max(p)))
-    }
-}
-
-/// Reads SCENE. If the last argument is another cloud instead, the message says that SCENE is missing.
-fn import(request: &Request) -> Result<Scene, Failure> {
-    let path = &request.scene.path;
-    request.scene.import(&request.common).map_err(|failure| match Cloud::open(path) {
-        Ok(_) => Failure::usage(format!("{}: this is a cloud; give SCENE after all clouds", path.display())),
-        Err(_) => failure,
-    })
-}
+use cli::{Failure, Files, LitScene, Media, declare_inputs};
+use formats::calibration::Calibration;
 
 /// Declares the files that the run reads, as far as the arguments name them.
 pub fn declare(request: &Request) -> Result<Files, Failure> {
-    let mut files = Files::default();
-    request.clouds.iter().try_for_each(|path| files.reads("CLOUD", path))?;
-    request.scene.declare(&mut files)?;
+    let mut files = declare_inputs(&request.clouds, &request.scene, &request.media)?;
+    if let CalibrationSource::File(path) = &request.calibration {
+        files.reads("--calibration", path)?;
+    }
     if let CameraSource::View(path) = &request.camera {
         files.reads("--view", path)?;
     }
-    // The name of a material may contain an equals sign: the text after any of them may be the file.
-    let after = |argument: &'_ str| -> Vec<PathBuf> {
-        let starts = argument.match_indices('=').map(|(k, _)| k + 1);
-        starts.chain([0]).map(|start| &argument[start..]).filter(|name| is_file(name)).map(PathBuf::from).collect()
-    };
-    for path in request.media.iter().flat_map(|argument| after(argument)) {
-        files.reads("--medium", &path)?;
-    }
     Ok(files)
+}
+
+/// Reads all inputs except the samples of the clouds, and the cameras; refuses inputs that do not fit each other.
+pub fn read(request: &Request, kept: Option<&Calibration>, files: &mut Files) -> Result<LitScene, Failure> {
+    let media = match kept {
+        Some(kept) if request.media.is_empty() => Media::Known(calibrated::media(kept)?),
+        _ => Media::Named(&request.media),
+    };
+    let lit = LitScene::read(&request.clouds, &request.scene, media, &request.common, files)?;
+    kept.map_or(Ok(()), |kept| calibrated::check_fit(request, &lit, kept))?;
+    Ok(lit)
 }

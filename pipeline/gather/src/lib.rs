@@ -25,19 +25,20 @@
 //!     filter: Filter::Box,
 //!     estimator: Estimator::Exhaustive,
 //!     model: Model::DirectionalDipole,
+//!     reference: false,
 //!     normals: NormalKind::Shading,
 //!     max_depth: 16,
 //!     seed: 0,
 //! };
-//! let input = Input { scene: &scene, rays: &rays, clouds: &[], media: &[], camera: &scene.cameras[0] };
+//! let input = Input { scene: &scene, rays: &rays, clouds: &[], media: &[], calibration: None, camera: &scene.cameras[0] };
 //! let rendered = render(&input, &settings, |_| ());
 //! assert_eq!((rendered.pixels.len(), rendered.counts.paths), (4, 16));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod calibration;
 pub mod counts;
 mod crop;
+mod cut_correction;
 mod edge;
 pub mod film;
 mod freedom;
@@ -46,8 +47,8 @@ mod passes;
 mod path;
 pub mod path_state;
 pub mod preview;
+mod reference;
 pub mod renderer;
-pub mod shards;
 mod subsurface;
 
 pub use crop::Crop;

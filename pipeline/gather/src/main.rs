@@ -2,12 +2,11 @@
 
 mod adaptive;
 mod arguments;
+mod calibrated;
 mod cameras;
-mod cloud_files;
 mod image_jobs;
 mod inputs;
 mod lists;
-mod media;
 mod outputs;
 mod report;
 mod scale;
@@ -15,12 +14,12 @@ mod settings;
 mod summary;
 
 use arguments::Arguments;
+use bssrdf::Model;
 use clap::Parser;
-use cli::{Failure, Seconds};
-use formats::atomic::Output;
+use cli::{Failure, LitScene, Seconds};
+use formats::{atomic::Output, calibration::Calibration};
 use gather::Input;
 use image_jobs::{ImageJob, image_jobs, image_paths};
-use inputs::Inputs;
 use report::Facts;
 use scene::{Rays, Scene};
 use settings::{Request, Task};
@@ -39,41 +38,57 @@ fn main() {
     });
 }
 
+/// Everything that the images of a request need.
+struct Prepared {
+    inputs: LitScene,
+    model: Model,
+    /// The calibration that a file keeps.
+    kept: Option<Calibration>,
+    jobs: Vec<ImageJob>,
+}
+
 /// Renders all images of a request.
 fn render(request: &Request) -> Result<(), Failure> {
     let mut seconds = Seconds::start();
-    let (inputs, jobs) = seconds.time("open", || prepare(request))?;
+    let Prepared { inputs, model, kept, jobs } = seconds.time("open", || prepare(request))?;
     let rays = seconds.time("ray_tree", || request.common.in_pool(|| inputs.rays()))?;
+    let calibration = match kept {
+        Some(kept) => Some(kept),
+        None => seconds.time("calibrate", || calibrated::make(request, &inputs, &rays, model))?,
+    };
     for job in &jobs {
-        render_image(request, &inputs, &rays, job, seconds)?;
+        render_image(request, &inputs, &rays, calibration.as_ref(), job, seconds)?;
         seconds = Seconds::start();
     }
     Ok(())
 }
 
 /// Reads and checks everything, so that what can be refused is refused before the first ray.
-fn prepare(request: &Request) -> Result<(Inputs, Vec<ImageJob>), Failure> {
+fn prepare(request: &Request) -> Result<Prepared, Failure> {
     let mut files = inputs::declare(request)?;
-    let inputs = Inputs::read(request, &mut files)?;
-    let jobs = image_jobs(request, &inputs)?;
-    scale::show(request, &inputs);
+    let kept = calibrated::read(request)?;
+    let model = calibrated::model(request, kept.as_ref())?;
+    let inputs = inputs::read(request, kept.as_ref(), &mut files)?;
+    let jobs = image_jobs(request, &inputs, model)?;
+    scale::show(request, &inputs, model);
     outputs::declare(&mut files, &request.outputs, &jobs)?;
     inputs.cloud_files.verify(request.common.thread_count())?;
-    Ok((inputs, jobs))
+    Ok(Prepared { inputs, model, kept, jobs })
 }
 
 /// Renders one image and writes its files, all or none; `seconds` are those of the steps before it.
 fn render_image(
     request: &Request,
-    inputs: &Inputs,
+    inputs: &LitScene,
     rays: &Rays,
+    calibration: Option<&Calibration>,
     job: &ImageJob,
     mut seconds: Seconds,
 ) -> Result<(), Failure> {
     let (common, settings) = (&request.common, &job.settings);
     let output = Output::create(&job.file(&request.outputs.image))?;
-    let input =
-        Input { scene: &inputs.scene, rays, clouds: inputs.clouds(), media: &inputs.media, camera: &job.camera };
+    let (scene, clouds, media, camera) = (&inputs.scene, inputs.clouds(), &inputs.media, &job.camera);
+    let input = Input { scene, rays, clouds, media, calibration, camera };
     let rendered = seconds.time("render", || {
         common.in_pool(|| match request.target_error {
             None => adaptive::render_all(&input, settings, common),
@@ -81,7 +96,8 @@ fn render_image(
         })
     })?;
     inputs.cloud_files.check_unchanged()?;
-    let facts = Facts::new(request, inputs, job, &rendered);
+    let facts = Facts::new(request, inputs, calibration, job, &rendered);
+    summary::check_walks(&facts)?;
     outputs::write(&facts, output, seconds)?;
     summary::show(&facts)
 }

@@ -1,16 +1,18 @@
 //! Renders pixels in parallel, and adds paths to all of them in passes.
 
 use crate::{
-    calibration,
     counts::Counts,
     crop::Crop,
+    cut_correction,
     edge::{self, Edge},
     film::{Errors, Pixel, PixelSum},
     image::{Filter, Input, Rendered, Settings},
     path_state::{PathIndex, ThreadContext},
+    reference::{Walks, meets_light},
     renderer::{Renderer, TranslucentObject},
-    shards,
 };
+use calibration::Factors;
+use formats::cloud::shards;
 use glam::DVec2;
 use rayon::prelude::*;
 use scene::{
@@ -49,11 +51,13 @@ type Sums = (PixelSum, Option<Box<Edge>>);
 impl<'a> Passes<'a> {
     /// Prepares an image; the cut is as accurate as `settings.paths_per_pixel` paths need.
     pub fn new(input: &Input<'a>, settings: &Settings) -> Self {
+        let objects = objects(input, settings);
         let mut renderer = Renderer {
             input: *input,
+            meets_light: meets_light(input, |material| objects[material as usize].is_none()),
             settings: settings.clone(),
             lights: LightTree::new(input.scene.lights()),
-            objects: objects(input, settings),
+            objects,
             drawn: DrawnCounts::of(input.clouds),
             paths_per_pixel: settings.paths_per_pixel,
             pass: 0..settings.paths_per_pixel,
@@ -62,7 +66,7 @@ impl<'a> Passes<'a> {
             gathers: Stream::new(settings.seed, Purpose::Gather),
             shard_picks: Stream::new(settings.seed, Purpose::ShardPick),
         };
-        calibration::calibrate(&mut renderer);
+        cut_correction::correct(&mut renderer);
         let mut passes = Passes {
             renderer,
             edges: vec![None; settings.part().pixels()],
@@ -219,8 +223,13 @@ fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<Translucent
     let mut objects: Vec<Option<TranslucentObject>> = input.scene.materials.iter().map(|_| None).collect();
     for (slot, (sampled, medium)) in shards::materials(input.clouds).iter().zip(input.media).enumerate() {
         let scatterer = Arc::new(Scatterer::new(settings.model, medium, sampled.area_m2.sqrt()));
+        let is_translucent = |material| shards::materials(input.clouds).iter().any(|m| m.index == material);
+        let walks = settings.reference.then(|| Walks::new(input, sampled.index, medium, is_translucent));
+        let extinction = || medium.map(|c| c.extinction());
         objects[sampled.index as usize] = Some(TranslucentObject {
-            unscattered: settings.model.unscattered_extinction(medium),
+            unscattered: if settings.reference { extinction() } else { settings.model.unscattered_extinction(medium) },
+            walks: walks.flatten(),
+            factors: input.calibration.map(|c| Factors::new(&c.materials[slot])),
             lobe: settings.model.exit_lobe(medium),
             summation: Summation::of_clouds(scatterer, input.clouds, slot),
             medium: medium.clone(),

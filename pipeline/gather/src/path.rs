@@ -5,10 +5,10 @@ use crate::{
     counts::Counts,
     path_state::{Guide, Layer, PathIndex, PathLight, PathState, ThreadContext, Trace},
     renderer::{Renderer, TranslucentObject},
-    shards::ShardPick,
 };
 use bsdf::{Bsdf, Lobe, Side, Surface, View};
 use scene::{DVec3, Hit, SurfacePoint, light::all_light_at};
+use sums::drawn::ShardPick;
 
 /// The second branch of a path uses the random numbers from this dimension on.
 const BRANCH: u64 = 1 << 32;

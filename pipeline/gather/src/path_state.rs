@@ -1,7 +1,8 @@
 //! The state of one camera path, the light that it gathers, and the memory of its thread.
 
-use crate::{counts::Counts, estimator::Scratch, shards::ShardPick};
+use crate::{counts::Counts, estimator::Scratch};
 use scene::{DVec3, SurfacePoint, random::Item};
+use sums::drawn::ShardPick;
 
 /// The index of a path.
 #[derive(Clone, Copy, Debug)]

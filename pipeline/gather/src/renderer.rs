@@ -2,13 +2,14 @@
 
 use crate::{
     image::{Input, Settings},
-    shards::DrawnCounts,
+    reference::Walks,
 };
 use bsdf::Surface;
 use bssrdf::Medium;
+use calibration::Factors;
 use scene::{DVec3, light::LightTree, random::Stream};
 use std::ops::Range;
-use sums::Summation;
+use sums::{Summation, drawn::DrawnCounts};
 
 /// The data of an image, shared by all threads.
 pub struct Renderer<'a> {
@@ -23,6 +24,8 @@ pub struct Renderer<'a> {
     pub paths_per_pixel: u32,
     /// Paths of each pixel that the current pass adds.
     pub pass: Range<u32>,
+    /// Whether random walks can meet light where they leave.
+    pub meets_light: bool,
     /// Distance beyond a surface at which a ray continues that crosses it straight, m.
     pub clearance: f64,
     pub paths: Stream,
@@ -35,9 +38,13 @@ pub struct TranslucentObject<'a> {
     pub medium: Medium,
     /// Extinction `σ̃_t` of unscattered light, 1/m (docs/method.md 5.11).
     pub unscattered: [f64; 3],
-    /// `a` and `b` of the light that leaves in proportion to `T21 (a + b μ)`, for each channel (docs/method.md 14.8).
+    /// `a` and `b` of the light that leaves in proportion to `T21 (a + b μ)`, for each channel (docs/method.md 15.8).
     pub lobe: [[f64; 2]; 3],
     pub summation: Summation<'a>,
+    /// The factors of its surface, if it is calibrated.
+    pub factors: Option<Factors>,
+    /// Random walks, if they take the place of the summation.
+    pub walks: Option<Walks<'a>>,
 }
 
 impl TranslucentObject<'_> {
@@ -53,6 +60,6 @@ impl TranslucentObject<'_> {
 
     /// True if no scattered light leaves it.
     pub fn is_dark(&self) -> bool {
-        self.medium.is_clear() || self.summation.is_empty()
+        self.medium.is_clear() || self.walks.is_none() && self.summation.is_empty()
     }
 }

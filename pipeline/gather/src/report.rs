@@ -1,16 +1,22 @@
 //! The metadata of an image: the attributes of its header, and its statistics.
 
-use crate::{image_jobs::ImageJob, inputs::Inputs, settings::Request};
+use crate::{image_jobs::ImageJob, settings::Request};
 use bssrdf::Medium;
-use cli::Seconds;
-use formats::{Attribute, cloud::hex};
-use gather::{Rendered, Settings, film, shards};
+use cli::{LitScene, Seconds};
+use formats::{
+    Attribute,
+    calibration::{CalibratedMaterial, Calibration},
+    cloud::{hex, shards},
+};
+use gather::{Rendered, Settings, film};
 use std::collections::BTreeMap;
+use sums::drawn::DrawnCounts;
 
 /// A rendered image, and the facts that its files state.
 pub struct Facts<'a> {
     pub request: &'a Request,
-    pub inputs: &'a Inputs,
+    pub inputs: &'a LitScene,
+    pub calibration: Option<&'a Calibration>,
     pub job: &'a ImageJob,
     /// The settings of the job, with the number of paths that were rendered.
     pub settings: Settings,
@@ -18,9 +24,15 @@ pub struct Facts<'a> {
 }
 
 impl<'a> Facts<'a> {
-    pub fn new(request: &'a Request, inputs: &'a Inputs, job: &'a ImageJob, rendered: &'a Rendered) -> Facts<'a> {
+    pub fn new(
+        request: &'a Request,
+        inputs: &'a LitScene,
+        calibration: Option<&'a Calibration>,
+        job: &'a ImageJob,
+        rendered: &'a Rendered,
+    ) -> Facts<'a> {
         let settings = Settings { paths_per_pixel: rendered.paths_per_pixel, ..job.settings.clone() };
-        Facts { request, inputs, job, settings, rendered }
+        Facts { request, inputs, calibration, job, settings, rendered }
     }
 
     /// Attributes of the image's header. None depends on the machine or the threads, and only `capDate` on the time, by
@@ -56,8 +68,12 @@ impl<'a> Facts<'a> {
         put("pcsss/emissionUnit", Attribute::Text(first.options.emission_unit.to_string()));
         put("pcsss/originM", Attribute::Vector(first.exchange_origin_m()));
         put("pcsss/seed", Attribute::Text(self.settings.seed.to_string()));
-        put("pcsss/bssrdf", text(self.settings.model.name()));
-        put("pcsss/estimator", Attribute::Text(self.settings.estimator.to_string()));
+        put("pcsss/bssrdf", text(self.model()));
+        if let Some(calibration) = self.calibration {
+            put("pcsss/calibration", Attribute::Text(hex(&calibration.content)));
+            put("pcsss/modelError", Attribute::Texts(calibration.materials.iter().map(model_error).collect()));
+        }
+        put("pcsss/estimator", Attribute::Text(self.estimator()));
         put("pcsss/version", text(version));
         put("pcsss/arguments", Attribute::Text(self.arguments()));
         put("pcsss/varianceCovers", text(self.covers()));
@@ -71,16 +87,19 @@ impl<'a> Facts<'a> {
 
     /// The arguments that change values, in a fixed order; neither paths of files, nor threads, nor the crop.
     fn arguments(&self) -> String {
-        let Settings { width, height, estimator, paths_per_pixel: paths, max_depth: depth, seed, .. } = &self.settings;
-        let (model, filter) = (self.settings.model.name(), self.settings.filter.name());
+        let Settings { width, height, paths_per_pixel: paths, max_depth: depth, seed, .. } = &self.settings;
+        let filter = self.settings.filter.name();
+        let how = match (self.settings.reference, self.settings.model.name(), self.settings.estimator) {
+            (true, ..) => "--reference".to_owned(),
+            (false, model, estimator) => format!("--bssrdf {model} --estimator {estimator}"),
+        };
         let (camera, environment) = (&self.job.argument, self.inputs.scene.environment.identity());
         let turned = match self.job.degrees {
             0.0 => String::new(),
             degrees => format!(" turned by {degrees} degrees"),
         };
         format!(
-            "{camera}{turned} --width {width} --height {height} --bssrdf {model} --estimator {estimator} --spp {paths} \
-             --filter {filter} --max-depth {depth} --seed {seed} --environment {environment} --normals {}",
+            "{camera}{turned} --width {width} --height {height} {how} --spp {paths} --filter {filter} --max-depth {depth} --seed {seed} --environment {environment} --normals {}",
             self.request.scene.how.normals
         )
     }
@@ -107,6 +126,12 @@ impl<'a> Facts<'a> {
             "geometric_normals_taken": counts.geometric_normals,
             "edge_pixels": counts.edge_pixels,
             "edge_rays": counts.edge_rays,
+            "walks": counts.walks,
+            "collisions": counts.collisions,
+            "connections": counts.connections,
+            "walks_escaped": counts.walks_escaped,
+            "walks_trapped": counts.walks_trapped,
+            "walks_absorbed_by_opaque_surfaces": counts.walks_absorbed_inside,
             "estimated_relative_error": film::relative_error(&rendered.pixels),
             "estimated_relative_error_covers": self.covers(),
             "negative_pixels": film::negative_count(&rendered.pixels),
@@ -116,8 +141,12 @@ impl<'a> Facts<'a> {
             "cloud": hex(&shards::identity(clouds)),
             "clouds": clouds.len(),
             "samples_drawn": shards::drawn(clouds),
-            "estimator": self.settings.estimator.to_string(),
-            "bssrdf": self.settings.model.name(),
+            "estimator": self.estimator(),
+            "bssrdf": self.model(),
+            "calibration": self.calibration.map(|c| hex(&c.content)),
+            "model_error_relmse": self.calibration.map(|c| {
+                c.materials.iter().map(|m| (m.name.clone(), m.errors.map(|e| e.after))).collect::<BTreeMap<_, _>>()
+            }),
         });
         if self.request.outputs.timings {
             let rate = seconds.of("render").map(|s| counts.evaluations as f64 / s.max(1e-9));
@@ -130,13 +159,30 @@ impl<'a> Facts<'a> {
 
     /// The sources of error that the variance and the estimated error include.
     pub fn covers(&self) -> &'static str {
-        film::covers(self.settings.paths_per_pixel, shards::DrawnCounts::of(self.inputs.clouds()).half(1))
+        if self.settings.reference {
+            return film::covers_of_walks(self.settings.paths_per_pixel);
+        }
+        film::covers(self.settings.paths_per_pixel, DrawnCounts::of(self.inputs.clouds()).half(1))
+    }
+
+    fn model(&self) -> &'static str {
+        if self.settings.reference { "none" } else { self.settings.model.name() }
+    }
+
+    fn estimator(&self) -> String {
+        if self.settings.reference { "random walks".into() } else { self.settings.estimator.to_string() }
     }
 
     /// Column and row of a pixel in the whole image.
     pub fn pixel(&self, index: usize) -> [usize; 2] {
         self.settings.part().pixel(index)
     }
+}
+
+/// What a calibration says of the error of the model that is left, in one line.
+fn model_error(material: &CalibratedMaterial) -> String {
+    let [r, g, b] = material.errors.map(|e| format!("{:.1e} +- {:.0e}", e.after, e.uncertainty));
+    format!("{}: relMSE of the model about {r}, {g}, {b}", material.name)
 }
 
 /// A medium and its material in one line.

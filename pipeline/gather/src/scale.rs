@@ -1,9 +1,9 @@
 //! Compares the lengths of each medium with those of its object, and warns where they do not fit each other.
 
-use crate::{inputs::Inputs, settings::Request};
-use bssrdf::Medium;
-use cli::count_up;
-use gather::shards;
+use crate::settings::Request;
+use bssrdf::{Medium, Model};
+use cli::{LitScene, count_up};
+use formats::cloud::shards;
 
 /// Samples that are farther apart than this many reduced mean free paths show as grain.
 const SPARSE: f64 = 3.0;
@@ -28,7 +28,7 @@ struct Object<'a> {
 }
 
 /// Prints the lengths of each medium and its object, and warns where they do not fit each other.
-pub fn show(request: &Request, inputs: &Inputs) {
+pub fn show(request: &Request, inputs: &LitScene, model: Model) {
     let (common, clouds) = (&request.common, inputs.clouds());
     for (slot, (material, medium)) in shards::materials(clouds).iter().zip(&inputs.media).enumerate() {
         let (low, high) = inputs.bounds(|index| index == material.index);
@@ -39,13 +39,13 @@ pub fn show(request: &Request, inputs: &Inputs) {
             drawn: shards::drawn(clouds),
             rounding: 0.5 * f64::from(f32::EPSILON) * low.abs().max(high.abs()).max_element(),
         };
-        lines(&object, medium, request.model.of(medium).transport()).iter().for_each(|line| common.say(line));
-        warnings(&object, medium).iter().for_each(|warning| common.warn(warning));
-        if let Some(errors) = request.model.poor_reflectance(medium) {
+        lines(&object, medium, model.of(medium).transport()).iter().for_each(|line| common.say(line));
+        warnings(&object, medium, request.reference).iter().for_each(|warning| common.warn(warning));
+        if let Some(errors) = model.poor_reflectance(medium).filter(|_| !request.reference) {
             let [r, g, b] = errors.map(|e| format!("{:+.0}", 100.0 * e));
             common.say(format_args!(
                 "  {} reflects {r} {g} {b} % more than {} does (red, green, blue; docs/reports/accuracy.md)",
-                request.model.name(),
+                model.name(),
                 medium.name
             ));
         }
@@ -65,7 +65,7 @@ fn lines(object: &Object, medium: &Medium, transport: [f64; 3]) -> [String; 6] {
     ]
 }
 
-fn warnings(object: &Object, medium: &Medium) -> Vec<String> {
+fn warnings(object: &Object, medium: &Medium, reference: bool) -> Vec<String> {
     let Object { material, diagonal, spacing, drawn, rounding } = *object;
     let shortest = |lengths: [f64; 3]| lengths.into_iter().fold(f64::INFINITY, f64::min);
     let free_path = shortest(medium.mean_free_path());
@@ -82,6 +82,8 @@ fn warnings(object: &Object, medium: &Medium) -> Vec<String> {
             "`{material}`: light scatters within {depth} of an object of {size}: it will look opaque; are the medium's unit \
              and --metres-per-unit right?"
         ));
+    } else if reference {
+        // The samples do not count.
     } else if spacing == f64::INFINITY {
         warnings.push(format!("`{material}`: none of its samples carries light: it will show no scattered light"));
     } else if spacing > SPARSE * reduced {

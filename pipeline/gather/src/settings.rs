@@ -4,7 +4,7 @@ use crate::arguments::Arguments;
 use bssrdf::Model;
 use cli::{Common, Failure, SceneSettings};
 use gather::{Crop, Filter, estimator::Estimator};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The task of the program.
 pub enum Task {
@@ -42,8 +42,12 @@ pub struct Request {
     pub crop: Option<Crop>,
     /// `[MATERIAL=]NAME|FILE.json`; a material without one has the medium that the scene gives it.
     pub media: Vec<String>,
-    pub model: Model,
+    /// None for that of the calibration or, without one, the default.
+    pub model: Option<Model>,
+    pub calibration: CalibrationSource,
     pub estimator: Estimator,
+    /// Random walks instead of model and estimator.
+    pub reference: bool,
     /// Paths per pixel; with a target error, the largest number.
     pub paths: u32,
     pub target_error: Option<f64>,
@@ -51,6 +55,15 @@ pub struct Request {
     pub max_depth: u32,
     pub outputs: Outputs,
     pub common: Common,
+}
+
+/// The source of the calibration.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CalibrationSource {
+    /// Made in memory, if the model is made for calibrations.
+    Automatic,
+    None,
+    File(PathBuf),
 }
 
 /// The source of the cameras.
@@ -74,6 +87,10 @@ pub struct Outputs {
 /// Defaults of `--spp`: without a target error, and with one.
 const PATHS: u32 = 16;
 const MAX_PATHS: u32 = 4096;
+
+/// Their defaults for random walks, whose paths are noisier.
+const REFERENCE_PATHS: u32 = 64;
+const MAX_REFERENCE_PATHS: u32 = 65536;
 
 impl Task {
     /// The task that the arguments describe.
@@ -106,7 +123,12 @@ impl Task {
 }
 
 fn request(arguments: Arguments, scene: PathBuf, image: PathBuf) -> Result<Request, Failure> {
-    let paths = if arguments.target_error.is_some() { MAX_PATHS } else { PATHS };
+    let paths = match (arguments.target_error.is_some(), arguments.reference) {
+        (false, false) => PATHS,
+        (true, false) => MAX_PATHS,
+        (false, true) => REFERENCE_PATHS,
+        (true, true) => MAX_REFERENCE_PATHS,
+    };
     Ok(Request {
         estimator: estimator(&arguments)?,
         clouds: arguments.files,
@@ -117,6 +139,8 @@ fn request(arguments: Arguments, scene: PathBuf, image: PathBuf) -> Result<Reque
         crop: arguments.crop,
         media: arguments.medium,
         model: arguments.bssrdf,
+        calibration: calibration(arguments.calibration),
+        reference: arguments.reference,
         paths: arguments.spp.unwrap_or(paths),
         target_error: arguments.target_error,
         filter: arguments.filter,
@@ -130,6 +154,15 @@ fn request(arguments: Arguments, scene: PathBuf, image: PathBuf) -> Result<Reque
         },
         common: arguments.common,
     })
+}
+
+/// The calibration of a file, or none for the word `none`.
+fn calibration(argument: Option<PathBuf>) -> CalibrationSource {
+    match argument {
+        None => CalibrationSource::Automatic,
+        Some(word) if word == Path::new("none") => CalibrationSource::None,
+        Some(path) => CalibrationSource::File(path),
+    }
 }
 
 /// The estimator of this name with the parameters that were given.

@@ -5,11 +5,25 @@ use crate::{
     renderer::{Renderer, TranslucentObject},
 };
 use bsdf::View;
-use scene::SurfacePoint;
+use calibration::Site;
+use scene::{DVec3, SurfacePoint};
 use sums::{estimator::Estimator, samples::Exit};
 
 /// The largest relative error that is asked of one sum. Above it, the cut does not predict its own error.
 const MAX_ERROR: f64 = 0.5;
+
+impl TranslucentObject<'_> {
+    /// The factor of the light that leaves at a point for the eye's `view`: the exit lobe or, if the object is calibrated, the
+    /// factor of its surface.
+    fn factor(&self, point: &SurfacePoint, view: &View) -> DVec3 {
+        match &self.factors {
+            None => self.exit_lobe(view.normal.dot(view.direction)),
+            Some(factors) => {
+                factors.at(&Site { position: point.position, normal: point.geometric_normal }, view.direction)
+            }
+        }
+    }
+}
 
 impl Renderer<'_> {
     /// `note: [reflectance]` Adds `L_r` at an exitant point: the mean over all drawn samples (docs/method.md 6.7), or
@@ -27,20 +41,25 @@ impl Renderer<'_> {
         if object.is_dark() {
             return;
         }
+        if let Some(walks) = &object.walks {
+            return self.walk(state, walks, point, view.normal, light, context);
+        }
         let exit =
             |half: usize| Exit::new(point.position, view.normal, state.key.bits(2 * state.dimension + half as u64));
         let estimator = self.estimator_for(state.throughput.max_element());
         let scratch = &mut context.scratch[point.material as usize];
-        let leaving = if self.gathers_by_shard() {
+        let mut leaving = if self.gathers_by_shard() {
             object.summation.by_shard(estimator, state.half, state.shard_pick, exit, scratch)
         } else {
             object.summation.whole(estimator, exit, scratch)
         };
+        let factor = object.factor(point, view);
+        leaving.radiance *= factor;
+        leaving.halves.iter_mut().for_each(|half| *half *= factor);
         context.counts.gathers += 1;
         context.counts.evaluations += leaving.evaluations;
         context.counts.nodes += leaving.nodes;
-        let lobe = object.exit_lobe(view.normal.dot(view.direction));
-        light.add_halves(state, Layer::Subsurface, lobe * leaving.radiance, leaving.halves.map(|half| lobe * half));
+        light.add_halves(state, Layer::Subsurface, leaving.radiance, leaving.halves);
     }
 
     /// Whether each path of a pixel gathers from one half of one shard, round-robin, instead of from all samples.

@@ -16,7 +16,14 @@ pub fn show(facts: &Facts) -> Result<(), Failure> {
     let error = film::relative_error(&facts.rendered.pixels).filter(|error| *error > 0.0);
     let error = error.map_or("unknown".into(), sums::confidence::percent);
     let (gathers, evaluations, covers) = (count(counts.gathers), count(counts.evaluations), facts.covers());
-    common.say(format_args!("{gathers} gathers, {evaluations} BSSRDF evaluations; relative error {error} ({covers})"));
+    if facts.settings.reference {
+        let [walks, collisions] = [counts.walks, counts.collisions].map(count);
+        common.say(format_args!("{walks} walks, {collisions} collisions; relative error {error} ({covers})"));
+    } else {
+        common.say(format_args!(
+            "{gathers} gathers, {evaluations} BSSRDF evaluations; relative error {error} ({covers})"
+        ));
+    }
     let share = |n: u64| 100.0 * n as f64 / counts.paths as f64;
     if counts.cut_by_depth > 0 {
         let (share, depth) = (share(counts.cut_by_depth), facts.settings.max_depth);
@@ -26,8 +33,31 @@ pub fn show(facts: &Facts) -> Result<(), Failure> {
         let share = share(counts.escaped_inside);
         common.warn(format_args!("{share:.3} % of the paths left a medium through a hole in its mesh"));
     }
+    if counts.walks_trapped > 0 {
+        let share = 100.0 * counts.walks_trapped as f64 / counts.walks as f64;
+        common
+            .warn(format_args!("{share:.3} % of the walks were reflected inside without end: the medium is too clear"));
+    }
     if let Some(warning) = odd_view(counts, &facts.settings) {
         common.warn(facts.job.line(&warning));
+    }
+    Ok(())
+}
+
+/// Of walks, this share may leave through holes of the surface.
+const ESCAPED: f64 = 1e-3;
+
+/// Refuses the image of random walks that leave their medium through holes: it would lack their light.
+pub fn check_walks(facts: &Facts) -> Result<(), Failure> {
+    let counts = &facts.rendered.counts;
+    let share = counts.walks_escaped as f64 / counts.walks.max(1) as f64;
+    if share > ESCAPED {
+        let message = format!(
+            "--reference: {:.2} % of the random walks left through holes of the surface: the mesh is open, and has no \
+             inside that light could be followed in; no image was written",
+            100.0 * share
+        );
+        return Err(facts.job.failure(Failure::usage(message)));
     }
     Ok(())
 }

@@ -24,7 +24,7 @@ pub struct Arguments {
     /// shards together; --samples is the number of this shard, and need not be that of the others
     #[arg(long, value_name = "I/N", default_value = "0/1", value_parser = parse_shard)]
     pub shard: Shard,
-    /// Draw as many samples as this medium needs to reach --target-error, judged by the directional dipole
+    /// Draw as many samples as this medium needs to reach --target-error, judged by the half-space model
     #[arg(long, value_name = "NAME|FILE.json", requires = "target_error", conflicts_with = "samples")]
     pub for_medium: Option<String>,
     /// Relative standard error of the light that leaves the surface in the medium of --for-medium: 95 of 100 clouds

@@ -1,4 +1,4 @@
-//! The light of a cloud that leaves the surface at points all over it, by the directional dipole.
+//! The light of a cloud that leaves the surface at points all over it, by the half-space model.
 
 use crate::{
     pattern::{Numbers, Pattern, SamplePoint},
@@ -18,7 +18,7 @@ use sums::{
     samples::{Exit, LitSamples},
 };
 
-/// A target error in a medium, by the directional dipole.
+/// A target error in a medium, by the half-space model.
 pub struct Goal<'a> {
     pub medium: &'a Medium,
     /// Relative standard error: the root mean square error over the root mean square, of all channels and all of the
@@ -45,7 +45,7 @@ impl<'a> Points<'a> {
             scene,
             settings,
             points: numbers.points(&plan.choice(scene, settings), 0..count).map(|(_, point)| point).collect(),
-            scatterer: Arc::new(Scatterer::new(Model::DirectionalDipole, goal.medium, f64::INFINITY)),
+            scatterer: Arc::new(Scatterer::new(Model::HalfSpace, goal.medium, f64::INFINITY)),
             // The error of the cut is so far below the target that it does not show in differences between clouds.
             estimator: Estimator::Cut { accuracy: 0.3 * goal.error },
         }

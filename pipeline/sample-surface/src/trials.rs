@@ -117,7 +117,7 @@ mod tests {
 
     /// Trials of `length` values for each half, with normal errors of equal variance, each shared by `together` values.
     fn trials(length: usize, together: usize) -> Vec<[Vec<f64>; 2]> {
-        let stream = random::Stream::new(7, random::Purpose::Calibration);
+        let stream = random::Stream::new(7, random::Purpose::CutCorrection);
         let half = |half: u64| {
             let normal = |k: u64| (0..12).map(|d| stream.item(half << 32 | k).uniform(d)).sum::<f64>() - 6.0;
             (0..length).map(|k| 100.0 + normal((k / together) as u64)).collect()

@@ -6,7 +6,7 @@ use scene::Camera;
 use std::{error::Error, f64::consts::PI, fs, path::Path};
 use test_support::{
     meshes::repository_scene,
-    pipeline::{Lit, DIPOLES, by_area, cloud, orthographic},
+    pipeline::{DIPOLES, Lit, by_area, cloud, orthographic},
 };
 
 /// Number of photons of each channel.

@@ -1,16 +1,16 @@
 //! A sphere under parallel light, seen from afar: brute-force scattering beside the models.
 
-use bssrdf::{DVec3, Medium, fresnel};
+use bssrdf::{Coefficients, DVec3, Medium, fresnel};
 use gather::estimator::{Estimator, Rule};
 use glam::DVec2;
 use rayon::prelude::*;
-use scene::Camera;
-use std::f64::consts::{PI, TAU};
-use test_support::walk::{free_path, scatter};
-use test_support::{
-    pipeline::{Lit, Point},
-    random::Random,
+use scene::{
+    Camera,
+    random::{Purpose, Stream},
 };
+use std::f64::consts::{PI, TAU};
+use test_support::pipeline::{Lit, Point};
+use walks::{Crossing, Domain, End, Exit, Flight, Matter, Sequence, Start, walk};
 
 /// Side of the image, pixels; the sphere fills it.
 pub const SIDE: usize = 48;
@@ -72,20 +72,24 @@ impl Setting {
 /// Follows `photons` through the sphere, one channel; light that was never scattered does not count.
 pub fn brute_force(setting: &Setting, medium: &Medium, channel: usize, photons: u64, seed: u64) -> Plane {
     const PORTION: u64 = 20_000;
+    let c = medium.channels[channel];
+    let in_radii = |sigma: f64| sigma * setting.radius;
+    let c = Coefficients { sigma_a: in_radii(c.sigma_a), sigma_s: in_radii(c.sigma_s), ..c };
+    let Some(matter) = Matter::new(&c, medium.eta) else { return vec![0.0; SIDE * SIDE] };
+    let stream = Stream::new(seed, Purpose::LightWalk);
     let portion = |index: u64| {
-        let mut random = Random(seed.wrapping_mul(0x9E37_79B9).wrapping_add(index << 40));
-        let mut counts = vec![0u32; SIDE * SIDE];
-        for _ in 0..PORTION {
-            if let Some((point, direction)) = exit(setting, medium, channel, &mut random) {
-                record(setting, point, direction, &mut counts);
+        let mut sums = vec![0.0; SIDE * SIDE];
+        for photon in index * PORTION..(index + 1) * PORTION {
+            if let Some(exit) = exit(setting, &matter, &mut Sequence::new(stream.item(photon))) {
+                record(setting, &exit, &mut sums);
             }
         }
-        counts
+        sums
     };
-    let portions: Vec<Vec<u32>> = (0..photons.div_ceil(PORTION)).into_par_iter().map(portion).collect();
+    let portions: Vec<Vec<f64>> = (0..photons.div_ceil(PORTION)).into_par_iter().map(portion).collect();
     let mut plane = vec![0.0; SIDE * SIDE];
-    for counts in portions {
-        plane.iter_mut().zip(counts).for_each(|(sum, n)| *sum += f64::from(n));
+    for sums in portions {
+        plane.iter_mut().zip(sums).for_each(|(sum, weight)| *sum += weight);
     }
     let angle = setting.to_light.angle_between(setting.to_viewer());
     let solid_angle = TAU * ((angle - BAND).cos() - (angle + BAND).cos());
@@ -98,55 +102,53 @@ pub fn brute_force(setting: &Setting, medium: &Medium, channel: usize, photons: 
     plane
 }
 
-fn record(setting: &Setting, point: DVec3, direction: DVec3, counts: &mut [u32]) {
+fn record(setting: &Setting, exit: &Exit, sums: &mut [f64]) {
     let angle = setting.to_light.angle_between(setting.to_viewer());
-    if (setting.to_light.angle_between(direction) - angle).abs() > BAND {
+    if (setting.to_light.angle_between(exit.direction) - angle).abs() > BAND {
         return;
     }
-    for p in setting.turned(point, direction) {
+    for p in setting.turned(exit.position, exit.direction) {
         let q = (setting.project(p) + DVec2::ONE) * (0.5 * SIDE as f64);
         let (x, y) = (q.x.floor(), q.y.floor());
         if x >= 0.0 && y >= 0.0 && x < SIDE as f64 && y < SIDE as f64 {
-            counts[y as usize * SIDE + x as usize] += 1;
+            sums[y as usize * SIDE + x as usize] += exit.weight;
         }
     }
 }
 
-/// The point (on the unit sphere) and direction in which a photon leaves after scattering; lengths in radii.
-fn exit(setting: &Setting, medium: &Medium, channel: usize, random: &mut Random) -> Option<(DVec3, DVec3)> {
-    let c = &medium.channels[channel];
-    let albedo = c.sigma_s / c.extinction();
-    let path = 1.0 / (c.extinction() * setting.radius);
+/// The space inside the unit sphere.
+struct Ball;
+
+impl Domain for Ball {
+    fn clearance(&self, position: DVec3) -> f64 {
+        (1.0 - position.length()).max(0.0)
+    }
+
+    fn crossing(&self, flight: &mut Flight, limit: f64) -> Crossing {
+        let (point, direction) = (flight.position, flight.direction);
+        let half = point.dot(direction);
+        let distance = -half + (half * half - point.length_squared() + 1.0).max(0.0).sqrt();
+        if distance >= limit {
+            return Crossing::Free;
+        }
+        Crossing::Boundary { distance, face: 0, normal: (point + direction * distance).normalize() }
+    }
+}
+
+/// Where light leaves after scattering; lengths in radii.
+fn exit(setting: &Setting, matter: &Matter, random: &mut Sequence) -> Option<Exit> {
     let (x, y) = setting.to_light.any_orthonormal_pair();
     let (b, a) = (TAU * random.uniform()).sin_cos();
     let r = random.uniform().sqrt();
-    let mut point = x * (r * a) + y * (r * b) + setting.to_light * (1.0 - r * r).sqrt();
-    let entry = fresnel::enter(point.normalize(), setting.to_light, medium.eta)?;
+    let position = x * (r * a) + y * (r * b) + setting.to_light * (1.0 - r * r).sqrt();
+    let entry = fresnel::enter(position.normalize(), setting.to_light, matter.eta)?;
     if random.uniform() >= entry.transmittance {
         return None;
     }
-    let (mut direction, mut scattered) = (entry.direction, false);
-    loop {
-        let step = path * free_path(random);
-        let next = point + direction * step;
-        if next.length_squared() <= 1.0 {
-            if random.uniform() >= albedo {
-                return None;
-            }
-            point = next;
-            direction = scatter(direction, c.asymmetry, random);
-            scattered = true;
-            continue;
-        }
-        let half = point.dot(direction);
-        let way = -half + (half * half - point.length_squared() + 1.0).max(0.0).sqrt();
-        point = (point + direction * way).normalize();
-        let cosine = point.dot(direction);
-        if random.uniform() < fresnel::transmittance(cosine, 1.0 / medium.eta) {
-            let out = fresnel::enter(-point, -direction, 1.0 / medium.eta)?;
-            return scattered.then_some((point, out.direction));
-        }
-        direction = (direction - 2.0 * cosine * point).normalize();
+    let start = Start { position, direction: entry.direction, face: Some(0) };
+    match walk(&Ball, matter, &start, random, |_, _| ()) {
+        End::Scattered(exit) => Some(exit),
+        _ => None,
     }
 }
 

@@ -6,7 +6,8 @@ use std::fmt::{Error, Write};
 use test_support::{
     half_space::{reflectance, transmission},
     pipeline::DIPOLES,
-    walk::{Balance, Matter, chandrasekhar, slab},
+    transfer::chandrasekhar,
+    walk::{Balance, Matter, slab},
 };
 
 /// Number of walks for each table entry.

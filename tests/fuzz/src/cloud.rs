@@ -4,7 +4,7 @@ use crate::file::with_file;
 use bssrdf::{Model, built_in};
 use formats::cloud::{Cloud, Record, Sample, TILE, version};
 use gather::{
-    estimator::{Calibration, Estimator, Scatterer, Scratch, Sum},
+    estimator::{CutCorrection, Estimator, Scatterer, Scratch, Sum},
     samples::{Exit, LitSamples},
 };
 use std::{ops::Range, path::Path, sync::LazyLock};
@@ -59,7 +59,7 @@ fn check_sums(cloud: &Cloud, sample: &Sample, good: bool) {
         let medium = built_in("marble").expect("it is built in");
         Scatterer::new(Model::DirectionalDipole, &medium, 0.1)
     });
-    let (calibration, scratch) = (&Calibration::default(), &mut Scratch::default());
+    let (correction, scratch) = (&CutCorrection::default(), &mut Scratch::default());
     let small = |s: &Sample| s.position.abs().max(s.flux).max_element() < SANE;
     for group in cloud.meta().materials.iter().flat_map(|m| &m.halves) {
         let samples = &LitSamples::new(cloud, group, MARBLE.eta());
@@ -70,7 +70,7 @@ fn check_sums(cloud: &Cloud, sample: &Sample, good: bool) {
             let exit = &Exit::new(sample.position.as_dvec3() + offset, sample.normal, 7);
             let mut sum = |estimator: &Estimator| {
                 let estimator = estimator.map_accuracy(|_| 0.1);
-                estimator.sum(&MARBLE, calibration, samples, exit, scratch)
+                estimator.sum(&MARBLE, correction, samples, exit, scratch)
             };
             let sums: Vec<Sum> = Estimator::ALL.iter().map(&mut sum).collect();
             if good && cloud.meta().materials.iter().flat_map(|m| cloud.samples(m)).all(|s| small(&s)) {

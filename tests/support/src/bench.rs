@@ -42,6 +42,18 @@ pub fn program(name: &str) -> PathBuf {
     path
 }
 
+/// What else is typed: images are not calibrated unless the arguments say how, for that would take most of the time of
+/// most tests. `--note` and `--reference` do not calibrate.
+fn unless_said(name: &str, arguments: &[impl AsRef<OsStr>]) -> &'static [&'static str] {
+    let says = |word: &str| arguments.iter().any(|a| a.as_ref() == word);
+    let renders = name == "gather" && arguments.iter().all(|a| !a.as_ref().to_string_lossy().starts_with("--list"));
+    if renders && !["--calibration", "--note", "--reference"].into_iter().any(says) {
+        &["--calibration", "none"]
+    } else {
+        &[]
+    }
+}
+
 /// Path of a file of `data/`.
 pub fn data(name: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data").join(name).to_string_lossy().into_owned()
@@ -135,7 +147,7 @@ impl Bench {
     /// The command that starts a program in the folder.
     pub fn command(&self, name: &str, arguments: &[impl AsRef<OsStr>]) -> Command {
         let mut command = Command::new(program(name));
-        command.current_dir(self.folder()).args(arguments);
+        command.current_dir(self.folder()).args(arguments).args(unless_said(name, arguments));
         command
     }
 
@@ -156,7 +168,8 @@ impl Bench {
         }
         let limits = format!("ulimit -v {} && ulimit -t {} && exec \"$@\"", limits.kibibytes, limits.seconds);
         let mut command = Command::new("/bin/sh");
-        command.args(["-c", &limits, "sh"]).arg(program(name)).args(arguments).current_dir(self.folder());
+        command.args(["-c", &limits, "sh"]).arg(program(name)).args(arguments).args(unless_said(name, arguments));
+        command.current_dir(self.folder());
         Run::of(&mut command)
     }
 

@@ -27,6 +27,7 @@ pub mod planted;
 #[cfg(feature = "transport")]
 pub mod quadrature;
 pub mod random;
+pub mod transfer;
 #[cfg(feature = "transport")]
 pub mod walk;
 #[cfg(feature = "transport")]

@@ -4,7 +4,7 @@ use bssrdf::{Medium, Model};
 use formats::cloud::Cloud;
 use gather::{
     Summation,
-    estimator::{Calibration, Estimator, Scatterer, Scratch, Sum},
+    estimator::{CutCorrection, Estimator, Scatterer, Scratch, Sum},
     samples::{Exit, LitSamples},
 };
 use glam::DVec3;
@@ -13,10 +13,10 @@ use std::{
     sync::{Arc, LazyLock},
 };
 
-/// The sum over samples, without a calibration.
+/// The sum over samples, without a correction.
 pub fn sum(scatterer: &Scatterer, samples: &LitSamples, exit: &Exit, estimator: Estimator) -> Sum {
-    static UNCALIBRATED: LazyLock<Calibration> = LazyLock::new(Calibration::default);
-    estimator.sum(scatterer, &UNCALIBRATED, samples, exit, &mut Scratch::default())
+    static UNCORRECTED: LazyLock<CutCorrection> = LazyLock::new(CutCorrection::default);
+    estimator.sum(scatterer, &UNCORRECTED, samples, exit, &mut Scratch::default())
 }
 
 /// A medium under a model, on a plane.

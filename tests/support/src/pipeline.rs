@@ -117,6 +117,7 @@ pub fn settings(model: Model, width: usize, height: usize) -> gather::Settings {
         filter: Filter::Point,
         estimator: Estimator::Exhaustive,
         model,
+        reference: false,
         normals: NormalKind::Geometric,
         max_depth: 16,
         seed: 1,

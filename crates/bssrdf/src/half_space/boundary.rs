@@ -29,12 +29,12 @@ fn integral(eta: f64, f: impl Fn(f64, f64) -> f64) -> f64 {
     measure * (0..STEPS).map(at).sum::<f64>() / STEPS as f64
 }
 
-/// `m_k = ∫ T21 μ^{k+1} dω` outside (docs/method.md 14.8).
+/// `m_k = ∫ T21 μ^{k+1} dω` outside (docs/method.md 15.8).
 pub fn exit_moment(k: i32, eta: f64) -> f64 {
     2.0 * PI * integral(eta, |outside, _| outside.powi(k))
 }
 
-/// `A = (1 + 3C₂)/(1 − 2C₁)` from the definitions of the moments instead of their fits (docs/method.md 2.7, 14.2).
+/// `A = (1 + 3C₂)/(1 − 2C₁)` from the definitions of the moments instead of their fits (docs/method.md 2.7, 15.2).
 pub fn reflection(eta: f64) -> f64 {
     let inside = |k: i32| integral(eta, |_, inside| inside.powi(k)) / (eta * eta); // ∫ T ν^{k+1} dν
     (2.0 - 3.0 * inside(1)) / (2.0 * inside(0))

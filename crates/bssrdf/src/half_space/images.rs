@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 /// The squared radius within which the source does not become brighter: a beam has an extent.
 pub const SOFTNESS2: f64 = 0.25;
 
-/// The constants of the two sources for one medium and channel (docs/method.md 14.1, 14.2).
+/// The constants of the two sources for one medium and channel (docs/method.md 15.1, 15.2).
 #[derive(Clone, Copy, Debug)]
 pub struct Images {
     /// `κ`, which the light falls with far away.
@@ -32,9 +32,10 @@ impl Images {
         }
     }
 
-    /// The exitance over `α'` (docs/method.md 14.3, 14.4) at the squared distance `r2`, of which `along = x_t·ω12` along
+    /// The exitance over `α'` (docs/method.md 15.3, 15.4) at the squared distance `r2`, of which `along = x_t·ω12` along
     /// the surface and `depth` below it; `cosine` is `μ12`.
     pub fn exitance(&self, r2: f64, along: f64, depth: f64, cosine: f64) -> f64 {
+        let depth = saturated(depth);
         let real2 = r2 + 1.0 - 2.0 * (along + depth * cosine) + SOFTNESS2;
         let delta2 = 4.0 * (depth + self.extrapolation) * (cosine + self.extrapolation);
         let (real, mirrored) = (real2.sqrt(), (real2 + delta2).sqrt());
@@ -45,8 +46,14 @@ impl Images {
     }
 }
 
+/// `z̃ = z/(1 + z)`: the depth below the tangent plane counts in full near it, as at a crease, and as one mean free path
+/// far from it, because there the surface ends the object.
+fn saturated(depth: f64) -> f64 {
+    depth / (1.0 + depth)
+}
+
 /// `−log₂(1.01 − w)`, by powers of which the light is stronger in the direction of the beam, `w` being the cosine to it
-/// (docs/method.md 14.5). Light of one scattering that is not absorbed falls as `1/(1 − w)`.
+/// (docs/method.md 15.5). Light of one scattering that is not absorbed falls as `1/(1 − w)`.
 pub fn forwardness(w: f64) -> f64 {
     -(GRAZING - w).log2()
 }
@@ -54,7 +61,7 @@ pub fn forwardness(w: f64) -> f64 {
 /// Keeps light that grazes along the surface finite: `w ≤ 1`.
 pub const GRAZING: f64 = 1.01;
 
-/// `κ` with `α' artanh(κ)/κ = 1` (docs/method.md 14.1), for the absorbed share `1 − α'`.
+/// `κ` with `α' artanh(κ)/κ = 1` (docs/method.md 15.1), for the absorbed share `1 − α'`.
 pub fn transport(absorbed: f64) -> f64 {
     if absorbed < 1e-6 {
         return (3.0 * absorbed.max(0.0)).sqrt() * (1.0 - 0.4 * absorbed);

@@ -91,7 +91,7 @@ impl Profile {
         powers
     }
 
-    /// The exitance over `α'` (docs/method.md 14.6) of a place on the surface, per unit of power that entered.
+    /// The exitance over `α'` (docs/method.md 15.6) of a place on the surface, per unit of power that entered.
     pub fn exitance(&self, place: &Place) -> f64 {
         let m = (self.place[0] * place.cosine + self.place[1]).clamp(0.0, 1.0);
         let forward = forwardness(place.forward.min(GRAZING - 0.01));
@@ -132,7 +132,7 @@ fn words(corrections: &Corrections) -> Box<[u32; WORDS]> {
 const EXTENT2: f64 = 0.06 * 0.06;
 
 /// `r f` with `f = 1/√(r² + ε²) + ε²/(r² + ε²)^{3/2}`, which is finite and has the integral of `1/r` over a plane
-/// (docs/method.md 14.12).
+/// (docs/method.md 15.12).
 fn blur(r2: f64) -> f64 {
     let softened = r2 + EXTENT2;
     (r2 / softened).sqrt() * (1.0 + EXTENT2 / softened)

@@ -9,7 +9,7 @@ use super::layout::{
 /// The file, which `make half-space-table` writes.
 static FILE: &[u8; BYTES] = include_bytes!("table.bin");
 
-/// The corrections of the images for one albedo and index, in powers of two (docs/method.md 14.6).
+/// The corrections of the images for one albedo and index, in powers of two (docs/method.md 15.6).
 #[derive(Clone, Debug)]
 pub struct Corrections {
     /// The terms at the middles of the rings.
@@ -58,7 +58,7 @@ impl Corrections {
     }
 }
 
-/// `b` of the light that leaves in proportion to `T21 (a + b μ)` (docs/method.md 14.8). It is interpolated instead of the
+/// `b` of the light that leaves in proportion to `T21 (a + b μ)` (docs/method.md 15.8). It is interpolated instead of the
 /// mean cosine, of which it is a steep function where little light leaves but along the normal, at small indices.
 pub fn lobe_slope(absorbed: f64, eta: f64) -> f64 {
     let steps = weights(&STEPS, absorbed.sqrt());
@@ -72,7 +72,7 @@ pub fn lobe_slope(absorbed: f64, eta: f64) -> f64 {
 }
 
 /// The polynomial in `m`, of degree 2, that is `log₂` of the reflectance of Henyey and Greenstein's phase function over
-/// that by similarity (docs/method.md 14.11).
+/// that by similarity (docs/method.md 15.11).
 pub fn forward_ratio(absorbed: f64, asymmetry: f64, eta: f64) -> [f64; 3] {
     if asymmetry == 0.0 {
         return [0.0; 3];

@@ -1,7 +1,7 @@
 //! The half-space model: right on a half-space of any reduced albedo, index and angle of the light.
 //!
 //! Two sources of diffuse light, one below the surface and its image above it, times a tabulated ratio to random walks
-//! (docs/method.md section 14). Ours. The shape of light that is scattered along its direction is that by similarity, with
+//! (docs/method.md section 15). Ours. The shape of light that is scattered along its direction is that by similarity, with
 //! the reduced coefficients; its power is that of Henyey and Greenstein's phase function.
 
 use crate::{
@@ -57,7 +57,7 @@ impl HalfSpace {
     }
 }
 
-/// `a` and `b` of the light that leaves in proportion to `T21 (a + b μ)` (docs/method.md 14.8), for each channel.
+/// `a` and `b` of the light that leaves in proportion to `T21 (a + b μ)` (docs/method.md 15.8), for each channel.
 pub fn exit_lobe(medium: &Medium) -> [[f64; 2]; 3] {
     let mean = exit_moment(1, medium.eta) / exit_moment(0, medium.eta);
     [0, 1, 2].map(|k| {
@@ -71,7 +71,7 @@ pub fn exit_lobe(medium: &Medium) -> [[f64; 2]; 3] {
 }
 
 impl Bssrdf for HalfSpace {
-    /// (docs/method.md 14.7)
+    /// (docs/method.md 15.7)
     fn bare(&self, channel: usize, s: &Separation) -> f64 {
         let Some(c) = &self.channels[channel] else {
             return 0.0;

@@ -94,7 +94,7 @@ impl HalfSpaceLanes {
             let place = if place > 0.0 { place } else { 0.0 };
             g.r2[i] = r2;
             g.depth[i] = normal.abs();
-            g.twice[i] = 2.0 * (along + g.depth[i] * cosine);
+            g.twice[i] = 2.0 * along;
             g.cosine[i] = cosine;
             g.place[i] = if place < 1.0 { place } else { 1.0 };
             g.forward[i] = -log2_near_one(GRAZING as f32 - forward);
@@ -128,11 +128,13 @@ impl Channel {
         let mut values = [0.0; LANES];
         for i in 0..LANES {
             let depth = g.depth[i] * self.reduced;
-            let real2 = g.r2[i] * self.reduced2 + (1.0 + SOFTNESS2 as f32) - g.twice[i] * self.reduced; // d_r² (14.3)
-            let delta2 = 4.0 * (depth + self.extrapolation) * (g.cosine[i] + self.extrapolation); // d_v² − d_r² (14.3)
+            let depth = depth / (1.0 + depth); // z̃ (15.3)
+            let ahead = g.twice[i] * self.reduced + 2.0 * depth * g.cosine[i];
+            let real2 = g.r2[i] * self.reduced2 + (1.0 + SOFTNESS2 as f32) - ahead; // d_r² (15.3)
+            let delta2 = 4.0 * (depth + self.extrapolation) * (g.cosine[i] + self.extrapolation); // d_v² − d_r² (15.3)
             let d = Distances::new(real2, real2 + delta2, delta2);
             let (_, one_minus_decay) = decay2(self.exponent * d.delta);
-            let difference = (d.delta * d.over_real + one_minus_decay) * d.over_virtual; // (14.4) over e^{−κ d_r}
+            let difference = (d.delta * d.over_real + one_minus_decay) * d.over_virtual; // (15.4) over e^{−κ d_r}
             let value = self.prefactor * difference * exp2_negative(self.exponent * d.real + correction[i]);
             // `value` is NaN where a distance left the range of float32: S is far below that range there.
             values[i] = if value > 0.0 { value } else { 0.0 };
@@ -140,7 +142,7 @@ impl Channel {
         values
     }
 
-    /// The exponents of 2 of the corrections (docs/method.md 14.5, 14.6).
+    /// The exponents of 2 of the corrections (docs/method.md 15.5, 15.6).
     #[inline(always)]
     fn corrections(&self, g: &Geometry) -> Lane {
         let mut corrections = [0.0; LANES];

@@ -28,20 +28,20 @@ use crate::{
 /// A model of the BSSRDF.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Model {
+    /// Ours: exact on a half-space, from random walks.
+    HalfSpace,
     /// Frisvad, Hachisuka, Kjeldsen 2014.
     DirectionalDipole,
     /// d'Eon 2012.
     BetterDipole,
     /// Jensen, Marschner, Levoy, Hanrahan 2001.
     StandardDipole,
-    /// Ours: exact on a half-space, from random walks.
-    HalfSpace,
 }
 
 impl Model {
     /// All models, the default first.
     pub const ALL: [Model; 4] =
-        [Model::DirectionalDipole, Model::HalfSpace, Model::BetterDipole, Model::StandardDipole];
+        [Model::HalfSpace, Model::DirectionalDipole, Model::BetterDipole, Model::StandardDipole];
 
     /// The name that users type.
     pub fn name(self) -> &'static str {
@@ -82,8 +82,13 @@ impl Model {
         })
     }
 
+    /// Whether images of this model are calibrated unless the user says otherwise. The dipoles are used as published.
+    pub fn is_for_calibration(self) -> bool {
+        self == Model::HalfSpace
+    }
+
     /// `a` and `b` of the light that leaves in proportion to `T21 (a + b μ)`, `μ` being its cosine outside, for each
-    /// channel: with as much power as `T21` alone (docs/method.md 14.8). `[1, 0]` for the dipoles.
+    /// channel: with as much power as `T21` alone (docs/method.md 15.8). `[1, 0]` for the dipoles.
     pub fn exit_lobe(self, medium: &Medium) -> [[f64; 2]; 3] {
         match self {
             Model::HalfSpace => half_space::exit_lobe(medium),

@@ -6,21 +6,21 @@
 use serde::{Deserialize, Deserializer};
 use std::collections::{BTreeMap, LinkedList};
 
-pub(super) fn text<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
+pub(crate) fn text<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
     <&str>::deserialize(from).map(str::to_owned)
 }
 
-pub(super) fn counts<'de, D: Deserializer<'de>>(from: D) -> Result<BTreeMap<String, u64>, D::Error> {
+pub(crate) fn counts<'de, D: Deserializer<'de>>(from: D) -> Result<BTreeMap<String, u64>, D::Error> {
     let counts = BTreeMap::<&str, u64>::deserialize(from)?;
     Ok(counts.into_iter().map(|(name, count)| (name.to_owned(), count)).collect())
 }
 
-pub(super) fn shares<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(String, f64)>, D::Error> {
+pub(crate) fn shares<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(String, f64)>, D::Error> {
     let shares: Vec<(&str, f64)> = list(from)?;
     Ok(shares.into_iter().map(|(name, share)| (name.to_owned(), share)).collect())
 }
 
-pub(super) fn list<'de, D: Deserializer<'de>, T: Deserialize<'de>>(from: D) -> Result<Vec<T>, D::Error> {
+pub(crate) fn list<'de, D: Deserializer<'de>, T: Deserialize<'de>>(from: D) -> Result<Vec<T>, D::Error> {
     // Serde reserves no memory for a linked list.
     LinkedList::deserialize(from).map(Vec::from_iter)
 }

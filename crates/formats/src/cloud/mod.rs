@@ -4,11 +4,12 @@
 //! sections start, `tile` and `node` are little-endian arrays of [`Record`] and [`Node`], and `provenance` repeats the
 //! facts as JSON.
 
-mod bounded;
+pub(crate) mod bounded;
 mod layout;
 mod meta;
 mod record;
 mod settings;
+pub mod shards;
 
 pub use layout::version;
 pub use meta::{Group, Meta, Options, SampledMaterial, Shard, hex};

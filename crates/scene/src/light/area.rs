@@ -2,7 +2,7 @@
 
 use super::{
     bounds::{LightBounds, LightSphere, ReceiverBounds},
-    contract::{Illumination, Light, channel_sum, hash_numbers},
+    contract::{Delta, Illumination, Light, channel_sum, hash_numbers},
     direction_cone::DirectionCone,
 };
 use crate::{
@@ -124,6 +124,10 @@ impl Light for AreaLight {
     fn pdf_solid_angle(&self, at: &SurfacePoint, direction: DVec3) -> f64 {
         let seen = self.seen(at.position, direction);
         seen.map_or(0.0, |(distance, cosine_out)| distance * distance / (cosine_out * self.area))
+    }
+
+    fn delta(&self) -> Option<Delta> {
+        None
     }
 
     fn radiance(&self, position: DVec3, direction: DVec3) -> DVec3 {

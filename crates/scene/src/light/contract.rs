@@ -23,6 +23,15 @@ impl Illumination {
     }
 }
 
+/// Where the light of a delta distribution comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Delta {
+    /// This unit direction, everywhere.
+    Direction(DVec3),
+    /// This point, m.
+    Point(DVec3),
+}
+
 /// A source of light. No method has a default: a light that leaves one out does not compile.
 pub trait Light: Send + Sync {
     /// The weight by which one light of many is chosen, W/m²: near the unshadowed irradiance at `at`, positive wherever
@@ -43,6 +52,9 @@ pub trait Light: Send + Sync {
     /// Emitted radiance that arrives at `position` from `direction` if nothing is in the way, W/(m² sr); 0 if the light
     /// has a single direction there.
     fn radiance(&self, position: DVec3, direction: DVec3) -> DVec3;
+
+    /// The origin of a light that has a single direction at each point; none for others, which rays may meet.
+    fn delta(&self) -> Option<Delta>;
 
     /// Hashes everything that defines the light: a cloud is kept as long as this stays the same.
     fn hash_into(&self, hasher: &mut blake3::Hasher);

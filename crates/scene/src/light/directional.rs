@@ -2,7 +2,7 @@
 
 use super::{
     bounds::LightBounds,
-    contract::{Illumination, Light, channel_sum, hash_numbers},
+    contract::{Delta, Illumination, Light, channel_sum, hash_numbers},
 };
 use crate::mesh::SurfacePoint;
 use glam::DVec3;
@@ -35,6 +35,10 @@ impl Light for DirectionalLight {
 
     fn pdf_solid_angle(&self, _at: &SurfacePoint, _direction: DVec3) -> f64 {
         0.0
+    }
+
+    fn delta(&self) -> Option<Delta> {
+        Some(Delta::Direction(self.direction))
     }
 
     fn radiance(&self, _position: DVec3, _direction: DVec3) -> DVec3 {

@@ -2,7 +2,7 @@
 
 use super::{
     bounds::LightBounds,
-    contract::{Illumination, Light, channel_sum},
+    contract::{Delta, Illumination, Light, channel_sum},
     environment_map::EnvironmentMap,
 };
 use crate::{mesh::SurfacePoint, warp};
@@ -68,6 +68,10 @@ impl Light for Environment {
             Environment::Constant(_) => warp::cosine_hemisphere_pdf_solid_angle(at.normal.dot(direction)),
             Environment::Map(map) => map.pdf_solid_angle(at, direction),
         }
+    }
+
+    fn delta(&self) -> Option<Delta> {
+        None
     }
 
     fn radiance(&self, _position: DVec3, direction: DVec3) -> DVec3 {

@@ -17,7 +17,7 @@ mod tree;
 pub use area::AreaLight;
 pub use bounds::{LightBounds, ReceiverBounds};
 pub use choice::{LightChoice, Pick};
-pub use contract::{Illumination, Light};
+pub use contract::{Delta, Illumination, Light};
 pub use direct::{Lit, all_light_at, light_at};
 pub use direction_cone::DirectionCone;
 pub use directional::DirectionalLight;

@@ -2,7 +2,7 @@
 
 use super::{
     bounds::LightBounds,
-    contract::{Illumination, Light, channel_sum, hash_numbers},
+    contract::{Delta, Illumination, Light, channel_sum, hash_numbers},
     direction_cone::DirectionCone,
 };
 use crate::mesh::SurfacePoint;
@@ -102,6 +102,10 @@ impl Light for PointLight {
 
     fn pdf_solid_angle(&self, _at: &SurfacePoint, _direction: DVec3) -> f64 {
         0.0
+    }
+
+    fn delta(&self) -> Option<Delta> {
+        Some(Delta::Point(self.position))
     }
 
     fn radiance(&self, _position: DVec3, _direction: DVec3) -> DVec3 {

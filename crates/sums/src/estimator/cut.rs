@@ -8,7 +8,7 @@
 //! the closed nodes, and is lowered until the predicted error of the cut is small enough.
 
 use super::{
-    calibration::Calibration,
+    cut_correction::CutCorrection,
     falloff_tables::FalloffTables,
     random_bits::random_bits,
     sum::{Accumulator, Sum},
@@ -53,7 +53,7 @@ pub struct Cut<'a, M> {
     /// Target of the relative standard error of the sum.
     pub accuracy: f32,
     /// Factor on that target.
-    pub calibration: &'a Calibration,
+    pub correction: &'a CutCorrection,
     pub scratch: &'a mut Scratch,
 }
 
@@ -108,7 +108,7 @@ impl<M: LaneModel> Cut<'_, M> {
         let scale = self.samples.scale;
         let unit = 1.0 / f64::from(scale);
         let rough = self.scratch.closed.iter().fold(of_open(sum, scale), |sum, c| sum + c.max_value);
-        let target = self.accuracy * self.calibration.factor(f64::from(rough) * unit);
+        let target = self.accuracy * self.correction.factor(f64::from(rough) * unit);
         // A threshold below 0 would open empty nodes. The sum is below 0 only if the file is changed while it is read.
         let rough = if rough < 0.0 { 0.0 } else { rough };
         let mut threshold = START * target * target.sqrt() * rough;
@@ -121,7 +121,7 @@ impl<M: LaneModel> Cut<'_, M> {
             let (total, variance) =
                 self.scratch.closed.iter().fold(start, |(t, v), c| (t + c.value, v + c.error * c.error));
             predicted = f64::from(total) * unit;
-            let excess = variance.sqrt() / (self.accuracy * self.calibration.factor(predicted) * total);
+            let excess = variance.sqrt() / (self.accuracy * self.correction.factor(predicted) * total);
             // The excess is not a number if nothing contributes.
             if excess <= GOOD_ENOUGH || excess.is_nan() {
                 break;

@@ -1,8 +1,8 @@
 //! The estimators of the sum over the samples of a cloud. Each returns the sum before the division by K, which
 //! [`crate::Summation`] makes.
 
-mod calibration;
 mod cut;
+mod cut_correction;
 mod exhaustive;
 mod falloff_tables;
 mod random_bits;
@@ -10,8 +10,8 @@ mod roulette;
 mod scatterer;
 mod sum;
 
-pub use calibration::Calibration;
 pub use cut::Scratch;
+pub use cut_correction::CutCorrection;
 pub use random_bits::random_bits;
 pub use roulette::{Rates, Roulette, Rule};
 pub use scatterer::Scatterer;
@@ -79,7 +79,7 @@ impl Estimator {
     pub fn sum(
         self,
         scatterer: &Scatterer,
-        calibration: &Calibration,
+        correction: &CutCorrection,
         samples: &LitSamples,
         exit: &Exit,
         scratch: &mut Scratch,
@@ -87,7 +87,7 @@ impl Estimator {
         if samples.is_empty() {
             return Sum::default();
         }
-        scatterer.lanes.run(Estimation { estimator: self, scatterer, calibration, samples, exit, scratch })
+        scatterer.lanes.run(Estimation { estimator: self, scatterer, correction, samples, exit, scratch })
     }
 }
 
@@ -107,7 +107,7 @@ impl fmt::Display for Estimator {
 struct Estimation<'a> {
     estimator: Estimator,
     scatterer: &'a Scatterer,
-    calibration: &'a Calibration,
+    correction: &'a CutCorrection,
     samples: &'a LitSamples<'a>,
     exit: &'a Exit,
     scratch: &'a mut Scratch,
@@ -117,12 +117,12 @@ impl LaneWork for Estimation<'_> {
     type Output = Sum;
 
     fn run<M: LaneModel>(self, model: &M) -> Sum {
-        let Estimation { estimator, scatterer, calibration, samples, exit, scratch } = self;
+        let Estimation { estimator, scatterer, correction, samples, exit, scratch } = self;
         let level = scatterer.level;
         match estimator {
             Estimator::Cut { accuracy } => {
                 let (tables, accuracy) = (scatterer.tables(), accuracy as f32);
-                simd::run_as(level, Cut { model, samples, tables, exit, accuracy, calibration, scratch })
+                simd::run_as(level, Cut { model, samples, tables, exit, accuracy, correction, scratch })
             }
             Estimator::Roulette(rule) => {
                 simd::run_as(level, Roulette { model, samples, exit, rates: rule.rates(scatterer.transport) })

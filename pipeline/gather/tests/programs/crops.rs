@@ -1,8 +1,8 @@
 //! `--crop`: a crop has the bits of the whole image, and crops can be joined to the whole.
 //!
 //! Seen to catch: random numbers by the position in the crop; corners of edge pixels counted from the corner of the
-//! crop; points of calibration from an image of the crop's size; the data window as the display window; row and column
-//! exchanged.
+//! crop; points of the cut correction from an image of the crop's size; the data window as the display window; row and
+//! column exchanged.
 
 use formats::{Image, Window};
 use std::process::Command;

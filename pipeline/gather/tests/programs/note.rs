@@ -24,9 +24,10 @@ fn the_note_in_one_word() {
         bench.succeed("gather", &[&own[..], &["--width", "16", "--height", "16", "-o", name], how].concat());
         bench.read(name)
     };
-    let spelled = ["--estimator", "roulette", "--roulette", "mean", "--normals", "geometric"];
+    let dipole = ["--bssrdf", "directional-dipole", "--calibration", "none"];
+    let spelled = [&dipole[..], &["--estimator", "roulette", "--roulette", "mean", "--normals", "geometric"]].concat();
     let note = image("note.exr", &["--note"]);
     assert!(note == image("spelled.exr", &spelled) && note != image("default.exr", &["--normals", "geometric"]));
-    let exhaustive = ["--estimator", "exhaustive", "--normals", "geometric"];
+    let exhaustive = [&dipole[..], &["--estimator", "exhaustive", "--normals", "geometric"]].concat();
     assert!(image("own.exr", &["--note", "--estimator", "exhaustive"]) == image("exhaustive.exr", &exhaustive));
 }

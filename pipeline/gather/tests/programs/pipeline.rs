@@ -96,7 +96,7 @@ fn an_image_holds_what_the_contract_says() {
     for name in ["pcsss/cloud", "pcsss/scene", "pcsss/media", "pcsss/arguments", "worldToCamera", "comments"] {
         assert!(image.attributes.contains_key(name), "{name}");
     }
-    assert_eq!(image.attributes.get("pcsss/bssrdf"), Some(&Attribute::Text(Model::DirectionalDipole.name().into())));
+    assert_eq!(image.attributes.get("pcsss/bssrdf"), Some(&Attribute::Text(Model::HalfSpace.name().into())));
     let stats = bench.json("stats.json");
     let keys = "schema seconds peak_memory_bytes threads pixels paths gathers bssrdf_evaluations nodes_visited \
                 estimated_relative_error non_finite";

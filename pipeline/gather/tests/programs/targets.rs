@@ -45,10 +45,10 @@ fn targets_are_met_or_the_cloud_is_named() {
     assert!(!met.contains("warning: the cloud"), "{drawn} samples: {met}");
     assert!(stated <= 0.04 && actual <= 0.05, "{drawn} samples: {stated} stated, {actual} found");
 
-    // With enough paths, the remaining error is that of the cloud.
+    // With enough paths, the remaining error is that of the cloud, whose target is 0.01, and of the reference.
     gather(&bench, "chosen.cloud", "deep.exr", &["--spp", "128", "--accuracy", "0.002"]);
     let remains = relative_error(&bench, "fine.exr", "deep.exr");
-    assert!(remains <= 0.008, "{drawn} samples: {remains}");
+    assert!(remains <= 0.015, "{drawn} samples: {remains}");
 
     let limited = gather(&bench, "coarse.cloud", "coarse.exr", &["--target-error", "0.001"]);
     assert!(limited.contains("warning: the cloud alone"), "{limited}");

@@ -3,7 +3,7 @@
 /// A factor of the target error of a cut that makes its true error meet the target. It is a function of the predicted
 /// sum, since the nodes that matter in shadow are not those that matter in light.
 #[derive(Clone, Debug)]
-pub struct Calibration(Box<[f32; ENTRIES]>);
+pub struct CutCorrection(Box<[f32; ENTRIES]>);
 
 /// The factors are indexed by the bits of a float64 above this one: two steps for each doubling of the sum, from 2⁻²⁵⁶
 /// to 2²⁵⁶.
@@ -12,12 +12,12 @@ const ENTRIES: usize = 1 << 10;
 /// The index of 2⁻²⁵⁶.
 const FIRST: u64 = (1023 - 256) << 1;
 
-impl Calibration {
+impl CutCorrection {
     /// Takes pairs of a predicted sum, W/(m² sr), and its factor, in order of the sums. Between them the logarithm of
     /// the factor is linear in the logarithm of the sum; beyond them the factor is constant. Without any pair it is 1.
-    pub fn new(known: &[(f64, f64)]) -> Calibration {
+    pub fn new(known: &[(f64, f64)]) -> CutCorrection {
         let middle = |k: usize| f64::from_bits((k as u64 + FIRST) << SHIFT | 1 << (SHIFT - 1));
-        Calibration(Box::new(std::array::from_fn(|k| interpolate(known, middle(k)) as f32)))
+        CutCorrection(Box::new(std::array::from_fn(|k| interpolate(known, middle(k)) as f32)))
     }
 
     /// The factor at a predicted sum, W/(m² sr).
@@ -28,9 +28,9 @@ impl Calibration {
     }
 }
 
-impl Default for Calibration {
+impl Default for CutCorrection {
     fn default() -> Self {
-        Calibration::new(&[])
+        CutCorrection::new(&[])
     }
 }
 
@@ -50,13 +50,13 @@ mod tests {
     /// Seen to catch: factors linear in the sum instead of its logarithm.
     #[test]
     fn factors_are_interpolated_between_the_known_ones() {
-        let calibration = Calibration::new(&[(1e2, 0.25), (1e6, 4.0)]);
+        let correction = CutCorrection::new(&[(1e2, 0.25), (1e6, 4.0)]);
         let sums = [(0.0, 0.25), (1.0, 0.25), (1e4, 1.0), (1e6, 4.0), (1e30, 4.0), (1e60, 4.0), (f64::NAN, 4.0)];
         for (sum, factor) in sums.into_iter().chain([(1e-80, 0.25), (1e80, 4.0), (f64::INFINITY, 4.0)]) {
             // From one step of the table to the next this factor grows by a tenth.
-            let close = (calibration.factor(sum) / factor).ln().abs() < 0.1;
-            assert!(close, "{sum}: {}", calibration.factor(sum));
+            let close = (correction.factor(sum) / factor).ln().abs() < 0.1;
+            assert!(close, "{sum}: {}", correction.factor(sum));
         }
-        assert_eq!(Calibration::default().factor(3.0).to_bits(), 1f32.to_bits());
+        assert_eq!(CutCorrection::default().factor(3.0).to_bits(), 1f32.to_bits());
     }
 }

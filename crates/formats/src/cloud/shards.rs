@@ -5,9 +5,7 @@
 //! shard by its samples. With `--estimator cut`, each path uses one shard, round-robin, in proportion to its samples.
 //! The first halves of all shards together are one half, and so are the second halves; the two stay independent.
 
-pub use sums::drawn::{DrawnCounts, ShardPick};
-
-use formats::cloud::{Cloud, Meta, SampledMaterial, hex};
+use super::{Cloud, Meta, SampledMaterial, hex};
 use std::path::PathBuf;
 
 /// Why clouds cannot be gathered together.

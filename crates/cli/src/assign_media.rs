@@ -1,7 +1,7 @@
 //! Assigns a medium to each sampled material.
 
+use crate::{Candidate, ReadMediumError, Unclear, read_medium, scene_medium, the_one, word_for};
 use bssrdf::Medium;
-use cli::{Candidate, ReadMediumError, Unclear, read_medium, scene_medium, the_one, word_for};
 use formats::cloud::SampledMaterial;
 use scene::Material;
 
@@ -24,7 +24,7 @@ pub enum AssignError {
 
 /// The medium of each sampled material: that of the arguments `[MATERIAL=]NAME|FILE.json`, or else that of the scene's
 /// `materials`.
-pub fn assign(
+pub fn assign_media(
     arguments: &[String],
     sampled: &[SampledMaterial],
     materials: &[Material],

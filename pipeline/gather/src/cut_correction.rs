@@ -1,5 +1,5 @@
-//! Calibrates the cut for this camera and these media: its true error is measured at a few points of the image before
-//! the image is rendered, so that it meets the target.
+//! Corrects the cut's prediction for this camera and these media: its true error is measured at a few points of the
+//! image before the image is rendered, so that it meets the target.
 
 use crate::{path_state::ThreadContext, renderer::Renderer};
 use glam::DVec2;
@@ -10,7 +10,7 @@ use scene::{
     sequence::Sequence,
 };
 use sums::{
-    estimator::{Calibration, Sum},
+    estimator::{CutCorrection, Sum},
     samples::Exit,
 };
 
@@ -32,26 +32,26 @@ const DARKEST: f64 = 1e-6;
 /// whole sum.
 const RANGE: (f64, f64) = (0.01, 8.0);
 
-/// Measures the calibration of each object.
-pub fn calibrate(renderer: &mut Renderer) {
-    if renderer.estimator_for(1.0).accuracy().is_none() {
+/// Measures the correction of each object.
+pub fn correct(renderer: &mut Renderer) {
+    if renderer.settings.reference || renderer.estimator_for(1.0).accuracy().is_none() {
         return;
     }
-    let stream = Stream::new(renderer.settings.seed, Purpose::Calibration);
+    let stream = Stream::new(renderer.settings.seed, Purpose::CutCorrection);
     let points = points(renderer, stream);
     for (material, points) in points.iter().enumerate() {
         let mut measured = Vec::new();
         for round in 0..ROUNDS {
             measured.extend(measure(renderer, material, points, stream, round));
             if let Some(object) = &mut renderer.objects[material] {
-                object.summation.calibration = fit(&measured);
+                object.summation.correction = fit(&measured);
             }
         }
     }
 }
 
 /// The factors with which the measured errors would have met their targets.
-fn fit(measured: &[Measured]) -> Calibration {
+fn fit(measured: &[Measured]) -> CutCorrection {
     let brightest = measured.iter().fold(0.0f64, |max, m| max.max(m.mean));
     let mut counted: Vec<&Measured> = measured
         .iter()
@@ -64,7 +64,7 @@ fn fit(measured: &[Measured]) -> Calibration {
         let predicted = (group.iter().map(|m| m.predicted.ln()).sum::<f64>() / n).exp();
         (predicted, (1.0 / excess).clamp(RANGE.0, RANGE.1))
     });
-    Calibration::new(&factors.collect::<Vec<_>>())
+    CutCorrection::new(&factors.collect::<Vec<_>>())
 }
 
 /// For each material, points that the camera sees, with their normals.
@@ -121,7 +121,7 @@ fn measure(
         let sums: Vec<Sum> = (0..REPLICATES).map(sum).collect();
         let (mean, variance) = moments(&sums);
         let predicted = sums[0].predicted;
-        let target = accuracy * f64::from(summation.calibration.factor(predicted));
+        let target = accuracy * f64::from(summation.correction.factor(predicted));
         Measured { mean, predicted, excess: variance / (mean * target).powi(2) }
     };
     points.par_iter().enumerate().map(at).collect()

@@ -1,9 +1,7 @@
 //! The clouds of a run, checked: they belong together and to the scene, and are undamaged.
 
-use crate::settings::Request;
-use cli::{Failure, SceneSettings};
-use formats::cloud::{Cloud, SampledMaterial};
-use gather::shards;
+use crate::{Common, Failure, SceneSettings};
+use formats::cloud::{Cloud, SampledMaterial, shards};
 use scene::{MeshDefects, Scene};
 use std::{fmt::Display, num::NonZeroUsize, path::PathBuf};
 
@@ -41,15 +39,15 @@ impl CloudFiles {
 
     /// Refuses clouds that were sampled from another scene or with other units or normals; the message says what
     /// differs.
-    pub fn check_fit(&self, scene: &Scene, request: &Request) -> Result<(), Failure> {
-        let (settings, options) = (&request.scene, &self.clouds[0].meta().options);
+    pub fn check_fit(&self, scene: &Scene, settings: &SceneSettings, common: &Common) -> Result<(), Failure> {
+        let options = &self.clouds[0].meta().options;
         if let Some(differs) = self.difference(scene, settings) {
             let (cloud, scene) = (self.paths[0].display(), settings.path.display());
             let message = format!("{cloud}: this cloud is not of {scene}: {differs}; sample the scene again");
             return Err(Failure::usage(message));
         }
         if settings.how.normals != options.normals {
-            request.common.warn(format_args!("--normals is {}, the cloud's {}", settings.how.normals, options.normals));
+            common.warn(format_args!("--normals is {}, the cloud's {}", settings.how.normals, options.normals));
         }
         Ok(())
     }

@@ -1,0 +1,86 @@
+//! The factors of one material as images use them.
+
+use crate::patches::{Patches, Site};
+use bsdf::fresnel;
+use formats::calibration::CalibratedMaterial;
+use glam::{DVec3, Vec3};
+
+/// The factor between the model's light and the true light, at any point of a surface and for any angle of view.
+#[derive(Clone, Debug)]
+pub struct Factors {
+    patches: Patches,
+    /// For each patch, the natural logarithm of the factor of each channel.
+    log_factors: Vec<[f32; 3]>,
+    /// For each patch, the gradient of the logarithm of the light of each channel, 1/m.
+    gradients: Vec<[DVec3; 3]>,
+    lobe: [[f64; 2]; 3],
+    /// `l/η = 1/(σ_t' η)` of each channel, m.
+    shift: [f64; 3],
+}
+
+/// The largest logarithm of the factor by the shift. Light that is diffuse changes by less within a mean free path.
+const MAX_SHIFT: f64 = 1.0;
+
+impl Factors {
+    pub fn new(material: &CalibratedMaterial) -> Factors {
+        let log_factors = material.surface.patches.iter().map(|p| p.log_factor).collect();
+        let gradients =
+            material.surface.patches.iter().map(|p| p.gradient.map(|g| Vec3::from_array(g).as_dvec3())).collect();
+        let medium = &material.medium;
+        let shift = [0, 1, 2].map(|c| {
+            let reduced = medium.sigma_a[c] + (1.0 - medium.g[c]) * medium.sigma_s[c];
+            // In a vacuum nothing is scattered, so that there is nothing to shift.
+            if reduced > 0.0 { 1.0 / (reduced * medium.eta) } else { 0.0 }
+        });
+        Factors { patches: Patches::from_facts(&material.surface), log_factors, gradients, lobe: material.lobe, shift }
+    }
+
+    /// `a` and `b` of the exit lobe `a + b cosθ` of each channel.
+    pub fn lobe(&self) -> &[[f64; 2]; 3] {
+        &self.lobe
+    }
+
+    /// The factor of the radiance without `T21` that leaves at a point of the surface towards the unit vector `view`
+    /// (docs/method.md 16.5).
+    pub fn at(&self, site: &Site, view: DVec3) -> DVec3 {
+        let cosine = site.normal.dot(view);
+        let along = view - cosine * site.normal;
+        let (mut sum, mut shift) = (DVec3::ZERO, DVec3::ZERO);
+        self.patches.weights(site, |patch, weight| {
+            let gradients = &self.gradients[patch as usize];
+            sum += weight * DVec3::from_array(self.log_factors[patch as usize].map(f64::from));
+            shift += weight * DVec3::from_array(gradients.map(|g| g.dot(along)));
+        });
+        let bounded = (shift * DVec3::from_array(self.shift)).clamp(DVec3::splat(-MAX_SHIFT), DVec3::splat(MAX_SHIFT));
+        let lobe = DVec3::from_array(self.lobe.map(|[a, b]| a + b * cosine));
+        lobe * (sum - bounded).exp()
+    }
+}
+
+/// `a` and `b` of the exit lobe `T21 (a + b cosθ)` that carries the power of the lobe `T21` alone and has the mean cosine
+/// `mean_cosine` (docs/method.md 15.8).
+pub fn exit_lobe(eta: f64, mean_cosine: f64) -> [f64; 2] {
+    let [m0, m1, m2] = fresnel::exit_moments(eta);
+    let determinant = m0 * m2 - m1 * m1;
+    [m0 * (m2 - m1 * mean_cosine) / determinant, m0 * (m0 * mean_cosine - m1) / determinant]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Seen to catch: the two coefficients exchanged.
+    #[test]
+    fn the_lobe_keeps_power_and_has_the_mean_cosine() {
+        for eta in [1.0, 1.3, 1.5, 2.5] {
+            let [m0, m1, m2] = fresnel::exit_moments(eta);
+            for mean in [0.55, m1 / m0, 0.75] {
+                let [a, b] = exit_lobe(eta, mean);
+                assert!(((a * m0 + b * m1) / m0 - 1.0).abs() < 1e-12);
+                assert!(((a * m1 + b * m2) / m0 / mean - 1.0).abs() < 1e-12);
+            }
+            let [a, b] = exit_lobe(eta, m1 / m0);
+            assert!((a - 1.0).abs() < 1e-12 && b.abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! What a BSSRDF model gets wrong on the true shape of an object, measured by random walks and mended by a smooth factor
+//! on its surface (docs/method.md section 16).
+//!
+//! A BSSRDF describes light below a plane. On another shape the light that leaves differs by a factor that changes
+//! slowly over the surface and does not depend on the camera. [`calibrate`] follows random walks from the samples of a
+//! cloud through the mesh ([`walks`]), counts what leaves each patch of the surface, and fits the factor; [`Factors`]
+//! gives it at any point.
+
+mod entries;
+mod errors;
+mod factors;
+mod fit;
+mod patches;
+mod sparse;
+mod surface;
+mod tally;
+
+pub use factors::{Factors, exit_lobe};
+pub use patches::{Patches, Site};
+
+use bssrdf::{Medium, Model};
+use entries::Entries;
+use errors::{Light, channel_errors};
+use fit::Smoothness;
+use formats::{
+    calibration::{CalibratedMaterial, Calibration, ChannelErrors, MediumFacts, VERSION},
+    cloud::{Cloud, shards},
+};
+use scene::{NormalKind, Rays, Scene};
+use std::sync::Arc;
+use sums::{Summation, estimator::Scatterer};
+use surface::Surface;
+use tally::Walking;
+use walks::Solid;
+
+/// What is calibrated, and how.
+#[derive(Clone, Copy)]
+pub struct Task<'a> {
+    pub scene: &'a Scene,
+    pub rays: &'a Rays<'a>,
+    /// One cloud of this scene, or several that are gathered as one.
+    pub clouds: &'a [Cloud],
+    /// The medium of each material that the clouds sampled, in their order.
+    pub media: &'a [Medium],
+    pub model: Model,
+    pub normals: NormalKind,
+    /// Random walks of each channel, over all materials.
+    pub walks: u64,
+    pub seed: u64,
+}
+
+/// The part of the work that one material gets.
+#[derive(Clone, Copy)]
+struct Portion {
+    depth: u32,
+    walks: u64,
+}
+
+/// Why a material cannot be calibrated.
+#[derive(Debug, thiserror::Error)]
+pub enum CalibrateError {
+    #[error(
+        "`{material}`: {share:.3} % of the random walks left through holes of its surface; a medium needs a closed \
+         surface whose triangles are wound outwards"
+    )]
+    Open { material: String, share: f64 },
+    #[error("`{material}`: no light enters it, so that there is nothing to calibrate")]
+    Dark { material: String },
+}
+
+/// Random walks of each channel, over all materials, unless the user says otherwise.
+pub const WALKS: u64 = 300_000;
+
+/// Levels of splits of a surface alone: 1024 patches. Several materials share patches and walks by their areas.
+const DEPTH: u32 = 10;
+
+/// The fewest levels of splits of a material, and the smallest share of the walks.
+const MIN_DEPTH: u32 = 6;
+const MIN_SHARE: f64 = 1.0 / 16.0;
+
+/// Points of each patch at which the model is evaluated.
+const POINTS: usize = 128;
+
+/// The largest share of walks that may leave through holes.
+const HOLES: f64 = 1e-3;
+
+impl Task<'_> {
+    /// Units of work of [`calibrate`]: walks and points.
+    pub fn work(&self) -> u64 {
+        self.portions().iter().map(|p| 3 * p.walks + (POINTS << p.depth) as u64).sum()
+    }
+
+    /// The portion of each sampled material, by its share of the area.
+    fn portions(&self) -> Vec<Portion> {
+        let areas: Vec<f64> = shards::materials(self.clouds).iter().map(|m| m.area_m2).collect();
+        let total: f64 = areas.iter().sum();
+        let portion = |area: &f64| {
+            let share = if total > 0.0 { area / total } else { 1.0 };
+            let levels = (f64::from(DEPTH) + share.log2().round()).max(f64::from(MIN_DEPTH));
+            Portion { depth: levels as u32, walks: (self.walks as f64 * share.max(MIN_SHARE)).ceil() as u64 }
+        };
+        areas.iter().map(portion).collect()
+    }
+
+    /// Digest of everything that the calibration depends on. The cloud's identity covers the scene.
+    fn identity(&self) -> [u8; 32] {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(&VERSION.to_le_bytes());
+        hasher.update(&shards::identity(self.clouds));
+        hasher.update(self.model.name().as_bytes());
+        hasher.update(&[u8::from(self.normals == NormalKind::Shading)]);
+        hasher.update(&self.walks.to_le_bytes());
+        hasher.update(&self.seed.to_le_bytes());
+        for medium in self.media {
+            let numbers = medium.channels.iter().flat_map(|c| [c.sigma_a, c.sigma_s, c.asymmetry]);
+            numbers.chain([medium.eta]).for_each(|x| _ = hasher.update(&x.to_le_bytes()));
+        }
+        *hasher.finalize().as_bytes()
+    }
+}
+
+/// Measures and fits the factors of all materials; `progress` is called with units of work that were done.
+pub fn calibrate(task: &Task, progress: impl Fn(u64) + Sync) -> Result<Calibration, CalibrateError> {
+    let materials = (task.portions().into_iter().enumerate())
+        .map(|(slot, portion)| calibrate_material(task, slot, portion, &progress))
+        .collect::<Result<_, _>>()?;
+    Ok(Calibration {
+        content: task.identity(),
+        cloud: shards::identity(task.clouds),
+        model: task.model.name().into(),
+        walks: task.walks,
+        seed: task.seed,
+        materials,
+    })
+}
+
+fn calibrate_material(
+    task: &Task,
+    slot: usize,
+    portion: Portion,
+    progress: &(impl Fn(u64) + Sync),
+) -> Result<CalibratedMaterial, CalibrateError> {
+    let (mesh, Portion { depth, walks }) = (&task.scene.mesh, portion);
+    let (sampled, medium) = (&shards::materials(task.clouds)[slot], &task.media[slot]);
+    let dark = || CalibrateError::Dark { material: sampled.name.clone() };
+    let surface = Surface::new(mesh, sampled.index, task.normals, POINTS << depth, task.seed);
+    let sites = surface.sites();
+    let (patches, cell_of) = Patches::new(&sites, surface.area, depth);
+    let scatterer = Arc::new(Scatterer::new(task.model, medium, sampled.area_m2.sqrt()));
+    let summation = Summation::of_clouds(scatterer, task.clouds, slot);
+    let areas = surface.cell_areas(mesh, &patches, sampled.index, task.seed);
+    let sums = surface.light(&summation, task.seed, progress);
+    let light = Light::new(&sums, &cell_of, &areas, medium.eta);
+    let is_translucent = |m: u16| shards::materials(task.clouds).iter().any(|s| s.index == m);
+    let solid = Solid::new(mesh, task.rays, sampled.index, is_translucent).ok_or_else(dark)?;
+    let entries = Entries::new(task.clouds, slot, medium.eta);
+    let walking =
+        Walking { mesh, solid: &solid, entries: &entries, patches: &patches, eta: medium.eta, seed: task.seed, slot };
+    let smoothness = Smoothness::new(&patches, &sites, &cell_of);
+    let mut log_factors = vec![[0.0f32; 3]; patches.count()];
+    let mut gradients = vec![[[0.0f32; 3]; 3]; patches.count()];
+    let mut lobe = task.model.exit_lobe(medium);
+    let mut errors = [ChannelErrors::default(); 3];
+    for channel in 0..3 {
+        let tally = walking.tally(channel, &medium.channels[channel], walks, progress);
+        let share = tally.holes as f64 / tally.walks.max(1) as f64;
+        if share > HOLES {
+            return Err(CalibrateError::Open { material: sampled.name.clone(), share: 100.0 * share });
+        }
+        let Some(counted) = tally.counted(entries.power(channel), &light.power[channel]) else {
+            continue;
+        };
+        let counts = counted.at_patches(&patches);
+        let fit = smoothness.fit(&counts);
+        lobe[channel] = exit_lobe(medium.eta, tally.cosines / tally.sum());
+        errors[channel] = channel_errors(&smoothness, &patches, &light, channel, &counted, &fit);
+        let fitted = smoothness.at_patches(&fit.both);
+        let leaving: Vec<f64> = fitted.iter().zip(&counts.model).map(|(f, m)| f + m.ln()).collect();
+        for (gradient, fitted) in gradients.iter_mut().zip(patches.gradient(&leaving)) {
+            gradient[channel] = fitted.as_vec3().to_array();
+        }
+        for (factor, fitted) in log_factors.iter_mut().zip(&fit.both) {
+            factor[channel] = *fitted as f32;
+        }
+    }
+    Ok(CalibratedMaterial {
+        name: sampled.name.clone(),
+        index: sampled.index,
+        medium: facts(medium),
+        lobe,
+        errors,
+        surface: patches.facts(&log_factors, &gradients),
+    })
+}
+
+fn facts(medium: &Medium) -> MediumFacts {
+    MediumFacts {
+        name: medium.name.clone(),
+        source: medium.source.clone(),
+        sigma_a: medium.map(|c| c.sigma_a),
+        sigma_s: medium.map(|c| c.sigma_s),
+        g: medium.map(|c| c.asymmetry),
+        eta: medium.eta,
+    }
+}

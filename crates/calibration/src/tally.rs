@@ -1,0 +1,172 @@
+//! Walks from the samples of a cloud to the cells of the surface that they leave through.
+
+use crate::{
+    entries::Entries,
+    fit::Counts,
+    patches::{Patches, Site},
+};
+use bssrdf::Coefficients;
+use rayon::prelude::*;
+use scene::{
+    Mesh, NormalKind,
+    random::{Purpose, Stream},
+};
+use walks::{End, Matter, Sequence, Solid, walk};
+
+/// What a walk starts from and runs in.
+pub struct Walking<'a> {
+    pub mesh: &'a Mesh,
+    pub solid: &'a Solid<'a>,
+    pub entries: &'a Entries<'a>,
+    pub patches: &'a Patches,
+    pub eta: f64,
+    pub seed: u64,
+    /// Distinguishes the random numbers of materials.
+    pub slot: usize,
+}
+
+/// The light of one channel that leaves each cell, in weights of walks.
+#[derive(Clone, Debug, Default)]
+pub struct Tally {
+    /// Walks that were begun.
+    pub walks: u64,
+    /// For each half of the walks, the sum of the weights that leave each cell.
+    pub weights: [Vec<f64>; 2],
+    /// The sum of the squared weights, and of the weights times the cosine outside.
+    pub squares: f64,
+    pub cosines: f64,
+    /// Walks that left through a hole of the mesh, or whose sample lies on no triangle.
+    pub holes: u64,
+    /// Walks that left without a collision, or ended on an opaque surface.
+    pub unscattered: u64,
+    pub opaque: u64,
+}
+
+/// Walks of one task.
+const CHUNK: u64 = 1024;
+
+/// The items of a stream are numbered by material and channel above this bit, and by walk below it.
+const WALK_BITS: u32 = 44;
+
+impl Tally {
+    pub fn sum(&self) -> f64 {
+        self.weights.iter().flatten().sum()
+    }
+
+    /// The tally (docs/method.md 16.1) as counts, and the `power` of the model, W, in the same unit; none if nothing leaves, or the model says
+    /// so. `entering` is the power that enters, W.
+    ///
+    /// Weights of walks are not counts: as many counts of one mean weight `Σw²/Σw` have the same sum and variance.
+    pub fn counted(&self, entering: f64, power: &[f64]) -> Option<Counted> {
+        let sum = self.sum();
+        let unit = self.squares / sum;
+        // Each half has half of the walks.
+        let watts = 2.0 * entering / self.walks as f64 * unit;
+        let usable = sum > 0.0 && watts > 0.0 && power.iter().any(|m| *m > 0.0);
+        let counted = Counted {
+            model: power.iter().map(|m| m / watts).collect(),
+            halves: [0, 1].map(|half| self.weights[half].iter().map(|w| w / unit).collect()),
+        };
+        usable.then_some(counted)
+    }
+}
+
+/// Counts of walks at each cell.
+pub struct Counted {
+    /// What the model predicts for each half of the walks.
+    pub model: Vec<f64>,
+    /// What left in each half of the walks.
+    pub halves: [Vec<f64>; 2],
+}
+
+impl Counted {
+    /// The same at each patch.
+    pub fn at_patches(&self, patches: &Patches) -> Counts {
+        let sum = |cells: &Vec<f64>| {
+            let mut sums = vec![0.0; patches.count()];
+            cells.iter().enumerate().for_each(|(cell, n)| sums[patches.patch_of_cell(cell as u32) as usize] += n);
+            sums
+        };
+        Counts { model: sum(&self.model), halves: [0, 1].map(|half| sum(&self.halves[half])) }
+    }
+}
+
+/// Where a walk left: cell, weight, cosine outside.
+type Left = (u32, f64, f64);
+
+#[derive(Default)]
+struct Chunk {
+    left: [Vec<Left>; 2],
+    holes: u64,
+    unscattered: u64,
+    opaque: u64,
+}
+
+impl Walking<'_> {
+    /// Makes `count` walks of one channel.
+    pub fn tally(
+        &self,
+        channel: usize,
+        coefficients: &Coefficients,
+        count: u64,
+        progress: impl Fn(u64) + Sync,
+    ) -> Tally {
+        let none = || vec![0.0; self.patches.cells()];
+        let mut tally = Tally { walks: count, weights: [none(), none()], ..Tally::default() };
+        let Some(matter) = Matter::new(coefficients, self.eta) else {
+            return tally;
+        };
+        let chunk = |chunk: u64| {
+            let walks = chunk * CHUNK..((chunk + 1) * CHUNK).min(count);
+            let done = walks.end - walks.start;
+            let result = self.chunk(channel, &matter, walks, count);
+            progress(done);
+            result
+        };
+        let chunks: Vec<Chunk> = (0..count.div_ceil(CHUNK)).into_par_iter().map(chunk).collect();
+        for chunk in chunks {
+            for (half, left) in chunk.left.iter().enumerate() {
+                for (cell, weight, cosine) in left {
+                    tally.weights[half][*cell as usize] += weight;
+                    tally.squares += weight * weight;
+                    tally.cosines += weight * cosine;
+                }
+            }
+            tally.holes += chunk.holes;
+            tally.unscattered += chunk.unscattered;
+            tally.opaque += chunk.opaque;
+        }
+        tally
+    }
+
+    /// Makes some of the walks. They start at samples in proportion to the light that enters there, in the spatial order
+    /// of the samples, so that their starts are as well spread as the light.
+    fn chunk(&self, channel: usize, matter: &Matter, walks: std::ops::Range<u64>, count: u64) -> Chunk {
+        let stream = Stream::new(self.seed, Purpose::LightWalk);
+        let mut chunk = Chunk::default();
+        for index in walks {
+            let item = stream.item(((3 * self.slot + channel) as u64) << WALK_BITS | index);
+            let mut random = Sequence::new(item);
+            let share = (index as f64 + random.uniform()) / count as f64;
+            let Some(entry) = self.entries.at(channel, share) else {
+                continue;
+            };
+            let Some(start) = self.solid.enter(entry.position, entry.normal, entry.towards_light, self.eta) else {
+                chunk.holes += 1;
+                continue;
+            };
+            match walk(self.solid, matter, &start, &mut random, |_, _| ()) {
+                End::Scattered(exit) => {
+                    let point = self.mesh.point(exit.face, [1.0, 0.0, 0.0], NormalKind::Geometric);
+                    let cell = self.patches.cell(&Site { position: exit.position, normal: point.geometric_normal });
+                    chunk.left[index as usize % 2].push((cell, exit.weight, exit.cosine));
+                }
+                End::Unscattered(_) => chunk.unscattered += 1,
+                End::Opaque => chunk.opaque += 1,
+                End::Hole => chunk.holes += 1,
+                End::Absorbed | End::Trapped => {}
+            }
+        }
+        chunk
+    }
+}

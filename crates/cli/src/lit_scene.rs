@@ -1,0 +1,102 @@
+//! A scene with its clouds and media: what every stage after sampling starts from.
+
+use crate::{CloudFiles, Common, Failure, Files, SceneSettings, assign_media, is_file};
+use bssrdf::Medium;
+use formats::cloud::{Cloud, shards};
+use scene::{DVec3, MeshDefects, Rays, Scene};
+use std::path::{Path, PathBuf};
+
+/// A scene with its clouds and media.
+pub struct LitScene {
+    pub cloud_files: CloudFiles,
+    pub scene: Scene,
+    /// The medium of each sampled material, in their order.
+    pub media: Vec<Medium>,
+    /// Defects of the sampled surfaces.
+    pub defects: MeshDefects,
+}
+
+/// The media of the sampled materials.
+pub enum Media<'a> {
+    /// As arguments `[MATERIAL=]NAME|FILE.json`; materials without one have the medium of the scene.
+    Named(&'a [String]),
+    /// One for each sampled material.
+    Known(Vec<Medium>),
+}
+
+impl LitScene {
+    /// Reads clouds and their scene, but no samples, and the media; refuses inputs that do
+    /// not fit each other. The files that the scene's file names are declared as they become known.
+    pub fn read(
+        clouds: &[PathBuf],
+        settings: &SceneSettings,
+        media: Media,
+        common: &Common,
+        files: &mut Files,
+    ) -> Result<LitScene, Failure> {
+        let cloud_files = CloudFiles::open(clouds)?;
+        let mut scene = import(settings, common)?;
+        scene.files.iter().try_for_each(|path| files.reads("a file that SCENE names", path))?;
+        cloud_files.check_fit(&scene, settings, common)?;
+        let (sampled, defects) = (shards::materials(&cloud_files.clouds), cloud_files.defects());
+        let is_sampled = |material| sampled.iter().any(|m| m.index == material);
+        settings.check_mesh(&mut scene, is_sampled, defects, common)?;
+        let media = match media {
+            Media::Named(arguments) => assign_media(arguments, sampled, &scene.materials)?,
+            Media::Known(media) => media,
+        };
+        Ok(LitScene { cloud_files, scene, media, defects })
+    }
+
+    pub fn clouds(&self) -> &[Cloud] {
+        &self.cloud_files.clouds
+    }
+
+    /// The triangles of the scene, prepared for rays.
+    pub fn rays(&self) -> Rays<'_> {
+        Rays::of_scene(&self.scene, |material| self.is_sampled(material))
+    }
+
+    fn is_sampled(&self, material: u16) -> bool {
+        shards::materials(self.clouds()).iter().any(|m| m.index == material)
+    }
+
+    /// The middle of the box around the translucent surfaces, world, m.
+    pub fn middle(&self) -> DVec3 {
+        let (low, high) = self.bounds(|material| self.is_sampled(material));
+        self.scene.origin + 0.5 * (low + high)
+    }
+
+    /// The box around the triangles of these materials, m from the scene's origin.
+    pub fn bounds(&self, of: impl Fn(u16) -> bool) -> (DVec3, DVec3) {
+        let mesh = &self.scene.mesh;
+        let own = (0..mesh.triangles.len()).filter(|k| of(mesh.triangles[*k].material));
+        let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        own.flat_map(|k| mesh.corners(k)).fold(start, |(low, high), p| (low.min(p), high.max(p)))
+    }
+}
+
+/// Reads SCENE. If the last argument is another cloud instead, the message says that SCENE is missing.
+fn import(settings: &SceneSettings, common: &Common) -> Result<Scene, Failure> {
+    let path: &Path = &settings.path;
+    settings.import(common).map_err(|failure| match Cloud::open(path) {
+        Ok(_) => Failure::usage(format!("{}: this is a cloud; give SCENE after all clouds", path.display())),
+        Err(_) => failure,
+    })
+}
+
+/// Declares the clouds, the scene and the files of media that a run reads, as far as the arguments name them.
+pub fn declare_inputs(clouds: &[PathBuf], settings: &SceneSettings, media: &[String]) -> Result<Files, Failure> {
+    let mut files = Files::default();
+    clouds.iter().try_for_each(|path| files.reads("CLOUD", path))?;
+    settings.declare(&mut files)?;
+    // The name of a material may contain an equals sign: the text after any of them may be the file.
+    let after = |argument: &'_ str| -> Vec<PathBuf> {
+        let starts = argument.match_indices('=').map(|(k, _)| k + 1);
+        starts.chain([0]).map(|start| &argument[start..]).filter(|name| is_file(name)).map(PathBuf::from).collect()
+    };
+    for path in media.iter().flat_map(|argument| after(argument)) {
+        files.reads("--medium", &path)?;
+    }
+    Ok(files)
+}

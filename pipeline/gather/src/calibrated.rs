@@ -1,0 +1,105 @@
+//! The calibration that images are rendered with: of a file, or made in memory before the first image.
+
+use crate::settings::{CalibrationSource, Request};
+use bssrdf::{Medium, MediumFile, Model, Optics, Unit};
+use calibration::{CalibrateError, Task, WALKS, calibrate};
+use cli::{Failure, LitScene, Progress};
+use formats::{
+    calibration::{CalibratedMaterial, Calibration},
+    cloud::shards,
+};
+use scene::Rays;
+use std::path::Path;
+
+/// The calibration of a file that the request names.
+pub fn read(request: &Request) -> Result<Option<Calibration>, Failure> {
+    match &request.calibration {
+        CalibrationSource::File(path) => Ok(Some(Calibration::read(path)?)),
+        CalibrationSource::Automatic | CalibrationSource::None => Ok(None),
+    }
+}
+
+/// The model that was asked for, or else that of the calibration, or else the default.
+pub fn model(request: &Request, kept: Option<&Calibration>) -> Result<Model, Failure> {
+    let Some(kept) = kept else {
+        return Ok(request.model.unwrap_or(Model::ALL[0]));
+    };
+    let known = Model::ALL.into_iter().find(|model| model.name() == kept.model);
+    let model = known.ok_or_else(|| refused(request, &format!("of an unknown model, `{}`", kept.model)))?;
+    match request.model {
+        Some(asked) if asked != model => {
+            Err(refused(request, &format!("of the {}, and --bssrdf is {}", model.name(), asked.name())))
+        }
+        _ => Ok(model),
+    }
+}
+
+fn refused(request: &Request, why: &str) -> Failure {
+    let path = match &request.calibration {
+        CalibrationSource::File(path) => path.as_path(),
+        CalibrationSource::Automatic | CalibrationSource::None => Path::new(""),
+    };
+    Failure::usage(format!("--calibration: {}: this calibration is {why}; calibrate again", path.display()))
+}
+
+/// The media of a calibration.
+pub fn media(kept: &Calibration) -> Result<Vec<Medium>, Failure> {
+    let medium = |m: &CalibratedMaterial| {
+        let facts = &m.medium;
+        Medium::new(MediumFile {
+            name: facts.name.clone(),
+            unit: Unit::Metre,
+            optics: Optics::Coefficients { sigma_a: facts.sigma_a, sigma_s: facts.sigma_s },
+            g: facts.g,
+            eta: facts.eta,
+            source: facts.source.clone(),
+        })
+    };
+    Ok(kept.materials.iter().map(medium).collect::<Result<_, _>>()?)
+}
+
+/// Refuses a calibration of another cloud, or of other media than those asked for.
+pub fn check_fit(request: &Request, lit: &LitScene, kept: &Calibration) -> Result<(), Failure> {
+    if kept.cloud != shards::identity(lit.clouds()) || kept.materials.len() != lit.media.len() {
+        return Err(refused(request, "of another cloud"));
+    }
+    let own = media(kept)?;
+    for (medium, (asked, material)) in own.iter().zip(lit.media.iter().zip(&kept.materials)) {
+        if medium.channels != asked.channels || medium.eta != asked.eta {
+            let (medium, asked, material) = (&medium.name, &asked.name, &material.name);
+            let why = format!("of `{material}` as {medium}, and --medium is {asked}: leave out --medium or");
+            return Err(refused(request, &why));
+        }
+    }
+    Ok(())
+}
+
+/// Calibrates in memory if the request leaves that to the program and the model is made for it. A scene that cannot be
+/// calibrated is rendered without, with a warning.
+pub fn make(request: &Request, lit: &LitScene, rays: &Rays, model: Model) -> Result<Option<Calibration>, Failure> {
+    let automatic =
+        request.calibration == CalibrationSource::Automatic && model.is_for_calibration() && !request.reference;
+    if !automatic || lit.media.iter().all(Medium::is_clear) {
+        return Ok(None);
+    }
+    let common = &request.common;
+    let normals = cli::normal_kind(request.scene.how.normals);
+    let (clouds, media, seed) = (lit.clouds(), &lit.media, common.seed);
+    let task = Task { scene: &lit.scene, rays, clouds, media, model, normals, walks: WALKS, seed };
+    let progress = Progress::start(common, "calibrating", task.work(), "walks and points");
+    let made = common.in_pool(|| calibrate(&task, |done| progress.add(done)))?;
+    let seconds = progress.finish();
+    match made {
+        Ok(calibration) => {
+            common.say(format_args!(
+                "calibrated in {seconds:.1} s; `calibrate` with the same clouds, scene and media keeps that in a file for \
+                 all cameras, and --calibration none leaves it out"
+            ));
+            Ok(Some(calibration))
+        }
+        Err(error @ (CalibrateError::Open { .. } | CalibrateError::Dark { .. })) => {
+            common.warn(format_args!("not calibrated: {error}"));
+            Ok(None)
+        }
+    }
+}
