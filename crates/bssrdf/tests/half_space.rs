@@ -102,7 +102,8 @@ fn continuous_anywhere() {
     }
 }
 
-/// The light on the back of a sheet falls as `e^{−κ z}/z`, times a factor that hardly varies.
+/// The light on the back of a sheet falls as `e^{−κ z}/z²`, times a factor that hardly varies: the depth that the images
+/// see is bounded.
 #[test]
 fn deep_below_the_surface_light_falls_as_the_diffuse_mode() {
     for absorbed in [1e-3, 0.01, 0.1, 0.5] {
@@ -112,7 +113,7 @@ fn deep_below_the_surface_light_falls_as_the_diffuse_mode() {
         assert!((model.transport()[0] / kappa - 1.0).abs() < 1e-12);
         let scaled = |depth: f64| {
             let separation = separation(1.3, 1.0, DVec3::NEG_Z * depth).expect("light enters");
-            model.bare(0, &separation) * (kappa * depth).exp() * depth
+            model.bare(0, &separation) * (kappa * depth).exp() * depth * depth
         };
         let ratio = scaled(60.0) / scaled(30.0);
         assert!((0.5..1.5).contains(&ratio), "{absorbed}: {ratio}");

@@ -1,7 +1,7 @@
 //! The half-space model: right on a half-space of any reduced albedo, index and angle of the light.
 //!
 //! Two sources of diffuse light, one below the surface and its image above it, times a tabulated ratio to random walks
-//! (docs/method.md section 14). Ours. The shape of light that is scattered along its direction is that by similarity, with
+//! (docs/method.md section 15). Ours. The shape of light that is scattered along its direction is that by similarity, with
 //! the reduced coefficients; its power is that of Henyey and Greenstein's phase function.
 
 use crate::{

@@ -28,14 +28,14 @@ use crate::{
 /// A model of the BSSRDF.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Model {
+    /// Ours: exact on a half-space, from random walks.
+    HalfSpace,
     /// Frisvad, Hachisuka, Kjeldsen 2014.
     DirectionalDipole,
     /// d'Eon 2012.
     BetterDipole,
     /// Jensen, Marschner, Levoy, Hanrahan 2001.
     StandardDipole,
-    /// Ours: exact on a half-space, from random walks.
-    HalfSpace,
 }
 
 impl Model {
