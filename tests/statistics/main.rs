@@ -6,6 +6,7 @@
 //! statistics with more samples.
 
 mod bounce;
+mod calibration;
 mod cut;
 mod edges;
 mod environment;
@@ -17,6 +18,7 @@ mod objects;
 mod paths;
 mod patterns;
 mod picks;
+mod reference;
 mod reflectance;
 mod roulette;
 mod sampling;

@@ -1,5 +1,5 @@
 //! What a BSSRDF model gets wrong on the true shape of an object, measured by random walks and mended by a smooth factor
-//! on its surface (docs/method.md section 15).
+//! on its surface (docs/method.md section 16).
 //!
 //! A BSSRDF describes light below a plane. On another shape the light that leaves differs by a factor that changes
 //! slowly over the surface and does not depend on the camera. [`calibrate`] follows random walks from the samples of a

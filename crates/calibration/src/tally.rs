@@ -67,8 +67,8 @@ impl Tally {
         self.opaque += chunk.opaque;
     }
 
-    /// The tally as counts, and the `power` of the model, W, in the same unit; none if nothing leaves, or the model says
-    /// so. `entering` is the power that enters, W.
+    /// The tally (docs/method.md 16.1) as counts, and the `power` of the model, W, in the same unit; none if nothing
+    /// leaves, or the model says so. `entering` is the power that enters, W.
     ///
     /// Weights of walks are not counts: as many counts of one mean weight `Σw²/Σw` have the same sum and variance.
     pub fn counted(&self, entering: f64, power: &[f64]) -> Option<Counted> {

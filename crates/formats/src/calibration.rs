@@ -32,6 +32,9 @@ const LIMIT: usize = 1 << 28;
 /// Most levels of splits, see [`CalibratedSurface`].
 const MAX_DEPTH: u32 = 20;
 
+/// The largest logarithm of a factor in a file: its exponential is finite.
+const MAX_LOG_FACTOR: f32 = 80.0;
+
 /// The facts of a calibration. They hold no time, host or path, so that the same inputs give the same bytes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Calibration {
@@ -201,7 +204,8 @@ impl CalibratedSurface {
             p.center.iter().all(|x| x.is_finite())
                 && p.radius.is_finite()
                 && p.radius >= 0.0
-                && p.log_factor.iter().chain(p.gradient.iter().flatten()).all(|f| f.is_finite())
+                && p.log_factor.iter().all(|f| f.abs() <= MAX_LOG_FACTOR)
+                && p.gradient.iter().flatten().all(|f| f.is_finite())
         };
         fits && self.normal_scale.is_finite()
             && self.normal_scale > 0.0

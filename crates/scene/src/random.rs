@@ -24,10 +24,10 @@ pub enum Purpose {
     Bounce,
     /// The shards that the paths of a pixel gather from.
     ShardPick,
+    /// The first numbers of random walks that camera paths begin.
+    WalkStart,
     /// Random walks that light begins.
     LightWalk,
-    /// Random walks that camera paths begin.
-    CameraWalk,
     /// Points of the surface where a calibration compares the model with random walks.
     CalibrationPoint,
     /// More points of the surface, which measure its parts.
@@ -53,7 +53,7 @@ impl Purpose {
             Purpose::Bounce => u64::MAX,
             Purpose::ShardPick => u64::MAX - 1,
             Purpose::LightWalk => u64::MAX - 2,
-            Purpose::CameraWalk => u64::MAX - 7,
+            Purpose::WalkStart => u64::MAX - 7,
             Purpose::CalibrationPoint => u64::MAX - 4,
             Purpose::CalibrationSum => u64::MAX - 5,
             Purpose::CalibrationArea => u64::MAX - 6,

@@ -5,7 +5,10 @@
 
 use glam::{DVec3, USizeVec3};
 use rayon::prelude::*;
-use std::ops::Range;
+use std::{
+    ops::Range,
+    sync::atomic::{AtomicU32, Ordering},
+};
 
 /// Cells of the grid at most, and the indices that they hold together: 16 and 64 MiB.
 const MAX_CELLS: usize = 1 << 22;
@@ -43,40 +46,49 @@ impl Cells {
             let size = (extent / edge).floor().as_usizevec3() + 1;
             if size.element_product() <= MAX_CELLS {
                 let grid = Cells { low, inverse: 1.0 / edge, size, starts: Vec::new(), entries: Vec::new() };
-                let count = |k: usize| {
-                    let mut count = 0;
-                    grid.each(&prism(k), |_| count += 1);
-                    count
-                };
-                // The largest cells hold every prism once, however many there are.
-                let total: usize = (0..prisms).into_par_iter().map(count).sum();
-                if total <= MAX_ENTRIES.max(prisms) || size == USizeVec3::ONE {
-                    return grid.filled(prisms, total, prism);
+                let counts: Vec<AtomicU32> = (0..=size.element_product()).map(|_| AtomicU32::new(0)).collect();
+                (0..prisms).into_par_iter().for_each(|k| {
+                    grid.each(&prism(k), |cell| _ = counts[cell].fetch_add(1, Ordering::Relaxed));
+                });
+                // The largest cell holds every prism once, however many there are.
+                let total: usize = counts.iter().map(|count| count.load(Ordering::Relaxed) as usize).sum();
+                if total <= MAX_ENTRIES || size == USizeVec3::ONE {
+                    return grid.filled(prisms, counts, prism);
                 }
             }
             edge *= 1.3;
         }
     }
 
-    fn filled(self, prisms: usize, total: usize, prism: impl Fn(usize) -> Prism + Sync) -> Cells {
-        let pairs = |k: usize| {
-            let mut cells = Vec::new();
-            self.each(&prism(k), |cell| cells.push((cell as u32, k as u32)));
-            cells
-        };
-        let mut pairs: Vec<(u32, u32)> = (0..prisms).into_par_iter().flat_map_iter(pairs).collect();
-        debug_assert_eq!(pairs.len(), total);
-        pairs.par_sort_unstable();
-        let cells = self.size.element_product() as u32;
-        let mut starts = Vec::with_capacity(cells as usize + 1);
-        let mut next = 0;
-        for cell in 0..=cells {
-            while pairs.get(next).is_some_and(|pair| pair.0 < cell) {
-                next += 1;
-            }
-            starts.push(next as u32);
+    fn filled(self, prisms: usize, counts: Vec<AtomicU32>, prism: impl Fn(usize) -> Prism + Sync) -> Cells {
+        let mut total = 0;
+        let starts: Vec<u32> = counts
+            .iter()
+            .map(|count| {
+                let start = total;
+                // From here on the counts are the places of the next entries.
+                total += count.swap(start, Ordering::Relaxed);
+                start
+            })
+            .collect();
+        let entries: Vec<AtomicU32> = (0..total).map(|_| AtomicU32::new(0)).collect();
+        (0..prisms).into_par_iter().for_each(|k| {
+            self.each(&prism(k), |cell| {
+                let place = counts[cell].fetch_add(1, Ordering::Relaxed) as usize;
+                entries[place].store(k as u32, Ordering::Relaxed);
+            });
+        });
+        let mut entries: Vec<u32> = entries.into_iter().map(AtomicU32::into_inner).collect();
+        // Threads took their places in any order.
+        let mut rest = &mut entries[..];
+        let mut lists = Vec::with_capacity(starts.len());
+        for bounds in starts.windows(2) {
+            let (list, after) = rest.split_at_mut((bounds[1] - bounds[0]) as usize);
+            lists.push(list);
+            rest = after;
         }
-        Cells { starts, entries: pairs.into_iter().map(|pair| pair.1).collect(), ..self }
+        lists.into_par_iter().for_each(|list| list.sort_unstable());
+        Cells { starts, entries, ..self }
     }
 
     /// The prisms that may hold a point; none outside the grid.
@@ -90,6 +102,13 @@ impl Cells {
         }
         let cell = (z * self.size.y + y) * self.size.x + x;
         &self.entries[self.starts[cell] as usize..self.starts[cell + 1] as usize]
+    }
+
+    /// Calls `found` with the prisms of this grid that may touch another one; with some more than once.
+    pub fn within(&self, prism: &Prism, mut found: impl FnMut(u32)) {
+        self.each(prism, |cell| {
+            self.entries[self.starts[cell] as usize..self.starts[cell + 1] as usize].iter().for_each(|k| found(*k));
+        });
     }
 
     /// Calls `found` with every cell that a prism touches.
@@ -108,18 +127,32 @@ impl Cells {
             let (low, high) = along.iter().fold((along[0], along[0]), |(l, h), x| (l.min(*x), h.max(*x)));
             (axis, low - room, high + room)
         });
-        let range = |axis: usize| -> Range<usize> {
-            let first = (low[axis] - reach - 0.5).ceil().max(0.0) as usize;
-            let end = (high[axis] + reach + 0.5).floor().max(0.0) as usize;
+        let range = |axis: usize, low: f64, high: f64| -> Range<usize> {
+            let first = (low - reach - 0.5).ceil().max(0.0) as usize;
+            let end = (high + reach + 0.5).floor().max(0.0) as usize;
             first.min(self.size[axis])..end.min(self.size[axis])
         };
-        for z in range(2) {
-            for y in range(1) {
-                for x in range(0) {
-                    let center = DVec3::new(x as f64, y as f64, z as f64) + 0.5;
+        // Layer by layer across the axis that the prism runs along, so that few cells are tried in vain.
+        let w = depth.abs().max_position();
+        let (u, v) = ((w + 1) % 3, (w + 2) % 3);
+        let least = |axis: usize| a[axis].min(b[axis]).min(c[axis]);
+        let most = |axis: usize| a[axis].max(b[axis]).max(c[axis]);
+        for k in range(w, low[w], high[w]) {
+            let middle = k as f64 + 0.5;
+            // The part of the way that takes the triangle through the layer.
+            let ends = [middle - reach - most(w), middle + reach - least(w)].map(|d| (d / depth[w]).clamp(0.0, 1.0));
+            let along = |axis: usize| {
+                let [one, two] = ends.map(|share| share * depth[axis]);
+                range(axis, least(axis) + one.min(two), most(axis) + one.max(two))
+            };
+            for j in along(v) {
+                for i in along(u) {
+                    let mut cell = USizeVec3::ZERO;
+                    (cell[u], cell[v], cell[w]) = (i, j, k);
+                    let center = cell.as_dvec3() + 0.5;
                     let touches = |(axis, low, high): &(DVec3, f64, f64)| (*low..=*high).contains(&axis.dot(center));
                     if slabs.iter().all(touches) {
-                        found((z * self.size.y + y) * self.size.x + x);
+                        found((cell.z * self.size.y + cell.y) * self.size.x + cell.x);
                     }
                 }
             }

@@ -8,14 +8,14 @@ use glam::{DVec3, USizeVec3};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Voxels at most: 8 MiB, and six times that while the grid is built.
-const MAX_VOXELS: usize = 1 << 22;
+/// Voxels at most: 2 MiB, little enough for a processor's cache, and twelve times that while the grid is built.
+const MAX_VOXELS: usize = 1 << 21;
 
-/// Voxels along an axis at most: distances are below 1024 voxels, and [`STEPS`] of them fit 16 bits.
+/// Voxels along an axis at most.
 const MAX_SIDE: usize = 512;
 
-/// Steps per voxel that distances are rounded down to.
-const STEPS: f64 = 64.0;
+/// Steps per voxel that distances are rounded down to; those beyond 64 voxels count as that.
+const STEPS: f64 = 4.0;
 
 /// What the rounding of positions at voxels' sides may add, as a share.
 const ROUNDING: f64 = 1e-9;
@@ -29,7 +29,7 @@ pub struct Clearance {
     /// m per step.
     step: f64,
     /// By z, then y, then x.
-    steps: Vec<u16>,
+    steps: Vec<u8>,
 }
 
 impl Clearance {
@@ -46,7 +46,7 @@ impl Clearance {
             squares = rotated(&squares, lengths);
             lengths.rotate_left(1);
         }
-        let steps = squares.par_iter().map(|square| (f64::from(*square).sqrt() * STEPS) as u16).collect();
+        let steps = squares.par_iter().map(|square| (f64::from(*square).sqrt() * STEPS) as u8).collect();
         Clearance { low, inverse: 1.0 / edge, size, step: edge / STEPS * (1.0 - ROUNDING), steps }
     }
 

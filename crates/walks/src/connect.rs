@@ -12,19 +12,18 @@ use glam::DVec3;
 use std::f64::consts::PI;
 
 /// Connections of less than this share of the light's typical contribution are made with a probability in proportion
-/// to it, and count as much more.
-const ROULETTE: f64 = 0.1;
+/// to it, and count as much more. In a sphere of skim milk the product of variance and time is least here.
+const ROULETTE: f64 = 0.6;
 
-/// What is known of a collision before its connections: no more than this share of the typical contribution can come
-/// from it, or the search for them is skipped with a probability.
-const SEARCH: f64 = 0.1;
+/// So is the search for connections, where the clearance bounds their share to less than this.
+const SEARCH: f64 = 1.5;
 
 /// Collects the light of one channel that a walk from the camera meets.
 pub struct Connections<'a> {
-    pub solid: &'a Solid<'a>,
-    pub beams: &'a [Beams<'a>],
-    pub matter: &'a Matter,
-    pub channel: usize,
+    solid: &'a Solid<'a>,
+    beams: &'a [Beams<'a>],
+    matter: &'a Matter,
+    channel: usize,
     /// Radiance inside, W/(m² sr).
     pub radiance: f64,
     /// Connections that were made, the blocked ones included.
@@ -52,10 +51,16 @@ impl Observer for Connections<'_> {
     }
 }
 
-impl Connections<'_> {
+impl<'a> Connections<'a> {
+    /// The connections of one walk, none so far.
+    pub fn new(solid: &'a Solid<'a>, beams: &'a [Beams<'a>], matter: &'a Matter, channel: usize) -> Self {
+        Connections { solid, beams, matter, channel, radiance: 0.0, count: 0, collisions: 0 }
+    }
+
     /// Adds the light that arrives at a collision in one way (docs/method.md 14.8).
     fn connect(&mut self, collision: &Collision, arrival: &Arrival, typical: f64, random: &mut Sequence) {
-        let along = |direction: DVec3| density(direction.dot(arrival.direction), self.matter.asymmetry);
+        let legs = arrival.legs();
+        let along = |direction: DVec3| density(direction.dot(legs[0].direction), self.matter.asymmetry);
         let phase = collision.direction.map_or(1.0 / (4.0 * PI), along);
         let extinction = (-self.matter.extinction * arrival.distance).exp();
         let value = collision.weight * arrival.fluence[self.channel] * extinction * phase;
@@ -64,10 +69,9 @@ impl Connections<'_> {
             return;
         }
         self.count += 1;
-        let Collision { position, nesting, .. } = *collision;
         let (towards, distance) = arrival.outside;
-        let inside = self.solid.is_clear(position, arrival.direction, arrival.distance, nesting);
-        if inside && self.solid.is_lit(&arrival.entry, towards, distance) {
+        let inside = legs.iter().all(|leg| self.solid.is_clear(leg, collision.nesting));
+        if inside && self.solid.is_lit(arrival.triangle, arrival.weights, towards, distance) {
             self.radiance += value / share;
         }
     }

@@ -34,7 +34,7 @@ const JUMP_FROM: f64 = 5.0;
 const JUMP_GAP: f64 = 3.0;
 
 /// [`JUMP_GAP`] of walks that are connected to lights.
-const CONNECTED_GAP: f64 = 6.0;
+const CONNECTED_GAP: f64 = 4.0;
 
 /// Where the reduced albedo is less, walks are short, and light does not become diffuse within the gap.
 const JUMP_ALBEDO: f64 = 0.8;

@@ -2,7 +2,7 @@
 
 use crate::random::Sequence;
 use glam::DVec3;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// Below this, the phase function is taken as constant: the inversion of its distribution divides by `g`.
 const ISOTROPIC: f64 = 1e-6;
@@ -13,10 +13,27 @@ pub fn scatter(direction: DVec3, g: f64, random: &mut Sequence) -> DVec3 {
     if g.abs() < ISOTROPIC {
         return random.direction();
     }
-    let s = (1.0 - g * g) / (1.0 - g + 2.0 * g * random.uniform());
-    let cosine = ((1.0 + g * g - s * s) / (2.0 * g)).clamp(-1.0, 1.0);
+    let cosine = cosine(g, random.uniform());
+    turned(direction, cosine, random.angle())
+}
+
+/// The same by given numbers in [0, 1).
+pub fn scatter_by(direction: DVec3, g: f64, [xi, angle]: [f64; 2]) -> DVec3 {
+    let cosine = if g.abs() < ISOTROPIC { 1.0 - 2.0 * xi } else { cosine(g, xi) };
+    let (sine, cosine_of_angle) = (TAU * angle).sin_cos();
+    turned(direction, cosine, (cosine_of_angle, sine))
+}
+
+#[inline(always)]
+fn cosine(g: f64, xi: f64) -> f64 {
+    let s = (1.0 - g * g) / (1.0 - g + 2.0 * g * xi);
+    ((1.0 + g * g - s * s) / (2.0 * g)).clamp(-1.0, 1.0)
+}
+
+/// A direction at this cosine from another, and at an angle about it that is given by its cosine and sine.
+#[inline(always)]
+fn turned(direction: DVec3, cosine: f64, (a, b): (f64, f64)) -> DVec3 {
     let sine = ((1.0 - cosine) * (1.0 + cosine)).sqrt();
-    let (a, b) = random.angle();
     let (x, y) = direction.any_orthonormal_pair();
     (x * (sine * a) + y * (sine * b) + direction * cosine).normalize()
 }

@@ -8,7 +8,12 @@ use scene::random::{Item, mix, unit};
 #[derive(Clone, Debug)]
 pub struct Sequence {
     state: u64,
+    first: Option<[f64; FIRST]>,
 }
+
+/// Numbers that a caller may choose for a walk: its first free path, the cosine and the azimuth of its first
+/// scattering, and its second free path. They decide most about its light.
+pub const FIRST: usize = 4;
 
 impl Sequence {
     /// The sequence of one item (a walk) of a stream.
@@ -18,7 +23,17 @@ impl Sequence {
 
     /// The sequence that starts at one dimension of an item.
     pub fn of_dimension(item: Item, dimension: u64) -> Sequence {
-        Sequence { state: item.bits(dimension) }
+        Sequence { state: item.bits(dimension), first: None }
+    }
+
+    /// The same sequence for a walk whose first numbers are given, such as a well-spread point.
+    pub fn beginning_with(self, first: [f64; FIRST]) -> Sequence {
+        Sequence { first: Some(first), ..self }
+    }
+
+    /// The first numbers, if they are given, once.
+    pub(crate) fn take_first(&mut self) -> Option<[f64; FIRST]> {
+        self.first.take()
     }
 
     /// The next uniform number in [0, 1).

@@ -40,7 +40,7 @@ fn share(h: f64, d: f64, eta: f64) -> f64 {
         let slope = h * h / (a * a * a) + eta * d * d / (b * b * b);
         let next = u - value / slope;
         let next = if next > low && next < high { next } else { 0.5 * (low + high) };
-        if (next - u).abs() <= 1e-15 {
+        if (next - u).abs() <= 1e-14 {
             return next;
         }
         u = next;

@@ -1,6 +1,7 @@
 //! The inside of a mesh.
 
 use crate::{
+    beams::Leg,
     clearance::Clearance,
     domain::{Crossing, Domain, Flight},
     walk::Start,
@@ -76,16 +77,19 @@ impl<'a> Solid<'a> {
         (0..self.mesh.triangles.len() as u32).filter(|k| self.kind(*k) == Kind::Boundary)
     }
 
-    /// Whether light passes straight from a point inside to the boundary at this distance, m.
-    pub(crate) fn is_clear(&self, position: DVec3, direction: DVec3, distance: f64, nesting: u32) -> bool {
-        let mut flight = Flight { position, direction, from: None, nesting };
-        self.rays.visible(position, direction, distance, None)
-            || matches!(self.crossing(&mut flight, distance * (1.0 - 1e-9)), Crossing::Free)
+    /// Whether light passes straight along a part of its way inside.
+    pub(crate) fn is_clear(&self, leg: &Leg, nesting: u32) -> bool {
+        let Leg { start: position, from, direction, length } = *leg;
+        let mut flight = Flight { position, direction, from, nesting };
+        self.rays.visible(position, direction, length, from)
+            || matches!(self.crossing(&mut flight, length * (1.0 - 1e-9)), Crossing::Free)
     }
 
     /// Whether a light is visible from a point of the boundary.
-    pub(crate) fn is_lit(&self, at: &SurfacePoint, direction: DVec3, distance: f64) -> bool {
-        self.rays.visible(at.position, direction, distance, Some(at.triangle))
+    pub(crate) fn is_lit(&self, triangle: u32, weights: [f64; 3], direction: DVec3, distance: f64) -> bool {
+        let [a, b, c] = self.mesh.corners(triangle as usize);
+        let position = a * weights[0] + b * weights[1] + c * weights[2];
+        self.rays.visible(position, direction, distance, Some(triangle))
     }
 
     fn kind(&self, triangle: u32) -> Kind {

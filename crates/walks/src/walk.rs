@@ -3,8 +3,8 @@
 use crate::{
     domain::{Crossing, Domain, Flight},
     matter::Matter,
-    phase::scatter,
-    random::Sequence,
+    phase::{scatter, scatter_by},
+    random::{FIRST, Sequence},
 };
 use bsdf::fresnel;
 use glam::DVec3;
@@ -119,8 +119,10 @@ pub fn observed_walk<D: Domain, O: Observer>(
 ) -> End {
     let mut flight = Flight { position: start.position, direction: start.direction, from: start.face, nesting: 0 };
     let (mut weight, mut clearance, mut scattered, mut reflections) = (1.0, 0.0, false, 0);
+    let mut first = random.take_first().map(First::new);
     loop {
-        let distance = random.exponential() * matter.mean_free_path;
+        let free_path = first.as_mut().and_then(First::free_path).unwrap_or_else(|| random.exponential());
+        let distance = free_path * matter.mean_free_path;
         if distance >= clearance {
             match domain.crossing(&mut flight, distance) {
                 Crossing::Free => {}
@@ -158,7 +160,32 @@ pub fn observed_walk<D: Domain, O: Observer>(
         {
             return End::Absorbed;
         }
-        flight.direction = scatter(flight.direction, matter.asymmetry, random);
+        flight.direction = match first.as_mut().and_then(First::scattering) {
+            Some(xi) => scatter_by(flight.direction, matter.asymmetry, xi),
+            None => scatter(flight.direction, matter.asymmetry, random),
+        };
+    }
+}
+
+/// The first numbers of a walk that were given, as far as they are not used yet.
+struct First {
+    free_paths: [Option<f64>; 2],
+    scattering: Option<[f64; 2]>,
+}
+
+impl First {
+    fn new([path, cosine, angle, second]: [f64; FIRST]) -> First {
+        First { free_paths: [Some(path), Some(second)], scattering: Some([cosine, angle]) }
+    }
+
+    /// The next free path in mean free paths.
+    fn free_path(&mut self) -> Option<f64> {
+        let number = self.free_paths[0].take().or_else(|| self.free_paths[1].take());
+        number.map(|u| -(1.0 - u).ln())
+    }
+
+    fn scattering(&mut self) -> Option<[f64; 2]> {
+        self.scattering.take()
     }
 }
 

@@ -71,7 +71,7 @@ pub struct Arguments {
     pub roulette: Rule,
     /// Follow random walks through the medium instead of a BSSRDF, exact but slow: the truth to compare images with. Of
     /// CLOUD only its materials count
-    #[arg(long, conflicts_with_all = ["bssrdf", "estimator", "accuracy", "roulette"])]
+    #[arg(long, conflicts_with_all = ["bssrdf", "estimator", "accuracy", "roulette", "calibration"])]
     pub reference: bool,
     /// Camera paths per pixel; with --target-error, the largest number [default: 16, with --target-error 4096; with
     /// --reference 64 and 65536]

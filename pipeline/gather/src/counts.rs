@@ -31,6 +31,8 @@ pub struct Counts {
     pub walks: u64,
     pub collisions: u64,
     pub connections: u64,
+    /// Directional lights whose reflections inside were left out, as there are too many.
+    pub reflections_left_out: u64,
     /// Walks that left their medium through a hole of its surface.
     pub walks_escaped: u64,
     /// Walks that were reflected inside without end, see [`walks::MAX_REFLECTIONS`].
@@ -58,6 +60,7 @@ impl Counts {
         self.walks += other.walks;
         self.collisions += other.collisions;
         self.connections += other.connections;
+        self.reflections_left_out += other.reflections_left_out;
         self.walks_escaped += other.walks_escaped;
         self.walks_trapped += other.walks_trapped;
         self.walks_absorbed_inside += other.walks_absorbed_inside;

@@ -65,6 +65,7 @@ impl<'a> Passes<'a> {
             paths: Stream::new(settings.seed, Purpose::CameraPath),
             gathers: Stream::new(settings.seed, Purpose::Gather),
             shard_picks: Stream::new(settings.seed, Purpose::ShardPick),
+            walk_starts: Stream::new(settings.seed, Purpose::WalkStart),
         };
         cut_correction::correct(&mut renderer);
         let mut passes = Passes {
@@ -77,6 +78,8 @@ impl<'a> Passes<'a> {
             pixel_stream: Stream::new(settings.seed, Purpose::Pixel),
             edge_stream: Stream::new(settings.seed, Purpose::Edge),
         };
+        let walks = passes.renderer.objects.iter().flatten().filter_map(|object| object.walks.as_ref());
+        passes.counts.reflections_left_out = walks.map(Walks::incomplete).sum();
         passes.find_edges();
         passes
     }
@@ -144,6 +147,12 @@ impl<'a> Passes<'a> {
         // Even and odd paths are independent: each half is spread by a sequence of its own.
         let spread_by = |stream: Stream| [0, 1].map(|half| Sequence::new(stream.item(2 * pixel + half), stream));
         let spread = spread_by(self.pixel_stream);
+        // So is each channel's walk.
+        let walks_by = |half: u64| {
+            let stream = self.renderer.walk_starts;
+            [0, 1, 2].map(|channel| Sequence::new(stream.item((2 * pixel + half) * 3 + channel), stream))
+        };
+        let walks = settings.reference.then(|| [0, 1].map(walks_by));
         let mut edge = self.edges[index].clone().map(|edge| (edge, spread_by(self.edge_stream)));
         let alone = settings.paths_per_pixel == 1;
         let mut sum = self.sums[index];
@@ -156,7 +165,8 @@ impl<'a> Passes<'a> {
                 }
             };
             let (origin, direction) = self.ray(index, offset);
-            let light = self.renderer.trace(PathIndex { pixel, path }, origin, direction, context);
+            let walks = walks.as_ref().map(|by_half| by_half[path as usize % 2].map(|s| s.point(path / 2)));
+            let light = self.renderer.trace(PathIndex { pixel, path, walks }, origin, direction, context);
             sum.add(path, alone, &light);
             if let Some((edge, spread)) = &mut edge {
                 let half = path as usize % 2;

@@ -29,6 +29,7 @@ impl Renderer<'_> {
             events: 0,
             half,
             shard_pick: self.pick_shard(index),
+            walks: index.walks,
             random: self.paths.item(item),
             dimension: 0,
             key: self.gathers.item(item),
@@ -191,7 +192,8 @@ impl Renderer<'_> {
         }
         if splits {
             if transmittance < 1.0 {
-                let mut branch = PathState { dimension: state.dimension + BRANCH, events: state.events + 1, ..*state };
+                let mut branch =
+                    PathState { dimension: state.dimension + BRANCH, events: state.events + 1, walks: None, ..*state };
                 branch.throughput *= 1.0 - transmittance;
                 let follows = meeting.scatter(&mut branch, Lobe::Reflection, Layer::Specular, counts);
                 trace.mirrored = (follows && branch.events < self.settings.max_depth).then_some(branch);
@@ -203,6 +205,7 @@ impl Renderer<'_> {
         let emission = self.input.scene.materials[point.material as usize].emission;
         trace.light.add(state, Layer::Emission, emission);
         self.gather(state, object, point, &meeting.view, &mut trace.light, context);
+        state.walks = None;
         state.inside = Some(point.material);
         // If only the interpolated normal lets light through, the path ends here.
         meeting.scatter(state, Lobe::Transmission, Layer::Transmission, &mut context.counts)

@@ -10,7 +10,12 @@ pub struct PathIndex {
     pub pixel: u64,
     /// Index in the pixel. Even paths gather from the first half of the cloud, odd ones from the second.
     pub path: u32,
+    /// The first numbers of the walks that it begins at its first interface, one for each channel, if it begins any.
+    pub walks: Option<WalkStarts>,
 }
+
+/// The first numbers of the walks of three channels.
+pub type WalkStarts = [[f64; walks::FIRST]; 3];
 
 /// Counts and memory of one thread.
 #[derive(Clone, Debug, Default)]
@@ -51,6 +56,8 @@ pub struct PathState {
     pub half: usize,
     /// The shard that it gathers from, if paths alternate between the shards.
     pub shard_pick: ShardPick,
+    /// The first numbers of the walks at the path's first interface, until they are used.
+    pub walks: Option<WalkStarts>,
     /// Random numbers of the path, and the dimension of the next one.
     pub random: Item,
     pub dimension: u64,

@@ -36,6 +36,13 @@ impl<'a> Walks<'a> {
     }
 }
 
+impl Walks<'_> {
+    /// The directional lights whose reflections inside are left out.
+    pub fn incomplete(&self) -> u64 {
+        self.beams.iter().filter(|beams| beams.is_parallel() && !beams.complete).count() as u64
+    }
+}
+
 impl Renderer<'_> {
     /// Adds the scattered light at an exitant point, by one walk for each channel: a walk that all channels shared would
     /// have to be weighted by the ratio of their densities, which after many collisions leaves it to one of them.
@@ -56,9 +63,13 @@ impl Renderer<'_> {
         let mut radiance = DVec3::ZERO;
         for channel in 0..3 {
             if let Some(matter) = &walks.matter[channel] {
-                let mut random = Sequence::of_dimension(state.key, 3 * state.dimension + channel as u64);
+                let random = Sequence::of_dimension(state.key, 3 * state.dimension + channel as u64);
+                let mut random = match &state.walks {
+                    Some(first) => random.beginning_with(first[channel]),
+                    None => random,
+                };
                 let (solid, beams) = (&walks.solid, &walks.beams);
-                let mut light = Connections { solid, beams, matter, channel, radiance: 0.0, count: 0, collisions: 0 };
+                let mut light = Connections::new(solid, beams, matter, channel);
                 let end = observed_walk(solid, matter, &start, &mut random, &mut light);
                 let counts = &mut context.counts;
                 counts.walks += 1;

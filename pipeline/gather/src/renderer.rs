@@ -31,6 +31,7 @@ pub struct Renderer<'a> {
     pub paths: Stream,
     pub gathers: Stream,
     pub shard_picks: Stream,
+    pub walk_starts: Stream,
 }
 
 /// A translucent material with its medium and its samples.

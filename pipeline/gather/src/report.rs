@@ -129,6 +129,7 @@ impl<'a> Facts<'a> {
             "walks": counts.walks,
             "collisions": counts.collisions,
             "connections": counts.connections,
+            "reflections_left_out": counts.reflections_left_out,
             "walks_escaped": counts.walks_escaped,
             "walks_trapped": counts.walks_trapped,
             "walks_absorbed_by_opaque_surfaces": counts.walks_absorbed_inside,

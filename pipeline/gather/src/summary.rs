@@ -33,6 +33,12 @@ pub fn show(facts: &Facts) -> Result<(), Failure> {
         let share = share(counts.escaped_inside);
         common.warn(format_args!("{share:.3} % of the paths left a medium through a hole in its mesh"));
     }
+    if counts.reflections_left_out > 0 {
+        common.warn(
+            "--reference: the mesh has too many triangles near each other to follow light that it reflects inside before \
+             it is scattered; thin parts and sharp edges are a little dark",
+        );
+    }
     if counts.walks_trapped > 0 {
         let share = 100.0 * counts.walks_trapped as f64 / counts.walks as f64;
         common

@@ -16,6 +16,7 @@ mod orbit;
 mod outlook;
 mod outputs;
 mod pipeline;
+mod reference;
 mod shards;
 mod targets;
 mod user_files;
