@@ -27,7 +27,7 @@ TARGETS := $(basename $(notdir $(wildcard fuzz/targets/*.rs)))
 SECONDS ?= 3600
 $(call check_names,TARGET)
 
-## fuzz: look for bytes that break TARGET=cloud, facts, gltf, image, limits, medium or view, for SECONDS=3600 (fuzz/README.md)
+## fuzz: look for bytes that break TARGET=cloud, calibration, facts, gltf, image, limits, medium or view, for SECONDS=3600 (fuzz/README.md)
 fuzz:
 	$(if $(filter $(TARGET),$(TARGETS)),,$(error TARGET=$(TARGET): it is one of $(TARGETS)))
 	@mkdir -p $(OUT)/fuzz/$(TARGET)/found

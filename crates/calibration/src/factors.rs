@@ -20,6 +20,9 @@ pub struct Factors {
 /// The largest logarithm of the factor by the shift. Light that is diffuse changes by less within a mean free path.
 const MAX_SHIFT: f64 = 1.0;
 
+/// Below this reduced extinction, 1/m, nothing is scattered; the shifts of others are finite.
+const VACUUM: f64 = 1e-60;
+
 impl Factors {
     pub fn new(material: &CalibratedMaterial) -> Factors {
         let log_factors = material.surface.patches.iter().map(|p| p.log_factor).collect();
@@ -28,8 +31,8 @@ impl Factors {
         let medium = &material.medium;
         let shift = [0, 1, 2].map(|c| {
             let reduced = medium.sigma_a[c] + (1.0 - medium.g[c]) * medium.sigma_s[c];
-            // In a vacuum nothing is scattered, so that there is nothing to shift.
-            if reduced > 0.0 { 1.0 / (reduced * medium.eta) } else { 0.0 }
+            // Where nothing is scattered there is nothing to shift.
+            if reduced > VACUUM { 1.0 / (reduced * medium.eta) } else { 0.0 }
         });
         Factors { patches: Patches::from_facts(&material.surface), log_factors, gradients, lobe: material.lobe, shift }
     }

@@ -5,6 +5,30 @@
 //! slowly over the surface and does not depend on the camera. [`calibrate`] follows random walks from the samples of a
 //! cloud through the mesh ([`walks`]), counts what leaves each patch of the surface, and fits the factor; [`Factors`]
 //! gives it at any point.
+//!
+//! A factor of one half on the surface of a ball of one patch, as a file would hold it:
+//!
+//! ```
+//! use calibration::{Factors, Site};
+//! use formats::calibration::{CalibratedMaterial, CalibratedPatch, CalibratedSurface, ChannelErrors, MediumFacts};
+//! use scene::DVec3;
+//!
+//! let medium = MediumFacts {
+//!     name: "milk".into(),
+//!     source: String::new(),
+//!     sigma_a: [2.0; 3],
+//!     sigma_s: [1000.0; 3],
+//!     g: [0.0; 3],
+//!     eta: 1.3,
+//! };
+//! let half = [0.5f32.ln(); 3];
+//! let patch = CalibratedPatch { center: [0.0; 6], radius: 0.02, log_factor: half, gradient: [[0.0; 3]; 3] };
+//! let surface = CalibratedSurface { normal_scale: 0.03, splits: Vec::new(), patches: vec![patch] };
+//! let (lobe, errors) = ([[1.0, 0.0]; 3], [ChannelErrors::default(); 3]);
+//! let ball = CalibratedMaterial { name: "ball".into(), index: 0, medium, lobe, errors, surface };
+//! let at = Site { position: DVec3::Z * 0.01, normal: DVec3::Z };
+//! assert!((Factors::new(&ball).at(&at, DVec3::Z) - DVec3::splat(0.5)).length() < 1e-6);
+//! ```
 
 mod entries;
 mod errors;

@@ -42,3 +42,48 @@ pub struct SceneArgs {
     #[arg(long)]
     pub strict: bool,
 }
+
+impl SceneArgs {
+    /// The arguments that differ from the defaults, as they are typed.
+    pub fn words(&self) -> Vec<String> {
+        let environment = self.environment.as_ref().map(|source| match source {
+            EnvironmentSource::File(path) => path.display().to_string(),
+            EnvironmentSource::Constant(c) => format!("{},{},{}", c.x, c.y, c.z),
+        });
+        let unless = |value: f64, default: f64| (value != default).then(|| value.to_string());
+        let options = [
+            ("--environment", environment),
+            ("--environment-scale", unless(self.environment_scale, 1.0)),
+            ("--environment-rotation", unless(self.environment_rotation, 0.0)),
+            ("--normals", (self.normals != Normals::Shading).then(|| self.normals.to_string())),
+            ("--metres-per-unit", unless(self.metres_per_unit, 1.0)),
+            ("--light-unit", (self.light_unit != LightUnit::Radiometric).then(|| self.light_unit.to_string())),
+            ("--emission-unit", self.emission_unit.map(|unit| unit.to_string())),
+        ];
+        let given = options.into_iter().filter_map(|(option, value)| Some([option.to_owned(), value?]));
+        given.flatten().collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Program {
+        #[command(flatten)]
+        scene: SceneArgs,
+    }
+
+    /// What is typed is said, and nothing else; it gives the same arguments again.
+    #[test]
+    fn arguments_are_said_as_they_are_typed() {
+        let typed = ["--environment", "1,2,0.5", "--environment-rotation", "-30", "--normals", "geometric"];
+        let more = ["--metres-per-unit", "0.001", "--light-unit", "photometric", "--emission-unit", "radiometric"];
+        let parse = |words: &[String]| Program::parse_from([&["program".to_owned()], words].concat()).scene.words();
+        let all: Vec<String> = typed.iter().chain(&more).map(|word| word.to_string()).collect();
+        assert_eq!(parse(&all), all);
+        assert!(parse(&[]).is_empty());
+    }
+}

@@ -27,13 +27,18 @@ pub fn version() -> u32 {
 }
 
 /// Most bytes of a file.
-const LIMIT: usize = 1 << 28;
+const LIMIT: usize = 1 << 26;
 
 /// Most levels of splits, see [`CalibratedSurface`].
-const MAX_DEPTH: u32 = 20;
+const MAX_DEPTH: u32 = 12;
 
 /// The largest logarithm of a factor in a file: its exponential is finite.
 const MAX_LOG_FACTOR: f32 = 80.0;
+
+/// The largest coefficient of an exit lobe, the smallest index, and the largest length, m.
+const MAX_LOBE: f64 = 100.0;
+const MIN_ETA: f64 = 0.1;
+const MAX_LENGTH: f64 = 1e18;
 
 /// The facts of a calibration. They hold no time, host or path, so that the same inputs give the same bytes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -127,15 +132,7 @@ impl Calibration {
     pub fn encode(&self, path: &Path) -> Result<Vec<u8>, Error> {
         let facts = bincode::serde::encode_to_vec(self, config())
             .map_err(|e| Error::invalid(path, format!("the calibration does not fit a file: {e}")))?;
-        let mut bytes = Vec::with_capacity(HEADER + facts.len());
-        bytes.extend(MAGIC);
-        bytes.extend(version().to_le_bytes());
-        bytes.extend([0; 4]);
-        bytes.extend((facts.len() as u64).to_le_bytes());
-        let sum = checksum(&bytes, &facts);
-        bytes.extend(sum.to_le_bytes());
-        bytes.extend(facts);
-        Ok(bytes)
+        Ok(seal(&facts))
     }
 
     /// Reads and checks a file.
@@ -150,6 +147,19 @@ impl Calibration {
         let bytes = std::fs::read(path).map_err(|source| Error::read(path, source))?;
         decode(&bytes).map_err(|what| Error::invalid(path, what))
     }
+}
+
+/// A file around encoded facts.
+pub fn seal(facts: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(HEADER + facts.len());
+    bytes.extend(MAGIC);
+    bytes.extend(version().to_le_bytes());
+    bytes.extend([0; 4]);
+    bytes.extend((facts.len() as u64).to_le_bytes());
+    let sum = checksum(&bytes, facts);
+    bytes.extend(sum.to_le_bytes());
+    bytes.extend(facts);
+    bytes
 }
 
 fn checksum(head: &[u8], facts: &[u8]) -> u64 {
@@ -185,13 +195,16 @@ fn decode(bytes: &[u8]) -> Result<Calibration, String> {
 }
 
 impl Calibration {
-    /// True if all numbers are finite and the splits of each surface fit its patches.
+    /// True if all numbers are in range, so that every factor is finite, and the splits of each surface fit its patches.
     fn is_sound(&self) -> bool {
         self.materials.iter().all(|m| {
             let errors = m.errors.iter().flat_map(|e| [e.before, e.after, e.uncertainty, e.unresolved]);
-            let medium = [m.medium.sigma_a, m.medium.sigma_s, m.medium.g].into_iter().flatten();
-            let numbers = errors.chain(medium).chain(m.lobe.into_iter().flatten()).chain([m.medium.eta]);
-            numbers.into_iter().all(f64::is_finite) && m.surface.is_sound()
+            let sizes = m.medium.sigma_a.into_iter().chain(m.medium.sigma_s).chain([m.medium.eta]).chain(errors);
+            sizes.into_iter().all(|x| x.is_finite() && x >= 0.0)
+                && m.medium.eta >= MIN_ETA
+                && m.medium.g.iter().all(|g| g.abs() < 1.0)
+                && m.lobe.iter().flatten().all(|x| x.abs() <= MAX_LOBE)
+                && m.surface.is_sound()
         })
     }
 }
@@ -200,16 +213,16 @@ impl CalibratedSurface {
     fn is_sound(&self) -> bool {
         let count = self.patches.len();
         let fits = count.is_power_of_two() && count <= 1 << MAX_DEPTH && self.splits.len() == count - 1;
+        let is_length = |x: &f64| x.abs() <= MAX_LENGTH;
         let patch = |p: &CalibratedPatch| {
-            p.center.iter().all(|x| x.is_finite())
-                && p.radius.is_finite()
+            p.center.iter().chain([&p.radius]).all(is_length)
                 && p.radius >= 0.0
                 && p.log_factor.iter().all(|f| f.abs() <= MAX_LOG_FACTOR)
                 && p.gradient.iter().flatten().all(|f| f.is_finite())
         };
-        fits && self.normal_scale.is_finite()
+        fits && is_length(&self.normal_scale)
             && self.normal_scale > 0.0
-            && self.splits.iter().all(|(axis, value)| *axis < 6 && value.is_finite())
+            && self.splits.iter().all(|(axis, value)| *axis < 6 && is_length(value))
             && self.patches.iter().all(patch)
     }
 }

@@ -25,10 +25,12 @@
 //! let hit = rays.closest(at.position + DVec3::Z, DVec3::NEG_Z, None).expect("the ray meets the triangle");
 //! assert!((hit.triangle, hit.distance) == (0, 1.0));
 //!
-//! let sun = DirectionalLight { direction: DVec3::new(0.0, 0.6, 0.8), irradiance: DVec3::splat(5.0) }; let lights =
-//! LightTree::new([&sun as &dyn Light]); let choice = LightChoice::new(&lights, &ReceiverBounds::point(&at), 1); let
-//! mut shadow_rays = 0; let Lit::Light { irradiance, .. } = light_at(&choice, &rays, &at, [0.5; 3], &mut shadow_rays)
-//! else { panic!("lit") }; assert!((irradiance - DVec3::splat(4.0)).length() < 1e-12);
+//! let sun = DirectionalLight { direction: DVec3::new(0.0, 0.6, 0.8), irradiance: DVec3::splat(5.0) };
+//! let lights = LightTree::new([&sun as &dyn Light]);
+//! let choice = LightChoice::new(&lights, &ReceiverBounds::point(&at), 1);
+//! let mut shadow_rays = 0;
+//! let Lit::Light { irradiance, .. } = light_at(&choice, &rays, &at, [0.5; 3], &mut shadow_rays) else { panic!("lit") };
+//! assert!((irradiance - DVec3::splat(4.0)).length() < 1e-12);
 //! ```
 
 mod cutouts;

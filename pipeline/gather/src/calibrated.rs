@@ -91,10 +91,8 @@ pub fn make(request: &Request, lit: &LitScene, rays: &Rays, model: Model) -> Res
     let seconds = progress.finish();
     match made {
         Ok(calibration) => {
-            common.say(format_args!(
-                "calibrated in {seconds:.1} s; `calibrate` with the same clouds, scene and media keeps that in a file for \
-                 all cameras, and --calibration none leaves it out"
-            ));
+            let command = command(request);
+            common.say(format_args!("calibrated in {seconds:.1} s; to keep that for all cameras: {command}"));
             Ok(Some(calibration))
         }
         Err(error @ (CalibrateError::Open { .. } | CalibrateError::Dark { .. })) => {
@@ -102,4 +100,24 @@ pub fn make(request: &Request, lit: &LitScene, rays: &Rays, model: Model) -> Res
             Ok(None)
         }
     }
+}
+
+/// The command that keeps the calibration in a file.
+fn command(request: &Request) -> String {
+    let mut words = vec!["calibrate".to_owned()];
+    words.extend(request.clouds.iter().map(|path| path.display().to_string()));
+    words.push(request.scene.path.display().to_string());
+    words.extend(request.media.iter().flat_map(|medium| ["--medium".into(), medium.clone()]));
+    words.extend(request.scene.how.words());
+    if request.common.seed != 0 {
+        words.extend(["--seed".into(), request.common.seed.to_string()]);
+    }
+    words.extend(["-o".into(), request.clouds[0].with_extension("calibration").display().to_string()]);
+    words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_./=,:+".contains(c);
+    if word.chars().all(is_plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', "'\\''")) }
 }

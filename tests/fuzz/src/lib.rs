@@ -8,6 +8,7 @@
 //! assert!(!fuzz_targets::view(b"{}"));
 //! ```
 
+mod calibration;
 mod cloud;
 mod comparison;
 mod facts;
@@ -20,6 +21,7 @@ mod pipeline;
 mod scene;
 mod view;
 
+pub use calibration::calibration;
 pub use cloud::cloud;
 pub use facts::facts;
 pub use image::image;
@@ -31,9 +33,10 @@ pub use view::view;
 /// Reads bytes and checks what was accepted; true if they were.
 pub type Target = fn(&[u8]) -> bool;
 
-/// All targets by name. The first one tests `bincode`, which is no longer maintained.
-pub const TARGETS: [(&str, Target); 7] = [
+/// All targets by name. The first two test `bincode`, which is no longer maintained.
+pub const TARGETS: [(&str, Target); 8] = [
     ("facts", facts),
+    ("calibration", calibration),
     ("cloud", cloud),
     ("gltf", gltf),
     ("image", image),

@@ -27,7 +27,7 @@ pub fn check_medium(medium: &Medium) {
     let constants = [i.c_phi, i.c_e, i.exit_norm, i.reflection, i.reflection_egan];
     assert!(constants.iter().all(|x| x.is_finite()), "{i:?}");
     let path = medium.mean_free_path();
-    for model in [Model::DirectionalDipole, Model::BetterDipole, Model::StandardDipole] {
+    for model in Model::ALL {
         let evaluator = model.of(medium);
         assert!(evaluator.transport().iter().all(|x| x.is_finite() && *x >= 0.0));
         assert!(model.unscattered_extinction(medium).iter().all(|x| x.is_finite() && *x >= 0.0));

@@ -48,6 +48,11 @@ fn facts() {
 }
 
 #[test]
+fn calibrations() {
+    assert_kept("calibration");
+}
+
+#[test]
 fn clouds() {
     assert_kept("cloud");
 }

@@ -146,8 +146,15 @@ impl Bench {
 
     /// The command that starts a program in the folder.
     pub fn command(&self, name: &str, arguments: &[impl AsRef<OsStr>]) -> Command {
+        let mut command = self.command_as_typed(name, arguments);
+        command.args(unless_said(name, arguments));
+        command
+    }
+
+    /// The command without the arguments that [`Bench::command`] adds to those of `gather`.
+    pub fn command_as_typed(&self, name: &str, arguments: &[impl AsRef<OsStr>]) -> Command {
         let mut command = Command::new(program(name));
-        command.current_dir(self.folder()).args(arguments).args(unless_said(name, arguments));
+        command.current_dir(self.folder()).args(arguments);
         command
     }
 
