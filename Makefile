@@ -2,9 +2,10 @@
 #
 #   names.mk     which names make accepts             check.mk    the regression test against tests/golden
 #   settings.mk  when a file is made again            tests.mk    lint, tests, fuzzing, benchmarks
-#   gallery.mk   the scenes of data/                  reports.mk  the documents that programs write
+#   calibrations.mk  whether pictures are calibrated  reports.mk  the documents that programs write
+#   gallery.mk   the scenes of data/                  table.mk    the table of the half-space model
 #   own.mk       your own scene: make SCENE=...       clean.mk    removal of what was made
-#   table.mk     the table of the half-space model
+#   truth.mk     your own scene beside the truth
 #
 # Every recipe that renders is $(SUBMIT) PROGRAM --threads $(THREADS) ... -o $@: it reads files, writes one and never
 # asks, so that SUBMIT may hand it to a queue of machines (docs/farm.md).
@@ -31,10 +32,11 @@ CARGO   ?= cargo
 SAMPLES ?= 1M
 SEED    ?= 0
 SPP     ?= 16
-MODEL   ?= directional-dipole
+MODEL   ?= half-space
 
 BIN := target/release
 SAMPLE := $(BIN)/sample-surface
+CALIBRATOR := $(BIN)/calibrate
 GATHER := $(BIN)/gather
 MAKE_SCENES := $(BIN)/make-scenes
 COMPARE := $(BIN)/compare
@@ -51,8 +53,10 @@ MAKE_FILES := $(dir $(lastword $(MAKEFILE_LIST)))make
 $(if $(wildcard $(MAKE_FILES)/*.mk),,$(error $(MAKE_FILES)/ is missing: where the Makefile is copied to, that folder belongs too))
 include $(MAKE_FILES)/names.mk
 include $(MAKE_FILES)/settings.mk
+include $(MAKE_FILES)/calibrations.mk
 include $(MAKE_FILES)/gallery.mk
 include $(MAKE_FILES)/own.mk
+include $(MAKE_FILES)/truth.mk
 include $(MAKE_FILES)/tests.mk
 include $(MAKE_FILES)/check.mk
 include $(MAKE_FILES)/reports.mk
@@ -65,7 +69,7 @@ include $(MAKE_FILES)/clean.mk
 build:
 	$(CARGO) build --release --workspace --quiet
 
-$(SAMPLE) $(GATHER) $(COMPARE) $(MAKE_SCENES) $(CONTACT_SHEET): | build ;
+$(SAMPLE) $(CALIBRATOR) $(GATHER) $(COMPARE) $(MAKE_SCENES) $(CONTACT_SHEET): | build ;
 
 ## scenes: write data/scenes, data/views and data/environments again
 scenes: build
@@ -77,3 +81,4 @@ help:
 	@echo "  make SCENE=path.glb MEDIUM=marble [SAMPLES=4M] [TRANSLUCENT=Wax] [EXPOSURE=1]: your own file, one image a camera"
 	@echo "  make SCENE=path.glb MEDIUM=marble VIEWS='views/*.json': the same, one image a view file"
 	@echo "  variables: OUT=$(OUT) THREADS=$(THREADS) SUBMIT=$(SUBMIT) SAMPLES=$(SAMPLES) SEED=$(SEED) SPP=$(SPP) MODEL=$(MODEL)"
+	@echo "    CALIBRATE=$(CALIBRATE) WALKS=$(WALKS); of truth also WIDTH=$(WIDTH) ERROR=$(ERROR)"

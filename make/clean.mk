@@ -12,13 +12,13 @@ define remove
     name=$${file#./} name=$${name%.settings}; \
     [ "$$(head -n 1 "$$file")" = "made by make: $$name" ] || continue; \
     case $$name in */*) folder=$${name%/*} ;; *) folder=. ;; esac; \
-    rm -f "$$name.exr" "$$name.png"; \
+    rm -f "$$name.exr" "$$name.png" "$$name.html"; \
     [ ! -f "$$name.views" ] || while IFS= read -r image; do \
-      case $$image in */*) ;; *.exr) rm -f "$$folder/$$image" "$$folder/$${image%.exr}.png"; esac; done < "$$name.views"; \
+      case $$image in */*) ;; *.exr) rm -f "$$folder/$$image" "$$folder/$${image%.exr}".png "$$folder/$${image%.exr}".html; esac; done < "$$name.views"; \
     case $$name in check/*/image) rm -f "$$folder"/[0-9]*.exr; esac; \
     if [ $(1) = all ]; then \
       case $$name in check/*/cloud) rm -f "$$folder"/[0-9]*.cloud "$$folder.json"; esac; \
-      rm -f "$$folder/.$${name##*/}".*.tmp "$$name.cloud" "$$name.views" "$$name.cameras" "$$name.cameras.list" "$$file"; \
+      rm -f "$$folder/.$${name##*/}".*.tmp "$$name.cloud" "$$name.calibration" "$$name.views" "$$name.cameras" "$$name.cameras.list" "$$file"; \
     fi; \
     while [ "$$folder" != . ] && rmdir "$$folder" 2>/dev/null; do \
       case $$folder in */*) folder=$${folder%/*} ;; *) folder=. ;; esac; done; \
@@ -27,7 +27,7 @@ rmdir "$$out" 2>/dev/null || [ -z "$$(ls -A "$$out")" ] || [ $(1) = images ] || 
   printf '%s\n' $(call quoted,$(OUT) stays: it holds what this Makefile did not make)
 endef
 
-## clean-images: remove images, keep clouds
+## clean-images: remove images and their pages, keep clouds and calibrations
 clean-images:
 	$(call remove,images)
 

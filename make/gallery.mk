@@ -25,6 +25,9 @@ media_of       = $(or $(MEDIA_$(1)),$(1))
 names_of       = $(foreach m,$(call media_of,$(1)),$(lastword $(subst =, ,$(m))))
 files_of       = $(patsubst %,data/media/%.json,$(call names_of,$(1)))
 medium_options = $(foreach m,$(call media_of,$(1)),--medium $(if $(findstring =,$(m)),$(firstword $(subst =, ,$(m)))=)data/media/$(lastword $(subst =, ,$(m))).json)
+# The calibration that all pictures of a scene and medium share, if they have one, and the media of a picture.
+calibration_of = $(if $(CALIBRATED),$(OUT)/$(1)/$(RUN_NAME)/$(2)-$(MODEL).calibration)
+calibrated     = $(if $(CALIBRATED),--calibration $(call calibration_of,$(1),$(2)),--calibration none $(call medium_options,$(2)))
 environment_of = $(if $(ENVIRONMENT_$(1)),--environment $(ENVIRONMENT_$(1)))
 pictures_of = $(patsubst data/views/$(1)/%.json,$(OUT)/$(1)/$(RUN_NAME)/$(2)-$(MODEL)/%.exr,$(wildcard data/views/$(1)/*.json))
 PICTURES := $(foreach g,$(GALLERY),$(call pictures_of,$(word 1,$(subst :, ,$(g))),$(word 2,$(subst :, ,$(g)))))
@@ -67,11 +70,22 @@ endef
 SCENES := $(patsubst data/scenes/%.glb,%,$(wildcard data/scenes/*.glb))
 $(foreach s,$(SCENES),$(eval $(call cloud,$(s))))
 
+# $(1) scene, $(2) medium. A calibration depends on its cloud, its media and the version of the format.
+define calibration
+$(call settings,$(OUT)/$(1)/$(RUN_NAME)/$(2)-$(MODEL),--walks $$(WALKS) $(call medium_options,$(2)),$(call files_of,$(2)))
+$(call calibration_of,$(1),$(2)): $(OUT)/$(1)/$(RUN_NAME).cloud $(OUT)/$(1)/$(RUN_NAME).settings \
+  $(OUT)/$(1)/$(RUN_NAME)/$(2)-$(MODEL).settings crates/formats/calibration-version | $(CALIBRATOR)
+	$$(SUBMIT) $$(CALIBRATOR) --threads $$(THREADS) --seed $$(SEED) --walks $$(WALKS) --bssrdf $$(MODEL) $(call medium_options,$(2)) \
+	  $(call environment_of,$(1)) --quiet $$< data/scenes/$(1).glb -o $$@
+endef
+$(if $(CALIBRATED),$(foreach g,$(GALLERY),$(eval $(call calibration,$(word 1,$(subst :, ,$(g))),$(word 2,$(subst :, ,$(g)))))))
+
 # $(1) scene, $(2) medium, $(3) view, $(4) image without its ending.
 define picture
-$(call settings,$(4),--spp $$(SPP) --exposure $$(EXPOSURE_$(1)) $(call medium_options,$(2)),$(call files_of,$(2)) data/views/$(1)/$(3).json)
-$(4).exr: $(OUT)/$(1)/$(RUN_NAME).cloud $(OUT)/$(1)/$(RUN_NAME).settings $(4).settings $(call unless_there,$(4).png) | $(GATHER)
-	$$(SUBMIT) $$(GATHER) --threads $$(THREADS) --seed $$(SEED) --spp $$(SPP) --bssrdf $$(MODEL) $(call medium_options,$(2)) \
+$(call settings,$(4),--spp $$(SPP) --exposure $$(EXPOSURE_$(1)) $(call calibrated,$(1),$(2)),$(call files_of,$(2)) data/views/$(1)/$(3).json)
+$(4).exr: $(OUT)/$(1)/$(RUN_NAME).cloud $(OUT)/$(1)/$(RUN_NAME).settings $(call calibration_of,$(1),$(2)) $(4).settings \
+  $(call unless_there,$(4).png) | $(GATHER)
+	$$(SUBMIT) $$(GATHER) --threads $$(THREADS) --seed $$(SEED) --spp $$(SPP) --bssrdf $$(MODEL) $(call calibrated,$(1),$(2)) \
 	  $(call environment_of,$(1)) --view data/views/$(1)/$(3).json --preview $$(basename $$@).png \
 	  --exposure $$(or $$(EXPOSURE_$(1)),0) --quiet $$< data/scenes/$(1).glb -o $$@
 endef

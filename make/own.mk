@@ -5,13 +5,18 @@
 #   ENVIRONMENT=sky.exr|R,G,B light from all around
 #   TRANSLUCENT='Wax Skin'    the translucent materials, by name
 #   EXPOSURE=1                brightness of the previews, in stops
+# and to truth.mk the rules of its pictures.
 
 .PHONY: own
 
 ifneq ($(and $(SCENE),$(CHECKED)),)
 MEDIUM ?= marble
 OWN := $(OUT)/$(notdir $(basename $(SCENE)))/$(RUN_NAME)
-OWN_IMAGES := $(OWN)/$(or $(notdir $(basename $(MEDIUM))),own)-$(MODEL)
+OWN_MEDIUM := $(or $(notdir $(basename $(MEDIUM))),own)
+OWN_IMAGES := $(OWN)/$(OWN_MEDIUM)-$(MODEL)
+# A medium may be one of the built-in media, which are those of data/media.
+OWN_MEDIA  := $(wildcard $(MEDIUM) data/media/$(MEDIUM).json)
+own_light   = $(if $(MEDIUM),--medium $(MEDIUM)) $(if $(ENVIRONMENT),--environment $(ENVIRONMENT))
 $(eval $(call settings,$(OWN),$$(strip $$(ENVIRONMENT) $$(TRANSLUCENT)),$(SCENE) $(wildcard $(ENVIRONMENT))))
 
 ifdef VIEWS
@@ -31,16 +36,17 @@ LISTS := $(shell for view in $(VIEW_FILES); do \
 # The images of a list NAME.json are NAME.VIEW.exr. NAME.views is written when all of them are there, and lists them.
 $(foreach l,$(basename $(notdir $(LISTS))),$(if $(filter $(l).%,$(VIEW_NAMES)),$(error VIEWS: an image of the list $(l).json could \
   have the name of that of $(firstword $(filter $(l).%,$(VIEW_NAMES))).json; rename one of them)))
-picture_of = $(OWN_IMAGES)/$(notdir $(basename $(1))).$(if $(filter $(1),$(LISTS)),views,exr)
+picture_of = $(notdir $(basename $(1))).$(if $(filter $(1),$(LISTS)),views,exr)
 OWN_PICTURES := $(foreach v,$(VIEW_FILES),$(call picture_of,$(v)))
 else
 # gather lists the cameras of the file. Make writes that list first, and then reads it.
 include $(OWN).cameras
-OWN_PICTURES := $(CAMERAS:%=$(OWN_IMAGES)/camera%.exr)
+OWN_PICTURES := $(CAMERAS:%=camera%.exr)
 endif
 
-own: $(OWN_PICTURES)
+own: $(OWN_PICTURES:%=$(OWN_IMAGES)/%)
 	@echo "The pictures are in $(OWN_IMAGES)/: one .png and one OpenEXR image for each view."
+	@$(say_if_refused)
 
 $(OWN).cameras: $(SCENE) $(OWN).settings | $(GATHER)
 	@$(GATHER) --list-cameras --quiet '$<' > $@.list
@@ -56,16 +62,36 @@ $(OWN).cloud: $(SCENE) $(OWN).settings crates/formats/cloud-version | $(SAMPLE)
 lost_of_list = $(shell cd $(dir $(1)) 2>/dev/null && while IFS= read -r image; do [ -e "$$image" ] && [ -e "$${image%.exr}.png" ] || \
   echo .FORCE; done 2>/dev/null < $(notdir $(1)))
 
-# $(1) image, or the .views file of a list; $(2) view file, if it has one; $(3) option that chooses the camera. A medium
-# may be one of the built-in media, which are those of data/media.
+# All pictures share one calibration. A scene that cannot be calibrated, which is said with exit code 2, is rendered
+# without: its calibration is then an empty file.
+ifneq ($(CALIBRATED),)
+OWN_CALIBRATION := $(OWN_IMAGES).calibration
+$(eval $(call settings,$(OWN_IMAGES),--walks $$(WALKS) --medium $$(MEDIUM),$(OWN_MEDIA)))
+$(OWN_CALIBRATION): $(OWN).cloud $(OWN).settings $(OWN_IMAGES).settings crates/formats/calibration-version | $(CALIBRATOR)
+	$(SUBMIT) $(CALIBRATOR) --threads $(THREADS) --seed $(SEED) --walks $(WALKS) --bssrdf $(MODEL) $(own_light) $< '$(SCENE)' -o $@ || \
+	  { code=$$?; [ $$code = 2 ] || exit $$code; : > $@; }
+own_calibrated = $$([ -s $(OWN_CALIBRATION) ] && echo --calibration $(OWN_CALIBRATION) || echo --calibration none $(if $(MEDIUM),--medium $(MEDIUM)))
+say_if_refused = [ -s $(OWN_CALIBRATION) ] || echo "They are not calibrated: $(SCENE) was refused, as was said when $(OWN_CALIBRATION) was made."
+else
+own_calibrated = --calibration none $(if $(MEDIUM),--medium $(MEDIUM))
+endif
+
+# How a picture is made: by the model, or by random walks (truth.mk).
+own_model     = --spp $(SPP) --bssrdf $(MODEL) $(own_calibrated)
+own_reference = --reference --target-error $(ERROR) $(if $(MEDIUM),--medium $(MEDIUM))
+
+# $(1) image, or the .views file of a list; $(2) view file, if it has one; $(3) options that choose camera and size;
+# $(4) own_model or own_reference.
 define own_picture
-$(call settings,$(basename $(1)),--spp $$(SPP) --exposure $$(EXPOSURE) --medium $$(MEDIUM) $(3),$(wildcard $(MEDIUM) data/media/$(MEDIUM).json) $(2))
-$(1): $(OWN).cloud $(OWN).settings $(basename $(1)).settings $(if $(filter %.views,$(1)),$(call lost_of_list,$(1)),$(call \
-  unless_there,$(basename $(1)).png)) | $(GATHER)
-	$$(SUBMIT) $(GATHER) --threads $$(THREADS) --seed $$(SEED) --spp $$(SPP) --bssrdf $$(MODEL) $$(if $$(MEDIUM),--medium $$(MEDIUM)) $(3) \
+$(call settings,$(basename $(1)),--exposure $$(EXPOSURE) --medium $$(MEDIUM) $$($(4)) $(3),$(OWN_MEDIA) $(2))
+$(1): $(OWN).cloud $(OWN).settings $(basename $(1)).settings $(if $(filter own_model,$(4)),$(OWN_CALIBRATION)) $(if $(filter \
+  %.views,$(1)),$(call lost_of_list,$(1)),$(call unless_there,$(basename $(1)).png)) | $(GATHER)
+	$$(SUBMIT) $(GATHER) --threads $$(THREADS) --seed $$(SEED) $$($(4)) $(3) \
 	  $$(if $$(ENVIRONMENT),--environment $$(ENVIRONMENT)) --preview $$(basename $$@).png --exposure $$(or $$(EXPOSURE),0) $$< '$$(SCENE)' -o $$(basename $$@).exr
 	$(if $(filter %.views,$(1)),@$(GATHER) --list-images --quiet $(3) -o $$(basename $$(@F)).exr > $$@)
 endef
-$(foreach c,$(CAMERAS),$(eval $(call own_picture,$(OWN_IMAGES)/camera$(c).exr,,--camera index:$(c))))
-$(foreach v,$(VIEW_FILES),$(eval $(call own_picture,$(call picture_of,$(v)),$(v),--view $(v))))
+# $(call own_pictures,FOLDER,OPTIONS OF SIZE,own_model or own_reference)
+own_pictures = $(foreach c,$(CAMERAS),$(eval $(call own_picture,$(1)/camera$(c).exr,,--camera index:$(c) $(2),$(3))))$(foreach \
+  v,$(VIEW_FILES),$(eval $(call own_picture,$(1)/$(call picture_of,$(v)),$(v),--view $(v) $(2),$(3))))
+$(call own_pictures,$(OWN_IMAGES),,own_model)
 endif

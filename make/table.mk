@@ -1,4 +1,4 @@
-# The table of the half-space model (docs/method.md, section 14), which is committed. Offers half-space-table.
+# The table of the half-space model (docs/method.md, section 15), which is committed. Offers half-space-table.
 
 .PHONY: half-space-table
 

@@ -57,7 +57,11 @@ fn assert_sane(value: DVec3, what: impl std::fmt::Debug) {
     assert!(value.is_finite() && value.min_element() >= 0.0, "{value}: {what:?}");
 }
 
-/// `S_bare` by the three models.
+/// The directional dipole among [`MODELS`].
+pub const DIRECTIONAL: usize = 1;
+const _: () = assert!(matches!(MODELS[DIRECTIONAL], Model::DirectionalDipole));
+
+/// `S_bare` by all models.
 pub fn bare(medium: &Medium, separation: &Separation) -> [Value; MODELS.len()] {
     MODELS.map(|model| {
         let of = model.of(medium);
@@ -95,7 +99,7 @@ fn kept<K: Clone + PartialEq, V>(last: &RefCell<Option<(K, Rc<V>)>>, key: &K, ma
     }
 }
 
-/// `S_gather` by the three models, as the exhaustive sum gives it for a cloud of one sample. The cut, which has
+/// `S_gather` by all models, as the exhaustive sum gives it for a cloud of one sample. The cut, which has
 /// nothing to choose from, must give exactly that. Every rule of the roulette must give it divided by the acceptance
 /// probability, or zero; at the sample itself it must accept.
 pub fn gather(medium: &Medium, incident: &Incident, exitant: &Exitant) -> [Value; MODELS.len()] {
@@ -105,11 +109,11 @@ pub fn gather(medium: &Medium, incident: &Incident, exitant: &Exitant) -> [Value
     let scatterers = SCATTERERS.with(|last| kept(last, medium, || MODELS.map(|m| scatterer(m, medium))));
     let samples = LitSamples::new(&cloud, &cloud.meta().materials[0].halves[0], medium.eta);
     let exit = |key: u64| Exit::new(exitant.position, exitant.normal, key);
-    MODELS.map(|model| {
+    [0, 1, 2, 3].map(|k| {
+        let (model, scatterer) = (MODELS[k], &scatterers[k]);
         let of = model.of(medium);
         let value = |c| evaluate(&*of, medium.eta, c, incident, exitant).gather;
         let exact = DVec3::from_array([0, 1, 2].map(value));
-        let scatterer = &scatterers[model as usize];
         let fast = sum(scatterer, &samples, &exit(0), Estimator::Exhaustive).radiance;
         assert_sane(exact, (model, medium, incident, exitant));
         assert_sane(fast, (model, medium, incident, exitant));

@@ -1,7 +1,7 @@
 //! The interface: equal indices, total reflection, the ends of the fits, grazing light and view.
 
 use crate::evaluate::{assert_close, assert_is, bare, gather, onto_plane, out_of_plane};
-use bssrdf::{ETA_MAX, ETA_MIN, Incident, Medium, Separation, fresnel};
+use bssrdf::{ETA_MAX, ETA_MIN, Incident, Medium, Model, Separation, fresnel};
 use formats::cloud::Sample;
 use gather::samples::{Exit, LitSamples};
 use glam::{DVec3, Vec3};
@@ -26,6 +26,10 @@ fn separation() -> Separation {
     }
 }
 
+/// The half-space model's numbers are integers in units of 2⁻¹⁰ of a factor of two, which turn at some index, and its
+/// table is interpolated in the cosine of the critical angle, 4·10⁻⁴ at an index of 1 + 10⁻⁷.
+const TABULATED: f64 = 1e-3;
+
 /// η = 1: everything is transmitted and nothing bends, at any angle.
 #[test]
 fn equal_indices() {
@@ -49,8 +53,9 @@ fn indices_that_differ_by_a_ten_millionth() {
         assert!((entry.transmittance - 1.0).abs() < 1e-12);
         assert!((entry.direction - DVec3::new(-0.6, 0.0, -0.8)).length() < 1e-6);
         for (same, near) in bare(&medium(1.0), &separation()).iter().zip(bare(&medium(near), &separation())) {
-            assert_is(same.model.name(), near.exact, same.exact, 2e-6);
-            assert_is(same.model.name(), near.fast, same.fast, 3e-6);
+            let [exact, fast] = if same.model == Model::HalfSpace { [TABULATED; 2] } else { [2e-6, 3e-6] };
+            assert_is(same.model.name(), near.exact, same.exact, exact);
+            assert_is(same.model.name(), near.fast, same.fast, fast);
         }
     }
 }
@@ -66,7 +71,8 @@ fn no_jump_in_the_index() {
         assert_close(&values, 1e-5);
         for (value, near) in values.iter().zip(bare(&medium(eta + 1e-7), &separation())) {
             assert!(value.exact.x > 0.0, "{value:?} at {eta}");
-            assert_is(&format!("{} at {eta}", value.model.name()), near.exact, value.exact, 1e-5);
+            let tolerance = if value.model == Model::HalfSpace { TABULATED } else { 1e-5 };
+            assert_is(&format!("{} at {eta}", value.model.name()), near.exact, value.exact, tolerance);
         }
     }
 }

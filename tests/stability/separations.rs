@@ -2,11 +2,14 @@
 //!
 //! Lengths are mean free paths here: `σ_t' = 1/m`.
 
-use crate::evaluate::{along_plane, assert_close, assert_is, bare, gather, onto_plane, out_of_plane};
+use crate::evaluate::{DIRECTIONAL, along_plane, assert_close, assert_is, bare, gather, onto_plane, out_of_plane};
 use bssrdf::{Exitant, Medium, Model, Separation, fresnel};
 use glam::DVec3;
 use std::f64::consts::PI;
-use test_support::{pipeline::gray, random::Random};
+use test_support::{
+    pipeline::{MODELS, gray},
+    random::Random,
+};
 
 /// α' = 0.9.
 fn medium() -> Medium {
@@ -27,7 +30,9 @@ fn exit_point_exactly_at_a_sample() {
     let at = gather(&medium, &light, &out_of_plane(0.0));
     assert_close(&at, 1e-5);
     for (at, near) in at.iter().zip(gather(&medium, &light, &out_of_plane(1e-9))) {
-        assert_is("beside the sample", near.exact, at.exact, 1e-7);
+        // The azimuth of the half-space model turns within 5·10⁻⁴ mean free paths.
+        let tolerance = if at.model == Model::HalfSpace { 1e-5 } else { 1e-7 };
+        assert_is("beside the sample", near.exact, at.exact, tolerance);
     }
     let transport = 0.3f64.sqrt();
     let source = |z: f64| (1.0 + transport * z) * (-transport * z).exp() / (z * z);
@@ -66,7 +71,7 @@ fn the_depth_of_the_source_jumps_where_the_light_turns_from_behind() {
         refracted: DVec3::new(-mu0, 0.0, -1.0).normalize(),
         normal_out: DVec3::X,
     };
-    let value = |mu0: f64| bare(&medium(), &separation(mu0))[0].exact.x;
+    let value = |mu0: f64| bare(&medium(), &separation(mu0))[DIRECTIONAL].exact.x;
     for zero in [0.0, -0.0, -1e-300] {
         assert_eq!(value(zero), value(-1e-30));
     }
@@ -105,7 +110,7 @@ fn everything_in_one_line() {
             let line = Separation { offset, normal_in: DVec3::Z, refracted: DVec3::NEG_Z, normal_out };
             let values = bare(&medium(), &line);
             assert_close(&values, 1e-5);
-            assert!(values[0].exact.x > 0.0 || depth != 1.0 || normal_out == DVec3::Z, "{values:?}");
+            assert!(values[DIRECTIONAL].exact.x > 0.0 || depth != 1.0 || normal_out == DVec3::Z, "{values:?}");
         }
     }
 }
@@ -122,7 +127,7 @@ fn offset_along_the_refracted_light() {
         let offset = (refracted + random.direction() * aside) * 10f64.powf(random.between(-3.0, 1.0));
         let normal_out = if random.uniform() < 0.5 { refracted } else { random.direction() };
         for normal_in in [DVec3::Z, -refracted] {
-            let [value, ..] = bare(&medium(), &Separation { offset, normal_in, refracted, normal_out });
+            let value = bare(&medium(), &Separation { offset, normal_in, refracted, normal_out })[DIRECTIONAL];
             if normal_in == DVec3::Z && value.exact.x > 1e-6 {
                 tried += 1;
                 far_off += u32::from(value.error() > 1e-3);
@@ -170,7 +175,7 @@ fn light_and_viewer_below_the_surface() {
         }
     }
     let behind = Exitant { direction: DVec3::NEG_Z, ..out_of_plane(1.0) };
-    for model in [Model::DirectionalDipole, Model::BetterDipole, Model::StandardDipole] {
+    for model in MODELS {
         let values = bssrdf::evaluate(&*model.of(&medium()), 1.3, 0, &onto_plane(DVec3::Z), &behind);
         assert!(values.full == 0.0 && values.gather > 0.0);
     }

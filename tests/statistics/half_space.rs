@@ -6,7 +6,8 @@ use scene::random::{Purpose, Stream};
 use std::f64::consts::{LN_2, TAU};
 use test_support::{
     EFFORT,
-    half_space::{medium, reflectance},
+    half_space::{medium, reflectance_of},
+    pipeline::gray,
     walk::{self, exit, slab},
 };
 use walks::{Matter, Sequence};
@@ -16,36 +17,41 @@ fn cosines() -> [f64; 3] {
     [0.0, 45.0, 75.0].map(|degrees: f64| degrees.to_radians().cos())
 }
 
-/// Reflectances of built-in media, all three channels, by similarity: within 2 % or 10⁻⁴ of the light, and the noise.
+/// Reflectances of built-in media, all three channels, with their own phase functions: within 2 % or 10⁻⁴ of the light,
+/// and the noise.
 ///
-/// Seen to catch: α' left out of the prefactor; the index of the table off by one step; T instead of T21 in `m_0`.
+/// Seen to catch: α' left out of the prefactor; similarity alone for light that is scattered forward; the index of the
+/// table off by one step.
 #[test]
 fn reflectances_of_media_are_those_of_walks() {
     let all: Vec<&str> = built_in_names().collect();
-    let names: &[&str] = if EFFORT == 1 { &["skimmilk", "ketchup", "skin1", "clorox"] } else { &all };
-    let at = |name: &&str| {
-        let medium = built_in(name).expect("a medium");
-        let mut worst = (0.0f64, String::new());
-        for (k, channel) in medium.channels.iter().enumerate() {
-            let albedo = channel.reduced_albedo();
-            let matter = walk::Matter { albedo, asymmetry: 0.0, eta: medium.eta };
-            for cosine in cosines() {
-                let walked = slab(&matter, f64::INFINITY, cosine, 20_000 * EFFORT, 4000 + k as u64).reflected;
-                let value = reflectance(Model::HalfSpace, albedo, medium.eta, cosine);
-                let room = (0.02 * walked.mean).max(1e-4) + 4.5 * walked.error.max(1e-5);
-                let what = format!("{name} {k} {cosine:.3}: {value:.6} for {:.6} ± {:.6}", walked.mean, walked.error);
-                assert!((value - walked.mean).abs() < room, "{what}");
-                let error = (value - walked.mean).abs() / (0.02 * walked.mean).max(1e-4);
-                if error > worst.0 {
-                    worst = (error, what);
-                }
-            }
-        }
-        worst
-    };
-    let mut worst: Vec<(f64, String)> = names.par_iter().map(at).collect();
+    let names: &[&str] = if EFFORT == 1 { &["skimmilk", "ketchup", "skin1", "clorox", "shampoo"] } else { &all };
+    let mut worst: Vec<(f64, String)> = names.par_iter().map(|name| worst_reflectance(name)).collect();
     worst.sort_by(|a, b| b.0.total_cmp(&a.0));
     worst.iter().take(12).for_each(|(share, what)| println!("{share:.2} of the tolerance: {what}"));
+}
+
+/// The largest error of a medium's reflectances over its tolerance, and where it is.
+fn worst_reflectance(name: &str) -> (f64, String) {
+    let medium = built_in(name).expect("a medium");
+    let mut worst = (0.0f64, String::new());
+    for (k, c) in medium.channels.iter().enumerate().filter(|(_, c)| c.scatters()) {
+        let path = 1.0 / c.reduced_extinction();
+        let unit = gray(c.sigma_a * path, c.sigma_s * path, c.asymmetry, medium.eta);
+        let matter = walk::Matter { albedo: c.sigma_s / c.extinction(), asymmetry: c.asymmetry, eta: medium.eta };
+        for cosine in cosines() {
+            let walked = slab(&matter, f64::INFINITY, cosine, 20_000 * EFFORT, 4000 + k as u64).reflected;
+            let value = reflectance_of(Model::HalfSpace, &unit, cosine);
+            let tolerance = (0.02 * walked.mean).max(1e-4);
+            let what = format!("{name} {k} {cosine:.3}: {value:.6} for {:.6} ± {:.6}", walked.mean, walked.error);
+            assert!((value - walked.mean).abs() < tolerance + 4.5 * walked.error.max(1e-5), "{what}");
+            let share = (value - walked.mean).abs() / tolerance;
+            if share > worst.0 {
+                worst = (share, what);
+            }
+        }
+    }
+    worst
 }
 
 /// A half-plane that is lit.

@@ -6,6 +6,7 @@
 //! statistics with more samples.
 
 mod bounce;
+mod calibration;
 mod cut;
 mod edges;
 mod environment;

@@ -129,7 +129,7 @@ fn polynomial(x: f64, coefficients: &[f64]) -> f64 {
 const NODES: usize = 4000;
 
 /// `m_k = ∫ T21 cosθ^(k+1) dω` over the hemisphere outside, for k = 0, 1, 2, where `T21` is the transmittance at relative
-/// index `eta`, inside over outside, and `θ` the angle outside (docs/method.md 15.5).
+/// index `eta`, inside over outside, and `θ` the angle outside (docs/method.md 15.8).
 pub fn exit_moments(eta: f64) -> [f64; 3] {
     let mut moments = [0.0; 3];
     for k in 0..NODES {

@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 
 /// The model's light on each cell.
 pub struct Light {
-    /// For each channel, the power that leaves each cell, W.
+    /// For each channel, the power that leaves each cell, W (docs/method.md 16.2).
     pub power: [Vec<f64>; 3],
     /// For each channel, the mean radiance that leaves each cell, W/(m² sr).
     radiance: [Vec<f64>; 3],
@@ -52,7 +52,7 @@ const FEW: f64 = 4.0;
 /// of view (docs/reports/accuracy.md).
 const FLOOR: f64 = 2e-4;
 
-/// The relMSE of a channel before and after the fit, at the size of a cell (docs/method.md 15.7).
+/// The relMSE of a channel before and after the fit, at the size of a cell (docs/method.md 16.6).
 ///
 /// The misfits of the two halves of the walks at a cell are independent, so that their product estimates the square of
 /// what both share, the error of the model, without any noise on average.

@@ -14,12 +14,9 @@ pub struct Factors {
     /// For each patch, the gradient of the logarithm of the light of each channel, 1/m.
     gradients: Vec<[DVec3; 3]>,
     lobe: [[f64; 2]; 3],
-    /// `κ/(σ_t' η)` of each channel, m.
+    /// `l/η = 1/(σ_t' η)` of each channel, m.
     shift: [f64; 3],
 }
-
-/// `κ`.
-const SHIFT: f64 = 1.0;
 
 /// The largest logarithm of the factor by the shift. Light that is diffuse changes by less within a mean free path.
 const MAX_SHIFT: f64 = 1.0;
@@ -30,12 +27,21 @@ impl Factors {
         let gradients =
             material.surface.patches.iter().map(|p| p.gradient.map(|g| Vec3::from_array(g).as_dvec3())).collect();
         let medium = &material.medium;
-        let shift =
-            [0, 1, 2].map(|c| SHIFT / ((medium.sigma_a[c] + (1.0 - medium.g[c]) * medium.sigma_s[c]) * medium.eta));
+        let shift = [0, 1, 2].map(|c| {
+            let reduced = medium.sigma_a[c] + (1.0 - medium.g[c]) * medium.sigma_s[c];
+            // In a vacuum nothing is scattered, so that there is nothing to shift.
+            if reduced > 0.0 { 1.0 / (reduced * medium.eta) } else { 0.0 }
+        });
         Factors { patches: Patches::from_facts(&material.surface), log_factors, gradients, lobe: material.lobe, shift }
     }
 
-    /// The factor at a point of the surface, seen from a direction.
+    /// `a` and `b` of the exit lobe `a + b cosθ` of each channel.
+    pub fn lobe(&self) -> &[[f64; 2]; 3] {
+        &self.lobe
+    }
+
+    /// The factor of the radiance without `T21` that leaves at a point of the surface towards the unit vector `view`
+    /// (docs/method.md 16.5).
     pub fn at(&self, site: &Site, view: DVec3) -> DVec3 {
         let cosine = site.normal.dot(view);
         let along = view - cosine * site.normal;
@@ -52,7 +58,7 @@ impl Factors {
 }
 
 /// `a` and `b` of the exit lobe `T21 (a + b cosθ)` that carries the power of the lobe `T21` alone and has the mean cosine
-/// `mean_cosine` (docs/method.md 15.6).
+/// `mean_cosine` (docs/method.md 15.8).
 pub fn exit_lobe(eta: f64, mean_cosine: f64) -> [f64; 2] {
     let [m0, m1, m2] = fresnel::exit_moments(eta);
     let determinant = m0 * m2 - m1 * m1;

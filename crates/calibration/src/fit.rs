@@ -1,5 +1,5 @@
 //! The smooth factor that brings the model's light to the counted light: penalized Poisson likelihood
-//! (docs/method.md 15.3).
+//! (docs/method.md 16.3).
 //!
 //! With the logarithm `f` of the factor at each patch, the counts `n_p` of a patch are Poisson distributed with mean
 //! `m_p e^{(B f)_p}`, where `m_p` is what the model predicts and `B` interpolates. The fit minimizes

@@ -1,5 +1,5 @@
 //! What a BSSRDF model gets wrong on the true shape of an object, measured by random walks and mended by a smooth factor
-//! on its surface (docs/method.md section 15).
+//! on its surface (docs/method.md section 16).
 //!
 //! A BSSRDF describes light below a plane. On another shape the light that leaves differs by a factor that changes
 //! slowly over the surface and does not depend on the camera. [`calibrate`] follows random walks from the samples of a
@@ -23,7 +23,7 @@ use entries::Entries;
 use errors::{Light, channel_errors};
 use fit::Smoothness;
 use formats::{
-    calibration::{CalibratedMaterial, Calibration, ChannelErrors, MediumFacts, VERSION},
+    calibration::{CalibratedMaterial, Calibration, ChannelErrors, MediumFacts, version},
     cloud::{Cloud, shards},
 };
 use scene::{NormalKind, Rays, Scene};
@@ -74,6 +74,9 @@ pub const WALKS: u64 = 300_000;
 /// Levels of splits of a surface alone: 1024 patches. Several materials share patches and walks by their areas.
 const DEPTH: u32 = 10;
 
+/// Walks of a channel for each patch, at least: with fewer walks there are fewer patches, and less work.
+const WALKS_OF_PATCH: f64 = 64.0;
+
 /// The fewest levels of splits of a material, and the smallest share of the walks.
 const MIN_DEPTH: u32 = 6;
 const MIN_SHARE: f64 = 1.0 / 16.0;
@@ -96,8 +99,9 @@ impl Task<'_> {
         let total: f64 = areas.iter().sum();
         let portion = |area: &f64| {
             let share = if total > 0.0 { area / total } else { 1.0 };
-            let levels = (f64::from(DEPTH) + share.log2().round()).max(f64::from(MIN_DEPTH));
-            Portion { depth: levels as u32, walks: (self.walks as f64 * share.max(MIN_SHARE)).ceil() as u64 }
+            let walks = (self.walks as f64 * share.max(MIN_SHARE)).ceil();
+            let levels = (f64::from(DEPTH) + share.log2().round()).min((walks / WALKS_OF_PATCH).log2());
+            Portion { depth: levels.max(f64::from(MIN_DEPTH)) as u32, walks: walks as u64 }
         };
         areas.iter().map(portion).collect()
     }
@@ -105,7 +109,7 @@ impl Task<'_> {
     /// Digest of everything that the calibration depends on. The cloud's identity covers the scene.
     fn identity(&self) -> [u8; 32] {
         let mut hasher = blake3::Hasher::new();
-        hasher.update(&VERSION.to_le_bytes());
+        hasher.update(&version().to_le_bytes());
         hasher.update(&shards::identity(self.clouds));
         hasher.update(self.model.name().as_bytes());
         hasher.update(&[u8::from(self.normals == NormalKind::Shading)]);

@@ -169,8 +169,8 @@ impl Patches {
         (node - splits) as u32
     }
 
-    /// Weights that sum to 1 and change smoothly along the surface, of the patches near a site. A function with the value
-    /// `f_j` at patch `j` is interpolated as `Σ w_j f_j`.
+    /// Weights that sum to 1 and change smoothly along the surface, of the patches near a site (docs/method.md 16.4). A
+    /// function with the value `f_j` at patch `j` is interpolated as `Σ w_j f_j`.
     pub fn weights(&self, site: &Site, mut tell: impl FnMut(u32, f64)) {
         let patch = self.patch(site);
         let point = six(site, self.normal_scale);

@@ -53,7 +53,7 @@ impl Tally {
         self.weights.iter().flatten().sum()
     }
 
-    /// The tally as counts, and the `power` of the model, W, in the same unit; none if nothing leaves, or the model says
+    /// The tally (docs/method.md 16.1) as counts, and the `power` of the model, W, in the same unit; none if nothing leaves, or the model says
     /// so. `entering` is the power that enters, W.
     ///
     /// Weights of walks are not counts: as many counts of one mean weight `Σw²/Σw` have the same sum and variance.

@@ -8,7 +8,7 @@ use scene::Material;
 /// Why media cannot be assigned.
 #[derive(Debug, thiserror::Error)]
 pub enum AssignError {
-    #[error("--medium: SCENE gives no medium; give a name (--list-media prints them) or a FILE.json")]
+    #[error("--medium: SCENE gives no medium; give a name (`gather --list-media` prints them) or a FILE.json")]
     Missing,
     #[error("--medium: material `{0}` of the cloud has no medium; add --medium {0}=NAME")]
     MissingFor(String),

@@ -1,4 +1,4 @@
-//! Arguments about the scene, which `sample-surface` and `gather` have in common.
+//! Arguments about the scene, which `sample-surface`, `calibrate` and `gather` have in common.
 
 use crate::{
     environment::{EnvironmentSource, parse_environment},

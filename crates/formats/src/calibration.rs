@@ -21,14 +21,19 @@ use xxhash_rust::xxh3::Xxh3;
 const MAGIC: [u8; 8] = [0x89, b'P', b'C', b'K', 0x0D, 0x0A, 0x1A, 0x0A];
 const HEADER: usize = 32;
 
-/// The version of the format. It is raised when a field changes its meaning.
-pub const VERSION: u32 = 1;
+/// The version of the format. It is raised when a field changes its meaning, or the values of a calibration change.
+pub fn version() -> u32 {
+    include_str!("../calibration-version").trim().parse().unwrap_or(0)
+}
 
 /// Most bytes of a file.
 const LIMIT: usize = 1 << 28;
 
 /// Most levels of splits, see [`CalibratedSurface`].
 const MAX_DEPTH: u32 = 20;
+
+/// The largest logarithm of a factor in a file: its exponential is finite.
+const MAX_LOG_FACTOR: f32 = 80.0;
 
 /// The facts of a calibration. They hold no time, host or path, so that the same inputs give the same bytes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -124,7 +129,7 @@ impl Calibration {
             .map_err(|e| Error::invalid(path, format!("the calibration does not fit a file: {e}")))?;
         let mut bytes = Vec::with_capacity(HEADER + facts.len());
         bytes.extend(MAGIC);
-        bytes.extend(VERSION.to_le_bytes());
+        bytes.extend(version().to_le_bytes());
         bytes.extend([0; 4]);
         bytes.extend((facts.len() as u64).to_le_bytes());
         let sum = checksum(&bytes, &facts);
@@ -161,9 +166,9 @@ fn decode(bytes: &[u8]) -> Result<Calibration, String> {
     let word = |at: usize| -> Result<[u8; 8], String> {
         bytes.get(at..at + 8).and_then(|b| b.try_into().ok()).ok_or_else(|| "the file is truncated".into())
     };
-    let version = u64::from_le_bytes(word(8)?);
-    if version != u64::from(VERSION) {
-        return Err(format!("version {version} of calibrations; this program reads {VERSION}; calibrate again"));
+    let (found, expected) = (u64::from_le_bytes(word(8)?), version());
+    if found != u64::from(expected) {
+        return Err(format!("version {found} of calibrations; this program reads {expected}; calibrate again"));
     }
     let (length, sum) = (u64::from_le_bytes(word(16)?), u64::from_le_bytes(word(24)?));
     let facts = &bytes[HEADER..];
@@ -199,7 +204,8 @@ impl CalibratedSurface {
             p.center.iter().all(|x| x.is_finite())
                 && p.radius.is_finite()
                 && p.radius >= 0.0
-                && p.log_factor.iter().chain(p.gradient.iter().flatten()).all(|f| f.is_finite())
+                && p.log_factor.iter().all(|f| f.abs() <= MAX_LOG_FACTOR)
+                && p.gradient.iter().flatten().all(|f| f.is_finite())
         };
         fits && self.normal_scale.is_finite()
             && self.normal_scale > 0.0

@@ -1,9 +1,13 @@
 //! Systems of linear equations, and curves through noisy values.
 
+use crate::grid::radius;
 use bssrdf::half_space::layout::RINGS;
 
-/// Values of rings with this share of the light count as much as the smoothness.
-const SHARE: f64 = 3e-4;
+/// The share of the light with which the value of a ring counts as much as the smoothness. It grows with the square of
+/// the distance beyond 4 mean free paths: few walks come so far, and they count much.
+fn share_of_doubt(ring: usize) -> f64 {
+    3e-4 * (radius(ring) / 4.0).powi(2).max(1.0)
+}
 
 /// Below this share a value is noise and does not count.
 const NOISE: f64 = 2e-5;
@@ -20,12 +24,11 @@ pub fn smooth(values: &[f64; RINGS], shares: &[f64; RINGS]) -> [f64; RINGS] {
     // The first rings hold little light, but it is known: it has been scattered once.
     let last = (peak..RINGS).find(|b| shares[*b] < NOISE).unwrap_or(RINGS);
     for b in 0..RINGS {
-        let weight = if b < peak {
-            shares[b].max(SHARE) / SHARE
-        } else if b < last {
-            shares[b] / SHARE
-        } else {
-            0.0
+        let doubt = share_of_doubt(b);
+        let weight = match b {
+            near if near < peak => shares[b].max(doubt) / doubt,
+            far if far < last => shares[b] / doubt,
+            _ => 0.0,
         };
         if weight > 0.0 {
             matrix[b][b] += weight;

@@ -1,6 +1,9 @@
 //! `make-half-space-table FILE` writes the table of the half-space model, the same bytes on every run.
 
+#[cfg(test)]
+mod check;
 mod fit;
+mod forward;
 mod grid;
 mod linear;
 mod reflectance;
@@ -15,7 +18,7 @@ const USAGE: &str = "usage: make-half-space-table FILE
 Writes the table of the half-space model from random walks (minutes), the same bytes on every run.";
 
 /// Walks of each index.
-const WALKS: u64 = 2_000_000;
+const WALKS: u64 = 3_000_000;
 const SEED: u64 = 1;
 
 fn main() -> ExitCode {
@@ -32,7 +35,11 @@ fn main() -> ExitCode {
         eprintln!("make-half-space-table: unknown option {}\n{USAGE}", file.display());
         return ExitCode::from(2);
     }
-    let numbers: Vec<i16> = layout::ETAS.iter().flat_map(|eta| of_index(*eta)).collect();
+    let mut numbers: Vec<i16> = layout::ETAS.iter().flat_map(|eta| of_index(*eta)).collect();
+    for eta in layout::forward::ETAS {
+        println!("phase functions of index {eta}");
+        numbers.extend(forward::ratios(eta, SEED).into_iter().map(|ratio| integer(ratio, layout::UNIT)));
+    }
     let bytes = layout::encode(&numbers);
     if let Err(error) = std::fs::write(Path::new(file), &bytes) {
         eprintln!("make-half-space-table: cannot write {}: {error}", file.display());
@@ -46,7 +53,6 @@ fn main() -> ExitCode {
 fn of_index(eta: f64) -> Vec<i16> {
     println!("index {eta}");
     let measured = fit::Measured { eta, walks: walks::walks(eta, WALKS, SEED), single: single::rings(eta) };
-    let integer = |value: f64, unit: f64| (value / unit).round().clamp(f64::from(i16::MIN), f64::from(i16::MAX)) as i16;
     let mut numbers = Vec::new();
     for record in measured.records() {
         numbers.extend(record.terms.iter().flatten().map(|value| integer(*value, layout::UNIT)));
@@ -54,4 +60,9 @@ fn of_index(eta: f64) -> Vec<i16> {
         numbers.push(integer(record.cosine, layout::COSINE_UNIT));
     }
     numbers
+}
+
+/// The next of the integers that are stored.
+fn integer(value: f64, unit: f64) -> i16 {
+    (value / unit).round().clamp(f64::from(i16::MIN), f64::from(i16::MAX)) as i16
 }

@@ -2,7 +2,7 @@
 
 use bssrdf::Model;
 use clap::Parser;
-use cli::{Common, SceneArgs, file_name, one_of, parse_count};
+use cli::{Common, SceneArgs, file_name, one_of, parse_count, parse_relative_error};
 use std::path::PathBuf;
 
 /// Measures by random walks what a BSSRDF gets wrong on the shape of a scene, for all cameras, and how to mend it.
@@ -25,9 +25,13 @@ pub struct Arguments {
     #[arg(long, value_name = "MODEL", default_value = Model::ALL[0].name(),
         value_parser = one_of(&Model::ALL, Model::name))]
     pub bssrdf: Model,
-    /// Random walks of each color channel, over all materials: 300k, 1M
-    #[arg(long, value_name = "N", default_value = "300k", value_parser = parse_walks)]
-    pub walks: u64,
+    /// Random walks of each color channel, over all materials: 300k, 1M [default: 300k]
+    #[arg(long, value_name = "N", value_parser = parse_walks, conflicts_with = "target_error")]
+    pub walks: Option<u64>,
+    /// Follow more and more walks until the light that leaves is estimated to be off by this relative error, as root mean
+    /// square over the surface, or until more walks no longer help
+    #[arg(long, value_name = "X", value_parser = parse_relative_error)]
+    pub target_error: Option<f64>,
     #[command(flatten)]
     pub scene_args: SceneArgs,
     /// Write statistics as JSON

@@ -4,10 +4,10 @@ mod arguments;
 mod report;
 
 use arguments::Arguments;
-use calibration::{Task, calibrate};
+use calibration::{Task, WALKS, calibrate};
 use clap::Parser;
-use cli::{Failure, LitScene, Media, Progress, Seconds, declare_inputs};
-use formats::atomic::Group;
+use cli::{Common, Failure, LitScene, Media, Progress, Seconds, declare_inputs};
+use formats::{atomic::Group, calibration::Calibration};
 use std::path::PathBuf;
 
 fn main() {
@@ -33,14 +33,14 @@ fn run(mut arguments: Arguments) -> Result<(), Failure> {
         media: &lit.media,
         model: request.arguments.bssrdf,
         normals: cli::normal_kind(request.scene.how.normals),
-        walks: request.arguments.walks,
+        walks: request.arguments.walks.unwrap_or(WALKS),
         seed: common.seed,
     };
-    let progress = Progress::start(common, "calibrating", task.work(), "walks and points");
-    let calibration = seconds
-        .time("walks", || common.in_pool(|| calibrate(&task, |done| progress.add(done))))?
-        .map_err(|e| Failure::usage(e.to_string()))?;
-    progress.finish();
+    let calibration = seconds.time("walks", || match request.arguments.target_error {
+        None => once(&task, common),
+        Some(target) => until(target, &task, common),
+    });
+    let calibration = calibration.map_err(|failure| failure.within(request.scene.path.display()))?;
     lit.cloud_files.check_unchanged()?;
     let mut files = Group::default();
     let output = &request.arguments.output;
@@ -51,6 +51,46 @@ fn run(mut arguments: Arguments) -> Result<(), Failure> {
     files.commit()?;
     report::lines(&calibration).iter().for_each(|line| common.say(line));
     Ok(())
+}
+
+/// Follows the walks of a task.
+fn once(task: &Task, common: &Common) -> Result<Calibration, Failure> {
+    let progress = Progress::start(common, "calibrating", task.work(), "walks and points");
+    let made = common.in_pool(|| calibrate(task, |done| progress.add(done)))?;
+    progress.finish();
+    made.map_err(Failure::from)
+}
+
+/// Most walks with a target error, and by how many times they grow.
+const MAX_WALKS: u64 = 1 << 30;
+const GROWTH: u64 = 4;
+
+/// More walks that leave more than this share of the error are the last.
+const USELESS: f64 = 0.8;
+
+/// Follows more and more walks until the worst channel meets the target, or they no longer help.
+fn until(target: f64, task: &Task, common: &Common) -> Result<Calibration, Failure> {
+    let error = |c: &Calibration| {
+        let all = c.materials.iter().flat_map(|m| m.errors.map(|e| e.after));
+        all.fold(0.0, f64::max).sqrt()
+    };
+    let mut calibration = once(task, common)?;
+    loop {
+        let (reached, walks) = (error(&calibration), calibration.walks.saturating_mul(GROWTH));
+        if reached <= target {
+            return Ok(calibration);
+        }
+        let stays = |why: &str| common.warn(format_args!("the error stays at about {reached:.3}: {why}"));
+        if walks > MAX_WALKS {
+            stays("more walks are not followed");
+            return Ok(calibration);
+        }
+        calibration = once(&Task { walks, ..*task }, common)?;
+        if error(&calibration) > USELESS * reached && error(&calibration) > target {
+            stays("more walks do not help");
+            return Ok(calibration);
+        }
+    }
 }
 
 /// What is asked for.

@@ -1,7 +1,10 @@
 //! What is said of a calibration.
 
 use cli::{Common, Seconds};
-use formats::{calibration::Calibration, cloud::hex};
+use formats::{
+    calibration::{Calibration, ChannelErrors},
+    cloud::hex,
+};
 
 const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
@@ -11,6 +14,10 @@ pub fn lines(calibration: &Calibration) -> Vec<String> {
     for material in &calibration.materials {
         lines.push(format!("material `{}`: {}", material.name, material.medium.name));
         for (name, e) in CHANNELS.iter().zip(&material.errors) {
+            if *e == ChannelErrors::default() {
+                lines.push(format!("  {name:5} no scattered light leaves: there is nothing to calibrate"));
+                continue;
+            }
             let unresolved = match e.unresolved {
                 share if share > 0.0 => format!("; too few walks leave {:.1} % of the surface", 100.0 * share),
                 _ => String::new(),
@@ -30,7 +37,7 @@ pub fn statistics(calibration: &Calibration, common: &Common, seconds: &Seconds)
         .materials
         .iter()
         .map(|m| {
-            let of = |f: fn(&formats::calibration::ChannelErrors) -> f64| m.errors.map(|e| f(&e));
+            let of = |f: fn(&ChannelErrors) -> f64| m.errors.map(|e| f(&e));
             serde_json::json!({
                 "material": m.name,
                 "medium": m.medium.name,

@@ -27,8 +27,12 @@ fn interface(eta: f64, cosine: f64) -> f64 {
 
 /// Share of the light of incidence cosine `cosine` that a model's half-space reflects after scattering.
 pub fn reflectance(model: Model, albedo: f64, eta: f64, cosine: f64) -> f64 {
-    let medium = medium(albedo, eta);
-    let model = model.of(&medium);
+    reflectance_of(model, &medium(albedo, eta), cosine)
+}
+
+/// The same of the red channel of a medium with unit reduced extinction.
+pub fn reflectance_of(model: Model, medium: &Medium, cosine: f64) -> f64 {
+    let (model, eta) = (model.of(medium), medium.eta);
     let sine = (1.0 - cosine * cosine).sqrt() / eta;
     let outer = 40.0 / model.transport()[0].max(4e-5);
     let annulus = Annulus { inner: 1e-7, outer: outer.min(1e6) };

@@ -36,8 +36,34 @@ pub const COSINE_UNIT: f64 = 1.0 / 32768.0;
 /// The bytes in front of the numbers: the magic and a checksum.
 pub const HEADER: usize = 16;
 
+/// The numbers of the profiles, after which those of [`forward`] follow.
+pub const PROFILES: usize = ETAS.len() * STEPS.len() * RECORD;
+
 /// The bytes of a file.
-pub const BYTES: usize = HEADER + 2 * ETAS.len() * STEPS.len() * RECORD;
+pub const BYTES: usize = HEADER + 2 * (PROFILES + forward::NUMBERS);
+
+/// Where the reflectance of Henyey and Greenstein's phase function is tabulated, over that by similarity.
+pub mod forward {
+    /// Relative indices.
+    pub const ETAS: [f64; 9] = [0.5, 0.75, 1.0, 1.1, 1.2, 1.33, 1.5, 1.8, 2.5];
+    /// The place of `η = 1`.
+    pub const MATCHED: usize = 2;
+    /// Mean cosines of the phase function, without 0, whose ratio is 1.
+    pub const ASYMMETRIES: [f64; 8] = [-0.8, -0.4, 0.3, 0.55, 0.75, 0.87, 0.94, 0.98];
+    /// The place of 0 among them.
+    pub const ISOTROPIC: usize = 2;
+    /// `√(1 − α')`; at 0 the ratio is 1, which is not stored.
+    pub const STEPS: [f64; 9] = [0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.75, 0.9, 1.0];
+    /// `m` of the angles.
+    pub const PLACES: [f64; 3] = [0.1, 0.55, 1.0];
+    /// The numbers, `log₂` of ratios: by index, asymmetry, albedo, angle.
+    pub const NUMBERS: usize = ETAS.len() * ASYMMETRIES.len() * (STEPS.len() - 1) * PLACES.len();
+
+    /// What functions of the asymmetry are smooth in.
+    pub fn coordinate(asymmetry: f64) -> f64 {
+        (1.0 - asymmetry).sqrt()
+    }
+}
 
 /// `±√|1 − min(η, 1/η)²|`, the cosine of the critical angle on the denser side: functions of the index are smooth in it
 /// on either side of 1.

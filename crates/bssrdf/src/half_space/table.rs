@@ -1,7 +1,9 @@
-//! The table of the half-space model, interpolated for one albedo and index.
+//! The table of the half-space model, interpolated for one medium and channel.
 
+use super::boundary::exit_moment;
 use super::layout::{
-    BYTES, COSINE_UNIT, ETAS, HEADER, MATCHED, RECORD, RINGS, RINGS_PER_OCTAVE, STEPS, TERMS, UNIT, eta_coordinate,
+    BYTES, COSINE_UNIT, ETAS, HEADER, MATCHED, PROFILES, RECORD, RINGS, RINGS_PER_OCTAVE, STEPS, TERMS, UNIT,
+    eta_coordinate, forward,
 };
 
 /// The file, which `make half-space-table` writes.
@@ -14,20 +16,17 @@ pub struct Corrections {
     terms: [[f64; RINGS]; TERMS],
     /// The coefficients of `m³` and `m⁴`.
     pub high: [f64; 2],
-    /// The mean cosine of the light that leaves.
-    pub cosine: f64,
 }
 
 impl Corrections {
     /// Interpolates the table; `absorbed` is `1 − α'`.
     pub fn new(absorbed: f64, eta: f64) -> Corrections {
         let steps = weights(&STEPS, absorbed.sqrt());
-        let etas = if eta >= 1.0 { MATCHED..ETAS.len() } else { 0..MATCHED + 1 };
-        let coordinates: Vec<f64> = ETAS[etas.clone()].iter().map(|eta| eta_coordinate(*eta)).collect();
+        let etas = weights_of_eta(&ETAS, MATCHED, eta);
         let mut sum = [0.0; RECORD];
-        for (index, of_index) in weights(&coordinates, eta_coordinate(eta)) {
+        for (index, of_index) in etas {
             for (step, of_step) in &steps {
-                let record = (etas.start + index) * STEPS.len() + step;
+                let record = index * STEPS.len() + step;
                 for (k, sum) in sum.iter_mut().enumerate() {
                     *sum += of_index * of_step * number(record * RECORD + k);
                 }
@@ -37,7 +36,6 @@ impl Corrections {
         Corrections {
             terms: std::array::from_fn(|t| std::array::from_fn(|r| sum[t * RINGS + r] * UNIT)),
             high: [sum[at] * UNIT, sum[at + 1] * UNIT],
-            cosine: sum[at + 2] * COSINE_UNIT,
         }
     }
 
@@ -60,16 +58,87 @@ impl Corrections {
     }
 }
 
+/// `b` of the light that leaves in proportion to `T21 (a + b μ)` (docs/method.md 15.8). It is interpolated instead of the
+/// mean cosine, of which it is a steep function where little light leaves but along the normal, at small indices.
+pub fn lobe_slope(absorbed: f64, eta: f64) -> f64 {
+    let steps = weights(&STEPS, absorbed.sqrt());
+    let of_index = |(index, weight): (usize, f64)| {
+        let number = |(step, weight): &(usize, f64)| weight * number((index * STEPS.len() + step + 1) * RECORD - 1);
+        let cosine = steps.iter().map(number).sum::<f64>() * COSINE_UNIT;
+        let [m0, m1, m2] = [0, 1, 2].map(|k| exit_moment(k, ETAS[index]));
+        weight * m0 * (m0 * cosine - m1) / (m0 * m2 - m1 * m1)
+    };
+    weights_of_eta(&ETAS, MATCHED, eta).into_iter().map(of_index).sum()
+}
+
+/// The polynomial in `m`, of degree 2, that is `log₂` of the reflectance of Henyey and Greenstein's phase function over
+/// that by similarity (docs/method.md 15.11).
+pub fn forward_ratio(absorbed: f64, asymmetry: f64, eta: f64) -> [f64; 3] {
+    if asymmetry == 0.0 {
+        return [0.0; 3];
+    }
+    let mut values = [0.0; forward::PLACES.len()];
+    for (index, of_index) in weights_of_eta(&forward::ETAS, forward::MATCHED, eta) {
+        for (g, of_g) in weights_of_asymmetry(asymmetry) {
+            for (step, of_step) in weights(&forward::STEPS, absorbed.sqrt()) {
+                for (place, value) in values.iter_mut().enumerate() {
+                    *value += of_index * of_g * of_step * forward_number(index, g, step, place);
+                }
+            }
+        }
+    }
+    parabola(&forward::PLACES, &values)
+}
+
+/// `log₂` of a ratio; `g` counts 0 as well.
+fn forward_number(index: usize, g: usize, step: usize, place: usize) -> f64 {
+    if g == forward::ISOTROPIC || step == 0 {
+        return 0.0;
+    }
+    let g = g - usize::from(g > forward::ISOTROPIC);
+    let row = (index * forward::ASYMMETRIES.len() + g) * (forward::STEPS.len() - 1) + step - 1;
+    number(PROFILES + row * forward::PLACES.len() + place) * UNIT
+}
+
+/// The places of asymmetries, 0 included, around one, and their weights.
+fn weights_of_asymmetry(asymmetry: f64) -> Vec<(usize, f64)> {
+    let mut nodes = forward::ASYMMETRIES.to_vec();
+    nodes.insert(forward::ISOTROPIC, 0.0);
+    // The coordinate falls as the asymmetry grows.
+    let nodes: Vec<f64> = nodes.into_iter().map(|g| -forward::coordinate(g)).collect();
+    weights(&nodes, -forward::coordinate(asymmetry))
+}
+
+/// The coefficients of the parabola through three points.
+pub fn parabola(x: &[f64; 3], y: &[f64; 3]) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for k in 0..3 {
+        let (a, b) = (x[(k + 1) % 3], x[(k + 2) % 3]);
+        let scale = y[k] / ((x[k] - a) * (x[k] - b));
+        sum = [sum[0] + scale * a * b, sum[1] - scale * (a + b), sum[2] + scale];
+    }
+    sum
+}
+
+/// The places of indices on the same side of 1 around `eta`, and their weights.
+fn weights_of_eta(etas: &[f64], matched: usize, eta: f64) -> Vec<(usize, f64)> {
+    let (first, side) = if eta >= 1.0 { (matched, &etas[matched..]) } else { (0, &etas[..=matched]) };
+    let nodes: Vec<f64> = side.iter().map(|eta| eta_coordinate(*eta)).collect();
+    weights(&nodes, eta_coordinate(eta)).into_iter().map(|(k, weight)| (first + k, weight)).collect()
+}
+
 /// A number of the file.
 fn number(index: usize) -> f64 {
     let at = HEADER + 2 * index;
     f64::from(i16::from_le_bytes([FILE[at], FILE[at + 1]]))
 }
 
-/// The places of up to four nodes around `x`, and the weights of their values: a cubic through them.
+/// The places of the four nodes around `x`, or of all if there are fewer, and the weights of their values: a polynomial
+/// through them.
 fn weights(nodes: &[f64], x: f64) -> Vec<(usize, f64)> {
-    let next = nodes.partition_point(|node| *node <= x).clamp(2, nodes.len() - 2);
-    let near = next - 2..next + 2;
+    let count = nodes.len().min(4);
+    let first = nodes.partition_point(|node| *node <= x).saturating_sub(2).min(nodes.len() - count);
+    let near = first..first + count;
     let weight = |k: usize| near.clone().filter(|j| *j != k).map(|j| (x - nodes[j]) / (nodes[k] - nodes[j])).product();
     near.clone().map(|k| (k, weight(k))).collect()
 }

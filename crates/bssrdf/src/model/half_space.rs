@@ -1,8 +1,8 @@
 //! The half-space model: right on a half-space of any reduced albedo, index and angle of the light.
 //!
 //! Two sources of diffuse light, one below the surface and its image above it, times a tabulated ratio to random walks
-//! (docs/method.md section 14). Ours. Light that is scattered along its direction is treated by similarity, with the
-//! reduced coefficients.
+//! (docs/method.md section 15). Ours. The shape of light that is scattered along its direction is that by similarity, with
+//! the reduced coefficients; its power is that of Henyey and Greenstein's phase function.
 
 use crate::{
     evaluate::{Bssrdf, Separation},
@@ -10,6 +10,7 @@ use crate::{
         exit_moment,
         layout::FIRST,
         profile::{Place, Profile},
+        table::lobe_slope,
     },
     medium::{Coefficients, Medium},
 };
@@ -48,7 +49,7 @@ impl HalfSpace {
         let norm = exit_moment(0, medium.eta);
         let channel = |c: &Coefficients| {
             let reduced = c.reduced_extinction();
-            let profile = Profile::new(absorbed(c), medium.eta);
+            let profile = Profile::new(absorbed(c), c.asymmetry, medium.eta);
             Channel { reduced, profile, prefactor: c.reduced_albedo() * reduced * reduced / norm }
         };
         let channels = [0, 1, 2].map(|k| Some(&medium.channels[k]).filter(|c| c.scatters()).map(channel));
@@ -58,15 +59,14 @@ impl HalfSpace {
 
 /// `a` and `b` of the light that leaves in proportion to `T21 (a + b μ)` (docs/method.md 15.8), for each channel.
 pub fn exit_lobe(medium: &Medium) -> [[f64; 2]; 3] {
-    let [m0, m1, m2] = [0, 1, 2].map(|k| exit_moment(k, medium.eta));
+    let mean = exit_moment(1, medium.eta) / exit_moment(0, medium.eta);
     [0, 1, 2].map(|k| {
         let c = &medium.channels[k];
         if !c.scatters() {
             return [1.0, 0.0];
         }
-        let cosine = crate::half_space::mean_cosine(absorbed(c), medium.eta);
-        let b = m0 * (m0 * cosine - m1) / (m0 * m2 - m1 * m1);
-        [1.0 - b * m1 / m0, b]
+        let slope = lobe_slope(absorbed(c), medium.eta);
+        [1.0 - slope * mean, slope]
     })
 }
 

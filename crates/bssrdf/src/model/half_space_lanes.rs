@@ -29,8 +29,8 @@ struct Channel {
     exponent: f32,
     /// `z_b`.
     extrapolation: f32,
-    /// The coefficients of `m³` and `m⁴`, over the unit of the words.
-    high: [f32; 2],
+    /// The coefficients of `m⁰` to `m⁴` that hold at any distance, over the unit of the words.
+    constant: [f32; 5],
     /// `α' σ_t'²/(m_0 8πAD)`, 1/(m² sr); 0 where nothing scatters.
     prefactor: f32,
     words: Box<[u32; WORDS]>,
@@ -64,7 +64,7 @@ struct Geometry {
 impl LaneModel for HalfSpaceLanes {
     fn new(medium: &Medium) -> Self {
         let channels = [0, 1, 2].map(|k| Channel::new(&medium.channels[k], medium.eta));
-        let place = Profile::new(0.5, medium.eta).place.map(|x| x as f32);
+        let place = Profile::new(0.5, 0.0, medium.eta).place.map(|x| x as f32);
         let blur2 = blur2(medium).clamp(f64::from(f32::MIN_POSITIVE), f64::from(f32::MAX));
         HalfSpaceLanes { channels, place, blur2: blur2 as f32 }
     }
@@ -109,14 +109,14 @@ impl Channel {
         let scatters = c.scatters();
         let c = if scatters { c } else { &Coefficients { sigma_a: 1.0, sigma_s: 1.0, asymmetry: 0.0 } };
         let reduced = c.reduced_extinction();
-        let profile = Profile::new(absorbed(c), eta);
+        let profile = Profile::new(absorbed(c), c.asymmetry, eta);
         let prefactor = c.reduced_albedo() * reduced * reduced / exit_moment(0, eta) * profile.images.strength;
         Channel {
             reduced: reduced as f32,
             reduced2: (reduced * reduced) as f32,
             exponent: (-profile.images.transport * LOG2_E) as f32,
             extrapolation: profile.images.extrapolation as f32,
-            high: profile.high.map(|x| (x / UNIT) as f32),
+            constant: profile.constant.map(|x| (x / UNIT) as f32),
             prefactor: if scatters { prefactor as f32 } else { 0.0 },
             words: profile.words,
         }
@@ -155,8 +155,9 @@ impl Channel {
             let m = g.place[i];
             let near = terms(self.words[at & (WORDS - 1)], self.words[(at + 1) & (WORDS - 1)], m, g.forward[i]);
             let far = terms(self.words[(at + 2) & (WORDS - 1)], self.words[(at + 3) & (WORDS - 1)], m, g.forward[i]);
-            let high = m * m * m * (self.high[0] + m * self.high[1]);
-            corrections[i] = (near + t * (far - near) + high) * UNIT as f32;
+            let [a, b, c, d, e] = self.constant;
+            let constant = a + m * (b + m * (c + m * (d + m * e)));
+            corrections[i] = (near + t * (far - near) + constant) * UNIT as f32;
         }
         corrections
     }

@@ -38,6 +38,17 @@ fn sampling(bench: &Bench) -> Victim<'_> {
     Victim::new(bench, "sample-surface", "a.cloud", [run("1"), run("2")])
 }
 
+/// A calibration of a cloud under another seed than `a.calibration`.
+fn calibrating(bench: &Bench) -> Victim<'_> {
+    let scene = data("scenes/sphere.glb");
+    bench.succeed("sample-surface", &["-n", "20k", "-o", "sphere.cloud", &scene]);
+    let run = |seed: &str| {
+        let own = ["sphere.cloud", &scene, "--medium", "marble", "--walks", "200", "--seed", seed, "-j", "1"];
+        [&own[..], &["-o", "a.calibration"]].concat().into_iter().map(str::to_owned).collect()
+    };
+    Victim::new(bench, "calibrate", "a.calibration", [run("1"), run("2")])
+}
+
 /// An image of a cloud under another seed than `a.exr`.
 fn gathering(bench: &Bench) -> Victim<'_> {
     let (scene, view) = (data("scenes/sphere.glb"), data("views/sphere/front.json"));
@@ -45,7 +56,7 @@ fn gathering(bench: &Bench) -> Victim<'_> {
     let run = |seed: &str| {
         let size = ["--width", "96", "--height", "96", "--spp", "2"];
         let inputs = ["sphere.cloud", scene.as_str(), "--view", &view, "--medium", "marble"];
-        let rest = ["--seed", seed, "-j", "1", "-o", "a.exr"];
+        let rest = ["--calibration", "none", "--seed", seed, "-j", "1", "-o", "a.exr"];
         [&inputs[..], &size, &rest].concat().into_iter().map(str::to_owned).collect()
     };
     Victim::new(bench, "gather", "a.exr", [run("1"), run("2")])
@@ -153,6 +164,11 @@ fn a_killed_sampler_leaves_the_old_cloud_or_the_new() {
 }
 
 #[test]
+fn a_killed_calibration_leaves_the_old_file_or_the_new() {
+    survives_kills(&calibrating(&Bench::new()));
+}
+
+#[test]
 fn a_killed_gather_leaves_the_old_image_or_the_new() {
     survives_kills(&gathering(&Bench::new()));
 }
@@ -160,7 +176,7 @@ fn a_killed_gather_leaves_the_old_image_or_the_new() {
 #[test]
 fn signals_to_end_leave_no_temporary_file() {
     let bench = Bench::new();
-    for victim in [sampling(&bench), gathering(&bench)] {
+    for victim in [sampling(&bench), calibrating(&bench), gathering(&bench)] {
         let hangup = (!ignores_hangup()).then_some(("-HUP", 129));
         for (signal, code) in hangup.into_iter().chain([("-INT", 130), ("-TERM", 143)]) {
             let mut stopped = 0;
@@ -215,7 +231,7 @@ fn two_samplers_on_one_target_do_not_mix() {
 #[test]
 fn a_target_that_may_not_be_written_stays() {
     let bench = Bench::new();
-    for victim in [sampling(&bench), gathering(&bench)] {
+    for victim in [sampling(&bench), calibrating(&bench), gathering(&bench)] {
         let path = bench.path(victim.target);
         let mut permissions = fs::metadata(&path).expect("is there").permissions();
         permissions.set_readonly(true);

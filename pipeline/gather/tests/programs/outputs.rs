@@ -26,6 +26,7 @@ fn words(line: &str) -> Vec<&str> {
 }
 
 const SAMPLE: &str = "scene.gltf --environment sky.hdr --for-medium medium.json --target-error 0.9 --quiet";
+const CALIBRATE: &str = "slab.cloud scene.gltf --environment sky.hdr --medium Slab=medium.json --walks 100 --quiet";
 const GATHER: &str =
     "slab.cloud scene.gltf --environment sky.hdr --medium Slab=medium.json --view view.json --spp 2 --quiet";
 
@@ -37,6 +38,7 @@ fn no_output_replaces_an_input() {
     let read_by_both = ["scene.gltf", "slab.bin", "sky.hdr", "medium.json"];
     for (name, line, others, options) in [
         ("sample-surface", SAMPLE, &[][..], &["--output", "--ply", "--stats"][..]),
+        ("calibrate", CALIBRATE, &["slab.cloud"], &["--output", "--stats"]),
         ("gather", GATHER, &["slab.cloud", "view.json"], &["--output", "--preview", "--stats"]),
     ] {
         for input in read_by_both.iter().chain(others) {
@@ -74,8 +76,7 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
         bench.refuses("sample-surface", &arguments, &["nowhere/file", option, "No such file"]);
         assert!(start.elapsed() < Duration::from_secs(10), "{option}");
     }
-    for program in ["sample-surface", "gather"] {
-        let line = if program == "gather" { GATHER } else { SAMPLE };
+    for (program, line) in [("sample-surface", SAMPLE), ("calibrate", CALIBRATE), ("gather", GATHER)] {
         for option in ["--output", "--stats"] {
             bench.refuses(program, &[&words(line)[..], &[option, "-"]].concat(), &["streams are not accepted"]);
         }
@@ -111,6 +112,9 @@ fn a_pipe_in_place_of_a_file_is_refused_at_once() {
         ("gather", gather("slab.cloud scene.gltf --environment sky.hdr --medium marble -o pipe")),
         ("gather", gather("slab.cloud scene.gltf --environment sky.hdr --medium ./pipe -o new.exr")),
         ("gather", gather("slab.cloud scene.gltf --environment sky.hdr --medium marble --view pipe -o new.exr")),
+        ("gather", gather("slab.cloud scene.gltf --environment sky.hdr --calibration pipe -o new.exr")),
+        ("calibrate", "pipe scene.gltf --environment sky.hdr --medium marble -o new --quiet".to_owned()),
+        ("calibrate", "slab.cloud scene.gltf --environment sky.hdr --medium marble -o pipe --quiet".to_owned()),
         ("gather", "--list-cameras pipe".to_owned()),
         ("compare", "pipe pipe".to_owned()),
     ];
@@ -171,7 +175,9 @@ fn few_threads_or_none_give_the_same_bytes() {
         assert_eq!(bench.read("few.cloud"), expected);
         fs::remove_file(bench.path("few.cloud")).expect("removes");
     }
-    let output = with_few_threads(&bench, 1, "gather", &words(&format!("{GATHER} -o few.exr")));
+    let output = with_few_threads(&bench, 1, "gather", &words(&format!("{GATHER} --calibration none -o few.exr")));
+    assert_eq!(output.status.code(), Some(0), "{}", output.stderr);
+    let output = with_few_threads(&bench, 1, "calibrate", &words(&format!("{CALIBRATE} -o few.calibration")));
     assert_eq!(output.status.code(), Some(0), "{}", output.stderr);
     let output = with_few_threads(&bench, 1, "compare", &words("few.exr few.exr --exact -j 4"));
     assert_eq!(output.status.code(), Some(0), "{}", output.stderr);

@@ -13,7 +13,7 @@ const OTHERS: [&str; 9] = [
     "out/notes.txt",
     "out/gallery.png",
     "out/thing/k500-s0/mine.cloud",
-    "out/thing/k500-s0/marble-directional-dipole/mine.exr",
+    "out/thing/k500-s0/marble-half-space/mine.exr",
 ];
 
 /// A tree that has rendered to OUT, with other people's files in it, and with `shots` reached by a link in OUT.

@@ -1,7 +1,9 @@
 //! The Makefile as users run it, in a folder of its own with links to the programs.
 
+mod calibrations;
 mod clean;
 mod pictures;
+mod truth;
 
 use formats::{Channel, Image};
 use serde_json::json;
@@ -15,7 +17,7 @@ use std::{
 use test_support::{Bench, program};
 
 /// The folder of the images of `thing`.
-const IMAGES: &str = "out/thing/k500-s0/marble-directional-dipole";
+const IMAGES: &str = "out/thing/k500-s0/marble-half-space";
 
 /// A copy of what make needs, in a folder below that of the bench.
 struct Tree {
@@ -32,14 +34,16 @@ impl Tree {
         for folder in ["crates/formats", "make", "target/release", "tests/check"] {
             fs::create_dir_all(tree.path(folder)).expect("makes a folder");
         }
-        for file in ["Makefile", "crates/formats/cloud-version", "tests/check/planted.sh"] {
+        for file in
+            ["Makefile", "crates/formats/cloud-version", "crates/formats/calibration-version", "tests/check/planted.sh"]
+        {
             fs::copy(root.join(file), tree.path(file)).expect("copies");
         }
         for file in fs::read_dir(root.join("make")).expect("lists") {
             let file = file.expect("an entry");
             fs::copy(file.path(), tree.path("make").join(file.file_name())).expect("copies");
         }
-        for name in ["sample-surface", "gather", "compare"] {
+        for name in ["sample-surface", "calibrate", "gather", "compare"] {
             symlink(program(name), tree.path("target/release").join(name)).expect("links");
         }
         tree
@@ -84,7 +88,9 @@ impl Tree {
         let mut command = Command::new("make");
         command.current_dir(self.path("")).env_clear().env("PATH", env::var_os("PATH").unwrap_or_default());
         command.env("HOME", self.path("home"));
-        command.args(["--no-print-directory", "CARGO=true", "THREADS=1", "SAMPLES=500", "SPP=1"]).args(arguments);
+        command
+            .args(["--no-print-directory", "CARGO=true", "THREADS=1", "SAMPLES=500", "SPP=1", "WALKS=200"])
+            .args(arguments);
         command
     }
 

@@ -32,7 +32,7 @@ fn a_picture_is_of_the_medium_and_the_environment_that_were_named() {
     tree.write("s.json", view(0.5));
     tree.write("a/m.json", medium(1.0));
     tree.write("sky.exr", sky(0.1));
-    let image = "out/thing/k500-s0/m-directional-dipole/s.exr";
+    let image = "out/thing/k500-s0/m-half-space/s.exr";
     tree.make(&["SCENE=thing.gltf", "VIEWS=s.json", "MEDIUM=a/m.json", "ENVIRONMENT=sky.exr"]);
     let arguments = ["SCENE=thing.gltf", "VIEWS=s.json", "MEDIUM=b/m.json", "ENVIRONMENT=sky.exr"];
     tree.remakes(image, &arguments, || tree.write_old("b/m.json", medium(2.0)));
@@ -60,9 +60,9 @@ fn a_picture_is_of_what_the_scene_names() {
         .collect();
     tree.remakes(&format!("{IMAGES}/s.exr"), &arguments, || tree.write_old("a/thing of  parts.bin", larger));
     tree.write("a/card.png", "another");
-    assert_eq!(tree.make(&arguments).made(), ["sample-surface", "gather"], "a texture changed");
+    assert_eq!(tree.make(&arguments).made(), ["sample-surface", "calibrate", "gather"], "a texture changed");
     fs::remove_file(tree.path("a/card.png")).expect("removes");
-    assert_eq!(tree.make(&arguments).made(), ["sample-surface", "gather"], "a texture is gone");
+    assert_eq!(tree.make(&arguments).made(), ["sample-surface", "calibrate", "gather"], "a texture is gone");
     assert!(tree.make(&arguments).made().is_empty());
 }
 
@@ -120,13 +120,16 @@ fn the_gallery_is_of_what_it_was_made_from() {
         assert_eq!(tree.make(&all).made(), programs, "{arguments:?}");
         assert!(tree.make(&all).made().is_empty(), "{arguments:?}");
     };
-    made(&[], &["sample-surface", "gather", "contact-sheet"]);
-    fs::remove_file(tree.path("out/thing/k500-s0/m-directional-dipole/s.png")).expect("removes");
+    made(&[], &["sample-surface", "calibrate", "gather", "contact-sheet"]);
+    fs::remove_file(tree.path("out/thing/k500-s0/m-half-space/s.png")).expect("removes");
     made(&[], &["gather", "contact-sheet"]);
     tree.write_old("sky.exr", sky(0.7));
-    made(&[], &["sample-surface", "gather", "contact-sheet"]);
+    made(&[], &["sample-surface", "calibrate", "gather", "contact-sheet"]);
     made(&["MODEL=standard-dipole"], &["gather", "contact-sheet"]);
     made(&[], &["contact-sheet"]);
+    made(&["CALIBRATE=no"], &["gather", "contact-sheet"]);
+    made(&[], &["gather", "contact-sheet"]);
+    made(&["WALKS=400"], &["calibrate", "gather", "contact-sheet"]);
 
     let check = ["check-images", "CHECK_COUNT=1", "CHECK_SAMPLES=500", "CHECK_SPP=1", "CHECK_SIZE=8"];
     made(&check, &["sample-surface", "gather"]);

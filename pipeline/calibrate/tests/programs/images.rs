@@ -1,0 +1,85 @@
+//! Images of a calibration, and calibrations that do not fit.
+
+use crate::{bench, quick, slab};
+use formats::Attribute;
+use test_support::{Bench, data};
+
+/// A folder with a cloud of the slab and its calibration in marble.
+fn calibrated() -> (Bench, String) {
+    let (bench, slab) = (bench(), slab());
+    bench.succeed("calibrate", &quick(&slab, "a.calibration", &["--quiet", "--stats", "a.json"]));
+    (bench, slab)
+}
+
+fn arguments<'a>(scene: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    [&["slab.cloud", scene, "--width", "6", "--spp", "2", "-o", "image.exr", "--quiet", "--no-timings"], more].concat()
+}
+
+fn image(bench: &Bench, scene: &str, more: &[&str]) -> formats::Image {
+    bench.succeed("gather", &arguments(scene, more));
+    bench.image("image.exr")
+}
+
+/// Seen to catch: a calibration that was read and not used.
+#[test]
+fn a_calibration_brings_its_media_and_model_and_leaves_its_mark() {
+    let (bench, slab) = calibrated();
+    let known = image(&bench, &slab, &["--calibration", "a.calibration"]);
+    let own = ["--calibration", "a.calibration", "--medium", "marble", "--bssrdf", "half-space"];
+    assert_eq!(image(&bench, &slab, &own).channels, known.channels);
+    let plain = image(&bench, &slab, &["--calibration", "none", "--medium", "marble", "--bssrdf", "half-space"]);
+    assert_ne!(plain.channels, known.channels);
+    let digest = bench.json("a.json")["calibration"].as_str().expect("a text").to_owned();
+    assert_eq!(known.attributes.get("pcsss/calibration"), Some(&Attribute::Text(digest)));
+    assert!(known.attributes.contains_key("pcsss/modelError"));
+    assert_eq!(known.attributes.get("pcsss/bssrdf"), Some(&Attribute::Text("half-space".into())));
+    assert!(!plain.attributes.contains_key("pcsss/calibration"));
+}
+
+/// Seen to catch: the cloud not compared; media not compared; the model of the calibration ignored.
+#[test]
+fn a_calibration_of_something_else_is_refused() {
+    let (bench, slab) = calibrated();
+    let refuses = |cloud: &str, scene: &str, more: &[&str], words: &[&str]| {
+        let mut own = arguments(scene, &[&["--calibration", "a.calibration"], more].concat());
+        own[0] = cloud;
+        let message = bench.refuses("gather", &own, words);
+        assert_eq!(message.lines().count(), 1, "{message}");
+    };
+    bench.succeed("sample-surface", &[&slab, "-n", "2k", "--seed", "5", "-o", "seed.cloud", "--quiet"]);
+    let sphere = data("scenes/sphere.glb");
+    bench.succeed("sample-surface", &[&sphere, "-n", "2k", "-o", "sphere.cloud", "--quiet"]);
+    refuses("seed.cloud", &slab, &[], &["--calibration", "a.calibration", "another cloud", "calibrate again"]);
+    refuses("sphere.cloud", &sphere, &[], &["--calibration", "a.calibration", "another cloud"]);
+    refuses("slab.cloud", &sphere, &[], &["sphere.glb"]);
+    refuses("slab.cloud", &slab, &["--medium", "skin1"], &["a.calibration", "marble", "skin1", "--medium"]);
+    refuses("slab.cloud", &slab, &["--bssrdf", "standard-dipole"], &["a.calibration", "half-space", "standard-dipole"]);
+}
+
+/// Seen to catch: a file of another version read as far as it goes.
+#[test]
+fn files_that_are_no_calibrations_are_refused() {
+    let (bench, slab) = calibrated();
+    let good = bench.read("a.calibration");
+    let changed = |at: usize, byte: u8| {
+        let mut bad = good.clone();
+        bad[at] = byte;
+        bad
+    };
+    for (bytes, word) in [
+        (good[..good.len() / 2].to_vec(), "bytes instead of"),
+        (good[..20].to_vec(), "truncated"),
+        (changed(good.len() - 9, good[good.len() - 9] ^ 1), "damaged"),
+        (changed(8, 99), "version 99"),
+        (bench.read("slab.cloud"), "not a calibration"),
+        (Vec::new(), "not a calibration"),
+    ] {
+        bench.write("bad.calibration", bytes);
+        let own = arguments(&slab, &["--calibration", "bad.calibration"]);
+        let message = bench.refuses("gather", &own, &["bad.calibration", word]);
+        assert_eq!(message.lines().count(), 1, "{message}");
+    }
+    for (path, word) in [("missing.calibration", "No such file"), (".", "not a file")] {
+        bench.refuses("gather", &arguments(&slab, &["--calibration", path]), &[path, word]);
+    }
+}
