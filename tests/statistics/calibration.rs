@@ -3,7 +3,7 @@
 //! Seen to catch: walks that leave without a collision counted; a patch found by position alone, so that the light of a
 //! thin sheet is on its wrong side; the areas of cells taken as equal. The walks themselves are tested in `crates/walks`.
 
-use bssrdf::{DVec3, Medium, Model, fresnel};
+use bssrdf::{DVec3, Medium, Model, fresnel, half_space::exit_moment};
 use calibration::{Factors, Site, Task, calibrate};
 use formats::cloud::Cloud;
 use gather::estimator::Estimator;
@@ -69,7 +69,7 @@ impl Sunlit {
     /// without the exit lobe, whose power is that of `T21`.
     fn leaving(&self, model: Model, factors: &Factors, points: u64) -> Vec<Patch> {
         let lit = Lit::new(&self.cloud, &self.medium, model);
-        let [transmitted, ..] = fresnel::exit_moments(self.medium.eta);
+        let transmitted = exit_moment(0, self.medium.eta);
         let mesh = &self.world.scene.mesh;
         let area: f64 = (0..mesh.triangles.len()).map(|k| mesh.area(k)).sum();
         let lobe = factors.lobe()[0];

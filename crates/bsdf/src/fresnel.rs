@@ -3,7 +3,6 @@
 //! Where a form differs from the usual print, its comment says why.
 
 use glam::DVec3;
-use std::f64::consts::PI;
 
 /// Power transmittance `T(c, η_r)` of an interface for light whose cosine in the incident medium is `cosine`;
 /// `eta_ratio` is the index of the transmitting medium over that of the incident one (docs/method.md 2.1).
@@ -123,21 +122,6 @@ pub fn diffuse_reflectance(eta: f64) -> f64 {
 /// `Σ coefficients[k] xᵏ` by Horner's rule.
 fn polynomial(x: f64, coefficients: &[f64]) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
-}
-
-/// Nodes of the quadrature in [`exit_moments`].
-const NODES: usize = 4000;
-
-/// `m_k = ∫ T21 cosθ^(k+1) dω` over the hemisphere outside, for k = 0, 1, 2, where `T21` is the transmittance at relative
-/// index `eta`, inside over outside, and `θ` the angle outside (docs/method.md 15.8).
-pub fn exit_moments(eta: f64) -> [f64; 3] {
-    let mut moments = [0.0; 3];
-    for k in 0..NODES {
-        let cosine = (k as f64 + 0.5) / NODES as f64;
-        let flux = transmittance(cosine, eta) * cosine * (2.0 * PI / NODES as f64);
-        moments.iter_mut().enumerate().for_each(|(k, m)| *m += flux * cosine.powi(k as i32));
-    }
-    moments
 }
 
 #[cfg(test)]

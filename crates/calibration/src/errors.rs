@@ -5,7 +5,7 @@ use crate::{
     patches::Patches,
     tally::Counted,
 };
-use bsdf::fresnel;
+use bssrdf::half_space::exit_moment;
 use formats::calibration::ChannelErrors;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -30,7 +30,7 @@ impl Light {
             total[*cell as usize] += *sum;
             count[*cell as usize] += 1.0;
         }
-        let [transmitted, ..] = fresnel::exit_moments(eta);
+        let transmitted = exit_moment(0, eta);
         let mean = |cell: usize| total[cell] / f64::max(count[cell], 1.0);
         let of = |f: &dyn Fn(usize) -> DVec3| [0, 1, 2].map(|c| (0..cells).map(|p| f(p)[c]).collect());
         let area: f64 = areas.iter().sum();

@@ -1,7 +1,6 @@
 //! The factors of one material as images use them.
 
 use crate::patches::{Patches, Site};
-use bsdf::fresnel;
 use formats::calibration::CalibratedMaterial;
 use glam::{DVec3, Vec3};
 
@@ -54,33 +53,5 @@ impl Factors {
         let bounded = (shift * DVec3::from_array(self.shift)).clamp(DVec3::splat(-MAX_SHIFT), DVec3::splat(MAX_SHIFT));
         let lobe = DVec3::from_array(self.lobe.map(|[a, b]| a + b * cosine));
         lobe * (sum - bounded).exp()
-    }
-}
-
-/// `a` and `b` of the exit lobe `T21 (a + b cosθ)` that carries the power of the lobe `T21` alone and has the mean cosine
-/// `mean_cosine` (docs/method.md 15.8).
-pub fn exit_lobe(eta: f64, mean_cosine: f64) -> [f64; 2] {
-    let [m0, m1, m2] = fresnel::exit_moments(eta);
-    let determinant = m0 * m2 - m1 * m1;
-    [m0 * (m2 - m1 * mean_cosine) / determinant, m0 * (m0 * mean_cosine - m1) / determinant]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Seen to catch: the two coefficients exchanged.
-    #[test]
-    fn the_lobe_keeps_power_and_has_the_mean_cosine() {
-        for eta in [1.0, 1.3, 1.5, 2.5] {
-            let [m0, m1, m2] = fresnel::exit_moments(eta);
-            for mean in [0.55, m1 / m0, 0.75] {
-                let [a, b] = exit_lobe(eta, mean);
-                assert!(((a * m0 + b * m1) / m0 - 1.0).abs() < 1e-12);
-                assert!(((a * m1 + b * m2) / m0 / mean - 1.0).abs() < 1e-12);
-            }
-            let [a, b] = exit_lobe(eta, m1 / m0);
-            assert!((a - 1.0).abs() < 1e-12 && b.abs() < 1e-12);
-        }
     }
 }

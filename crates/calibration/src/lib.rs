@@ -15,10 +15,10 @@ mod sparse;
 mod surface;
 mod tally;
 
-pub use factors::{Factors, exit_lobe};
+pub use factors::Factors;
 pub use patches::{Patches, Site};
 
-use bssrdf::{Medium, Model};
+use bssrdf::{Medium, Model, half_space::exit_lobe};
 use entries::Entries;
 use errors::{Light, channel_errors};
 use fit::Smoothness;

@@ -42,8 +42,9 @@ pub struct Tally {
     pub opaque: u64,
 }
 
-/// Walks of one task.
+/// Walks of one task, and tasks whose results are held at once: the memory does not grow with the number of walks.
 const CHUNK: u64 = 1024;
+const BATCH: u64 = 1024;
 
 /// The items of a stream are numbered by material and channel above this bit, and by walk below it.
 const WALK_BITS: u32 = 44;
@@ -53,8 +54,21 @@ impl Tally {
         self.weights.iter().flatten().sum()
     }
 
-    /// The tally (docs/method.md 16.1) as counts, and the `power` of the model, W, in the same unit; none if nothing leaves, or the model says
-    /// so. `entering` is the power that enters, W.
+    fn add(&mut self, chunk: &Chunk) {
+        for (half, left) in chunk.left.iter().enumerate() {
+            for (cell, weight, cosine) in left {
+                self.weights[half][*cell as usize] += weight;
+                self.squares += weight * weight;
+                self.cosines += weight * cosine;
+            }
+        }
+        self.holes += chunk.holes;
+        self.unscattered += chunk.unscattered;
+        self.opaque += chunk.opaque;
+    }
+
+    /// The tally (docs/method.md 16.1) as counts, and the `power` of the model, W, in the same unit; none if nothing
+    /// leaves, or the model says so. `entering` is the power that enters, W.
     ///
     /// Weights of walks are not counts: as many counts of one mean weight `Σw²/Σw` have the same sum and variance.
     pub fn counted(&self, entering: f64, power: &[f64]) -> Option<Counted> {
@@ -123,18 +137,11 @@ impl Walking<'_> {
             progress(done);
             result
         };
-        let chunks: Vec<Chunk> = (0..count.div_ceil(CHUNK)).into_par_iter().map(chunk).collect();
-        for chunk in chunks {
-            for (half, left) in chunk.left.iter().enumerate() {
-                for (cell, weight, cosine) in left {
-                    tally.weights[half][*cell as usize] += weight;
-                    tally.squares += weight * weight;
-                    tally.cosines += weight * cosine;
-                }
-            }
-            tally.holes += chunk.holes;
-            tally.unscattered += chunk.unscattered;
-            tally.opaque += chunk.opaque;
+        let chunks = count.div_ceil(CHUNK);
+        for batch in 0..chunks.div_ceil(BATCH) {
+            let numbers = batch * BATCH..((batch + 1) * BATCH).min(chunks);
+            let results: Vec<Chunk> = numbers.into_par_iter().map(chunk).collect();
+            results.iter().for_each(|result| tally.add(result));
         }
         tally
     }

@@ -34,6 +34,14 @@ pub fn exit_moment(k: i32, eta: f64) -> f64 {
     2.0 * PI * integral(eta, |outside, _| outside.powi(k))
 }
 
+/// `a` and `b` of the exit lobe `T21 (a + b μ)` that carries the power of `T21` alone and has the mean cosine
+/// `mean_cosine` outside (docs/method.md 15.8).
+pub fn exit_lobe(eta: f64, mean_cosine: f64) -> [f64; 2] {
+    let [m0, m1, m2] = [0, 1, 2].map(|k| exit_moment(k, eta));
+    let slope = m0 * (m0 * mean_cosine - m1) / (m0 * m2 - m1 * m1);
+    [1.0 - slope * m1 / m0, slope]
+}
+
 /// `A = (1 + 3C₂)/(1 − 2C₁)` from the definitions of the moments instead of their fits (docs/method.md 2.7, 15.2).
 pub fn reflection(eta: f64) -> f64 {
     let inside = |k: i32| integral(eta, |_, inside| inside.powi(k)) / (eta * eta); // ∫ T ν^{k+1} dν
@@ -63,5 +71,20 @@ mod tests {
             }
         }
         assert!((reflection(1.0) - 1.0).abs() < 1e-6 && (exit_moment(1, 1.0) - 2.0 * PI / 3.0).abs() < 1e-6);
+    }
+
+    /// Seen to catch: the two coefficients exchanged.
+    #[test]
+    fn the_lobe_keeps_power_and_has_the_mean_cosine() {
+        for eta in [0.7, 1.0, 1.3, 1.5, 2.5] {
+            let [m0, m1, m2] = [0, 1, 2].map(|k| exit_moment(k, eta));
+            for mean in [0.55, m1 / m0, 0.75] {
+                let [a, b] = exit_lobe(eta, mean);
+                assert!(((a * m0 + b * m1) / m0 - 1.0).abs() < 1e-12);
+                assert!(((a * m1 + b * m2) / m0 / mean - 1.0).abs() < 1e-12);
+            }
+            let [a, b] = exit_lobe(eta, m1 / m0);
+            assert!((a - 1.0).abs() < 1e-12 && b.abs() < 1e-12);
+        }
     }
 }

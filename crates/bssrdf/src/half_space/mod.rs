@@ -7,5 +7,5 @@ pub mod layout;
 pub(crate) mod profile;
 pub(crate) mod table;
 
-pub use boundary::{critical_cosine, exit_moment, reflection};
+pub use boundary::{critical_cosine, exit_lobe, exit_moment, reflection};
 pub use images::{GRAZING, Images, SOFTNESS2, forwardness, transport};

@@ -1,6 +1,6 @@
 //! The table of the half-space model, interpolated for one medium and channel.
 
-use super::boundary::exit_moment;
+use super::boundary::exit_lobe;
 use super::layout::{
     BYTES, COSINE_UNIT, ETAS, HEADER, MATCHED, PROFILES, RECORD, RINGS, RINGS_PER_OCTAVE, STEPS, TERMS, UNIT,
     eta_coordinate, forward,
@@ -65,8 +65,7 @@ pub fn lobe_slope(absorbed: f64, eta: f64) -> f64 {
     let of_index = |(index, weight): (usize, f64)| {
         let number = |(step, weight): &(usize, f64)| weight * number((index * STEPS.len() + step + 1) * RECORD - 1);
         let cosine = steps.iter().map(number).sum::<f64>() * COSINE_UNIT;
-        let [m0, m1, m2] = [0, 1, 2].map(|k| exit_moment(k, ETAS[index]));
-        weight * m0 * (m0 * cosine - m1) / (m0 * m2 - m1 * m1)
+        weight * exit_lobe(ETAS[index], cosine)[1]
     };
     weights_of_eta(&ETAS, MATCHED, eta).into_iter().map(of_index).sum()
 }

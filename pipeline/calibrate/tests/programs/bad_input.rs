@@ -53,7 +53,6 @@ fn triangles(root: &mut Value) -> &mut Value {
     &mut root["accessors"][index]
 }
 
-/// Seen to catch: walks that leave through holes not counted.
 #[test]
 fn open_surfaces_are_refused() {
     let half = refused(|root| {

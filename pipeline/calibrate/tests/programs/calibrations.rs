@@ -3,7 +3,6 @@
 use crate::{bench, quick, slab};
 use std::fs;
 
-/// Seen to catch: weights of walks added in the order in which threads finish.
 #[test]
 fn a_calibration_has_the_same_bytes_for_any_number_of_threads() {
     let (bench, slab) = (bench(), slab());

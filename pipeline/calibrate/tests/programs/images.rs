@@ -36,7 +36,7 @@ fn a_calibration_brings_its_media_and_model_and_leaves_its_mark() {
     assert!(!plain.attributes.contains_key("pcsss/calibration"));
 }
 
-/// Seen to catch: the cloud not compared; media not compared; the model of the calibration ignored.
+/// Seen to catch: neither cloud nor media compared.
 #[test]
 fn a_calibration_of_something_else_is_refused() {
     let (bench, slab) = calibrated();
@@ -56,7 +56,6 @@ fn a_calibration_of_something_else_is_refused() {
     refuses("slab.cloud", &slab, &["--bssrdf", "standard-dipole"], &["a.calibration", "half-space", "standard-dipole"]);
 }
 
-/// Seen to catch: a file of another version read as far as it goes.
 #[test]
 fn files_that_are_no_calibrations_are_refused() {
     let (bench, slab) = calibrated();

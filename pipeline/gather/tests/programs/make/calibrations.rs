@@ -62,7 +62,7 @@ fn one_calibration_serves_all_pictures_and_follows_what_it_is_made_from() {
     expect(sky, &["sample-surface", "calibrate", "gather", "gather"]);
 }
 
-/// Seen to catch: `--calibration none` left out for the dipoles, and pictures that stayed when CALIBRATE changed.
+/// Seen to catch: `--calibration none` left out, so that gather calibrated in memory.
 #[test]
 fn pictures_without_a_calibration() {
     let tree = tree();
@@ -85,8 +85,7 @@ fn pictures_without_a_calibration() {
 }
 
 /// A scene that cannot be calibrated gives pictures, and make says at each run that they are not calibrated. What fails
-/// otherwise fails as before. Seen to catch: no picture of an open mesh; a calibration that was killed taken for one that
-/// was refused.
+/// otherwise fails as before. Seen to catch: a calibration that was killed taken for one that was refused.
 #[test]
 fn a_scene_that_cannot_be_calibrated_gives_pictures() {
     let tree = tree();
