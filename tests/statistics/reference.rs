@@ -49,8 +49,7 @@ fn ball() -> Part {
 
 /// Without absorption and under a constant environment, everything looks like the environment.
 ///
-/// Seen to catch: the factor 1/η² for light that walks meet; walks that count without a collision; unscattered light by
-/// the extinction of the directional dipole.
+/// Seen to catch: the factor 1/η² for light that walks meet; walks that count without a collision.
 #[test]
 fn a_furnace() {
     for (scattering, g, eta) in [(200.0, 0.0, 1.3), (2000.0, 0.5, 1.5)] {

@@ -29,7 +29,7 @@ pub struct Matter {
 }
 
 /// Walks jump where the next boundary is at least this many reduced mean free paths away, and end a jump this many
-/// before it. At 5 and 3 no bias was seen at 0.1 % (`tests/jumps.rs`).
+/// before it. At 5 and 3 no bias was seen at 0.15 %; at 3 and 2 the mean cosine at which light leaves was 0.3 % off.
 const JUMP_FROM: f64 = 5.0;
 const JUMP_GAP: f64 = 3.0;
 

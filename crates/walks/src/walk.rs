@@ -245,6 +245,13 @@ fn jump<D: Domain, O: Observer>(
         if around < matter.jump_from {
             return true;
         }
+        if O::SEES_JUMPS {
+            // The collisions that the factor below stands for, as those of a ball.
+            let weight = *weight * matter.jump_collisions * ahead * ahead;
+            let Flight { position, nesting, .. } = *flight;
+            let collision = Collision { position, direction: None, weight, clearance: *clearance, nesting };
+            observer.collide(&collision, random);
+        }
         (flight.position, *clearance) = (center, around);
         // From all directions together, light is scattered about the collision itself.
         *weight *= ball_factor(matter.decay * ahead.abs());
@@ -258,12 +265,6 @@ fn jump<D: Domain, O: Observer>(
             return false;
         }
         *clearance = domain.clearance(flight.position);
-        // A collision at the end of the jump, where the walk arrives from all directions alike.
-        let Flight { position, nesting, .. } = *flight;
-        if O::SEES_JUMPS {
-            let collision = Collision { position, direction: None, weight: *weight, clearance: *clearance, nesting };
-            observer.collide(&collision, random);
-        }
     }
     flight.direction = random.direction();
     true

@@ -123,8 +123,8 @@ fn sun(direction: DVec3) -> DirectionalLight {
 
 /// The box sends a tenth of its light out of its lower half after a reflection before the first collision.
 ///
-/// Seen to catch: reflected beams left out; the factor 1/η² left out; the sign of `g` in the connections; `T` of the light's entry left out; the
-/// extinction of the connections left out.
+/// Seen to catch: reflected beams left out; the factor 1/η² left out; `T` of the light's entry left out; the extinction
+/// of the connections left out; the sign of `g` in them.
 #[test]
 fn parallel_light() {
     let slanted = sun(DVec3::new(0.5, 0.1, 0.8));
@@ -135,9 +135,9 @@ fn parallel_light() {
     Case::new(meshes::slab(DVec3::new(6.0, 5.0, 4.0), 2), slanted, [0.95, 0.0, 1.3]).compare("box", 40_000);
 }
 
-/// Jumps and what connections see of their insides.
+/// A box that is thick enough for jumps.
 ///
-/// Seen to catch: the weight of (14.7) twice as large; the collision at the end of a jump left out.
+/// Seen to catch: the extinction of the connections left out.
 #[test]
 fn a_large_object_with_jumps() {
     let large = meshes::slab(DVec3::new(30.0, 30.0, 9.0), 2);
