@@ -222,11 +222,15 @@ pub fn negative_count(pixels: &[Pixel]) -> usize {
 }
 
 /// The relative standard error of the image: the root mean square of the pixels' standard errors over the root mean
-/// square of their values, all channels; none for a black image.
+/// square of their values, all channels; none for a black image. Variances of edge pixels are estimated without bias,
+/// and may be below zero. Where those of all pixels together are, their own scatter is more than the error, and is stated
+/// in its place.
 pub fn relative_error(pixels: &[Pixel]) -> Option<f64> {
-    let variance: f64 = pixels.iter().map(|p| p.variance.element_sum()).sum();
+    let sum: f64 = pixels.iter().map(|p| p.variance.element_sum()).sum();
+    let scatter = pixels.iter().map(|p| p.variance.element_sum().powi(2)).sum::<f64>().sqrt();
+    let variance = if sum > 0.0 { sum } else { scatter };
     let power: f64 = pixels.iter().map(|p| p.beauty().length_squared()).sum();
-    (power > 0.0).then(|| (variance.max(0.0) / power).sqrt())
+    (power > 0.0).then(|| (variance / power).sqrt())
 }
 
 /// The sources of error that [`relative_error`] and the variance of an image without a cloud include.
