@@ -79,7 +79,7 @@ mod tests {
         let estimate = Estimate::of(&[1.0, 2.0, 3.0, 6.0]);
         assert_eq!((estimate.mean, estimate.freedom), (3.0, 3.0));
         // Σ(x − 3)² = 14; 14/(4·3)
-        assert!((estimate.error - (15.0f64 / 12.0).sqrt()).abs() < 1e-15);
+        assert!((estimate.error - (14.0f64 / 12.0).sqrt()).abs() < 1e-15);
         let doubled = estimate.plus(estimate);
         assert!((doubled.mean - 6.0).abs() < 1e-15 && (doubled.freedom - 6.0).abs() < 1e-12);
     }
