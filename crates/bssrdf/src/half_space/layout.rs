@@ -20,7 +20,7 @@ pub const RINGS: usize = 72;
 pub const FIRST: f64 = 1.0 / 2048.0;
 pub const RINGS_PER_OCTAVE: f64 = 4.0;
 
-/// The numbers at each distance, see [`Profile`](super::Profile).
+/// The number of terms of a profile at each distance.
 pub const TERMS: usize = 4;
 
 /// Numbers are stored as integers of 16 bits, in units of 1/1024.
