@@ -6,6 +6,7 @@
 
 use crate::{
     cells::Cells,
+    domain::Leg,
     facet::{Facet, Parallel, Shadow, meets},
     reflections::{self, MAX_REFLECTIONS, Medium},
     refraction::{Plane, crossing, gain},
@@ -35,18 +36,6 @@ pub struct Beams<'a> {
     /// Whether it contains the beams that the boundary reflects inside. It does not if there are too many, nor for the
     /// light of a point, whose reflections are not followed.
     pub complete: bool,
-}
-
-/// A straight part of the way to the light, inside.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Leg {
-    /// Where it begins, m, and the triangle there.
-    pub start: DVec3,
-    pub from: Option<u32>,
-    /// Unit direction towards the light.
-    pub direction: DVec3,
-    /// m.
-    pub length: f64,
 }
 
 /// Light that arrives at a point inside.

@@ -16,6 +16,18 @@ pub struct Flight {
     pub nesting: u32,
 }
 
+/// A straight part of the way to the light, inside.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Leg {
+    /// Where it begins, m, and the triangle there.
+    pub start: DVec3,
+    pub from: Option<u32>,
+    /// Unit direction towards the light.
+    pub direction: DVec3,
+    /// m.
+    pub length: f64,
+}
+
 /// What a walk meets next.
 #[derive(Clone, Copy, Debug)]
 pub enum Crossing {

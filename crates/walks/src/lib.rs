@@ -42,9 +42,9 @@ mod refraction;
 mod solid;
 mod walk;
 
-pub use beams::{Arrival, Beams, Leg};
+pub use beams::{Arrival, Beams};
 pub use connect::Connections;
-pub use domain::{Crossing, Domain, Flight, Slab};
+pub use domain::{Crossing, Domain, Flight, Leg, Slab};
 pub use matter::Matter;
 pub use phase::{density, scatter};
 pub use random::{FIRST, Sequence};

@@ -1,9 +1,8 @@
 //! The inside of a mesh.
 
 use crate::{
-    beams::Leg,
     clearance::Clearance,
-    domain::{Crossing, Domain, Flight},
+    domain::{Crossing, Domain, Flight, Leg},
     walk::Start,
 };
 use bsdf::fresnel;

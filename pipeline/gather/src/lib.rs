@@ -50,6 +50,7 @@ pub mod preview;
 mod reference;
 pub mod renderer;
 mod subsurface;
+mod walked;
 
 pub use crop::Crop;
 pub use image::{Filter, Input, Rendered, Settings};
