@@ -1,5 +1,6 @@
 # When a file is made again. Beside every cloud and image NAME lies NAME.settings, which records what it was made from:
-# its own name, by which `make clean` recognizes it; the folder in which make ran; the options; and for each input file
+# its own name, by which `make clean` recognizes it; the folder in which make ran; the options, in which files below OUT are
+# named without it; and for each input file
 # its path, size, and times of last change. The record is written only when it changes, and whatever depends on it is
 # then made again: also from a file of the same name in another folder, or from one with an older time stamp. Offers
 # settings and unless_there.
@@ -12,7 +13,7 @@ $(1).settings: $(3) .FORCE $(if $(call scenes_of,$(3)),| $(GATHER))
 	$$(write_settings)
 endef
 define write_settings
-@[ -d $(@D) ] || mkdir -p $(@D); new=$$(printf '%s\n' $(call quoted,made by make: $(name)) "$$PWD" $(call quoted,$(options)); \
+@[ -d $(@D) ] || mkdir -p $(@D); new=$$(printf '%s\n' $(call quoted,made by make: $(name)) "$$PWD" $(call quoted,$(subst $(OUT)/,,$(options))); \
   $(foreach f,$(filter-out .FORCE,$^),$(call identity,'$(f)'); $(if $(call scenes_of,$(f)),$(call named_by,$(f));))); \
   [ "$$new" = "$$(cat $@ 2>/dev/null)" ] || { printf '%s\n' "$$new" > $@.$$$$ && mv $@.$$$$ $@; }
 endef
