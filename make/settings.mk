@@ -1,9 +1,8 @@
 # When a file is made again. Beside every cloud and image NAME lies NAME.settings, which records what it was made from:
-# its own name, by which `make clean` recognizes it; the folder in which make ran; the options, in which files below OUT are
-# named without it; and for each input file
-# its path, size, and times of last change. The record is written only when it changes, and whatever depends on it is
-# then made again: also from a file of the same name in another folder, or from one with an older time stamp. Offers
-# settings and unless_there.
+# its own name, by which `make clean` recognizes it; the folder in which make ran; the options, in which files below OUT
+# are named without it; and for each input file its path, size, and times of last change. The record is written only
+# when it changes, and whatever depends on it is then made again: also from a file of the same name in another folder,
+# or from one with an older time stamp. Offers settings and unless_there.
 
 # $(eval $(call settings,NAME,OPTIONS,FILES)) declares NAME.settings. OPTIONS is expanded when the file is written.
 define settings
