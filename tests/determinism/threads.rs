@@ -3,7 +3,7 @@
 use bssrdf::{Model, built_in};
 use formats::cloud::{Cloud, Shard};
 use gather::{
-    Filter, Input, Rendered, Settings,
+    Filter, Rendered, Settings,
     estimator::{Estimator, Rule},
 };
 use glam::DVec3;
@@ -11,7 +11,7 @@ use scene::NormalKind;
 use test_support::{
     Bench,
     meshes::{Light, Part, World, slab, sphere, world},
-    pipeline::{Sampling, by_area, cloud, orthographic, sampled, settings, stratified, write},
+    pipeline::{Sampling, by_area, cloud, input, orthographic, sampled, settings, stratified, write},
     planted::stored,
 };
 
@@ -80,14 +80,7 @@ fn render(world: &World, cloud: &Cloud, estimator: Estimator) -> Rendered {
         normals: NormalKind::Shading,
         ..settings(Model::DirectionalDipole, 40, 30)
     };
-    let input = Input {
-        scene: &world.scene,
-        rays: &world.rays,
-        clouds: std::slice::from_ref(cloud),
-        media: &media,
-        calibration: None,
-        camera: &camera,
-    };
+    let input = input(world, std::slice::from_ref(cloud), &media, &camera);
     gather::render(&input, &settings, |_| ())
 }
 

@@ -6,12 +6,12 @@ use crate::{
 };
 use bssrdf::built_in;
 use formats::Image;
-use gather::{Input, Settings};
+use gather::Settings;
 use serde_json::{Value, json};
 use std::{fs, path::Path, slice::from_ref};
 use test_support::{
     meshes::World,
-    pipeline::{cloud, settings, stratified},
+    pipeline::{cloud, input, settings, stratified},
 };
 
 /// Side of a block, pixels; blocks are compared by their means.
@@ -57,14 +57,7 @@ fn picture(world: &World, media: &[&str]) -> Image {
     assert_eq!(cloud.meta().materials.len(), media.len());
     let media: Vec<_> = media.iter().map(|name| built_in(name).expect("a built-in medium")).collect();
     let camera = &world.scene.cameras[0];
-    let input = Input {
-        scene: &world.scene,
-        rays: &world.rays,
-        clouds: from_ref(&cloud),
-        media: &media,
-        calibration: None,
-        camera,
-    };
+    let input = input(world, from_ref(&cloud), &media, camera);
     let settings = Settings { paths_per_pixel: 4, ..settings(bssrdf::Model::DirectionalDipole, SIZE, SIZE) };
     gather::film::image(&gather::render(&input, &settings, |_| ()).pixels, SIZE, SIZE)
 }

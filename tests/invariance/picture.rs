@@ -2,7 +2,7 @@
 
 use bssrdf::{Coefficients, Medium, Model, built_in};
 use formats::{Image, cloud::Cloud};
-use gather::{Input, Settings, estimator::Estimator};
+use gather::{Settings, estimator::Estimator};
 use glam::DVec3;
 use rayon::prelude::*;
 use sample_surface::Choice;
@@ -10,7 +10,7 @@ use scene::NormalKind;
 use test_support::{
     EFFORT,
     meshes::World,
-    pipeline::{Sampling, by_area, filed, medium, sampled_with, settings},
+    pipeline::{Sampling, by_area, filed, input, medium, sampled_with, settings},
     z_test::{Estimate, assert_mean},
 };
 
@@ -79,14 +79,7 @@ impl Shot {
     pub fn of_cloud(&self, world: &World, cloud: &Cloud) -> Image {
         let media = std::slice::from_ref(&self.medium);
         let camera = &world.scene.cameras[0];
-        let input = Input {
-            scene: &world.scene,
-            rays: &world.rays,
-            clouds: std::slice::from_ref(cloud),
-            media,
-            calibration: None,
-            camera,
-        };
+        let input = input(world, std::slice::from_ref(cloud), media, camera);
         let settings =
             Settings { estimator: self.estimator, normals: self.normals, ..settings(self.model, SIZE, SIZE) };
         let rendered = gather::render(&input, &settings, |_| ());

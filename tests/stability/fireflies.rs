@@ -3,7 +3,7 @@
 
 use bssrdf::{Model, built_in};
 use gather::{
-    Input, Settings,
+    Settings,
     estimator::{Estimator, Rule},
     render,
 };
@@ -11,7 +11,7 @@ use glam::DVec3;
 use std::slice::from_ref;
 use test_support::{
     meshes::{Light, Part, sphere, world},
-    pipeline::{by_area, cloud, orthographic, settings},
+    pipeline::{by_area, cloud, input, orthographic, settings},
     z_test::Estimate,
 };
 
@@ -23,14 +23,7 @@ fn deviation_and_firefly(name: &str, rule: Rule) -> (f64, f64) {
     let world = world(&[Part::translucent(sphere(0.5, 5))], &[sun], DVec3::ZERO);
     let cloud = cloud(&world, &by_area(20_000, 7));
     let (media, camera) = ([built_in(name).expect("a built-in medium")], orthographic(DVec3::Z, 0.5));
-    let input = Input {
-        scene: &world.scene,
-        rays: &world.rays,
-        clouds: from_ref(&cloud),
-        media: &media,
-        calibration: None,
-        camera: &camera,
-    };
+    let input = input(&world, from_ref(&cloud), &media, &camera);
     let red = |estimator: Estimator| -> Vec<f64> {
         let settings = Settings { estimator, ..settings(Model::DirectionalDipole, SIDE, SIDE) };
         let rendered = render(&input, &settings, |_| ());

@@ -2,13 +2,13 @@
 
 use bssrdf::Model;
 use formats::cloud::Sample;
-use gather::{Input, Rendered, Settings, render};
+use gather::{Rendered, Settings, render};
 use glam::{DVec3, Vec3};
 use sample_surface::{Plan, SampleError, Surfaces};
 use std::slice::from_ref;
 use test_support::{
     meshes::{Light, Part, World, quad, world},
-    pipeline::{MODELS, by_area, cloud, filed, gray, orthographic, sampled, settings},
+    pipeline::{MODELS, by_area, cloud, filed, gray, input, orthographic, sampled, settings},
     planted::{Halves, planted, stored},
 };
 
@@ -27,14 +27,7 @@ fn rendered(flux: Vec3, twins: bool, settings: &Settings) -> Rendered {
     let halves = if twins { [one.clone(), one] } else { [one, other] };
     let cloud = filed(&planted(drawn.meta(), &[halves]));
     let (media, camera) = ([gray(0.0, 1e3, 0.0, 1.3)], orthographic(DVec3::Z, 0.1));
-    let input = Input {
-        scene: &world.scene,
-        rays: &world.rays,
-        clouds: from_ref(&cloud),
-        media: &media,
-        calibration: None,
-        camera: &camera,
-    };
+    let input = input(&world, from_ref(&cloud), &media, &camera);
     render(&input, settings, |_| ())
 }
 

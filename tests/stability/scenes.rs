@@ -2,12 +2,12 @@
 
 use bssrdf::Medium;
 use formats::cloud::Cloud;
-use gather::{Input, Rendered, Settings, counts::Counts, film};
+use gather::{Rendered, Settings, counts::Counts, film};
 use glam::DVec3;
 use scene::Camera;
 use test_support::{
     meshes::World,
-    pipeline::{by_area, cloud, gray, orthographic},
+    pipeline::{by_area, cloud, gray, input, orthographic},
 };
 
 /// The sky that clear objects show, which is no light to sample: powers of two, so that means of equal values are
@@ -16,14 +16,7 @@ pub const SKY: DVec3 = DVec3::new(1.0, 0.5, 4.0);
 
 /// Renders, and fails if a number of the image is not finite or a radiance is negative.
 pub fn render(world: &World, cloud: &Cloud, media: &[Medium], camera: &Camera, settings: &Settings) -> Rendered {
-    let input = Input {
-        scene: &world.scene,
-        rays: &world.rays,
-        clouds: std::slice::from_ref(cloud),
-        media,
-        calibration: None,
-        camera,
-    };
+    let input = input(world, std::slice::from_ref(cloud), media, camera);
     let rendered = gather::render(&input, settings, |_| ());
     assert_eq!((rendered.non_finite_count, &rendered.non_finite), (0, &Vec::new()));
     let image = film::image(&rendered.pixels, settings.width, settings.height);

@@ -1,13 +1,13 @@
 //! The control variate of silhouette pixels removes noise and leaves the mean.
 
 use crate::error_bars::{Scene, edge, of_paths};
-use gather::{Input, Settings, estimator::Estimator, film::Pixel};
+use gather::{Settings, estimator::Estimator, film::Pixel};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::slice::from_ref;
 use test_support::{
     EFFORT,
-    pipeline::{cloud, gray, orthographic},
+    pipeline::{cloud, gray, input, orthographic},
     z_test::{Estimate, assert_equal},
 };
 
@@ -18,14 +18,7 @@ const IMAGES: u64 = 4000 * EFFORT;
 fn brightness(scene: &Scene, paths_per_pixel: u32) -> Estimate {
     let cloud = cloud(&scene.world, &(scene.sampling)(20, 1));
     let (media, camera) = ([scene.medium.clone()], orthographic(DVec3::new(1.0, 1.2, 1.5), scene.half_height));
-    let input = Input {
-        scene: &scene.world.scene,
-        rays: &scene.world.rays,
-        clouds: from_ref(&cloud),
-        media: &media,
-        calibration: None,
-        camera: &camera,
-    };
+    let input = input(&scene.world, from_ref(&cloud), &media, &camera);
     let settings = of_paths(Estimator::Exhaustive, paths_per_pixel);
     let image = |seed: u64| {
         let rendered = gather::render(&input, &Settings { seed, ..settings.clone() }, |_| ());

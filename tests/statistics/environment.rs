@@ -1,7 +1,7 @@
 //! Images of objects under an environment map.
 
 use bssrdf::Model;
-use gather::{Filter, Input, Rendered, Settings};
+use gather::{Filter, Rendered, Settings};
 use glam::{DVec3, Vec3};
 use scene::{
     NormalKind,
@@ -14,7 +14,7 @@ use std::{
 use test_support::{
     EFFORT,
     meshes::{Part, World, sphere, world},
-    pipeline::{cloud, gray, orthographic, settings, stratified},
+    pipeline::{cloud, gray, input, orthographic, settings, stratified},
     z_test::{Estimate, assert_equal},
 };
 
@@ -35,14 +35,7 @@ fn render(environment: Environment, sigma_s: f64, seed: u64) -> Rendered {
     let world = ball(environment);
     let (cloud, media) = (cloud(&world, &stratified(1 << 12, seed)), [gray(20.0, sigma_s, 0.0, 1.3)]);
     let camera = orthographic(DVec3::new(1.0, 2.0, 3.0), 1.1e-2);
-    let input = Input {
-        scene: &world.scene,
-        rays: &world.rays,
-        clouds: from_ref(&cloud),
-        media: &media,
-        calibration: None,
-        camera: &camera,
-    };
+    let input = input(&world, from_ref(&cloud), &media, &camera);
     let settings = settings(Model::StandardDipole, 8, 8);
     gather::render(&input, &Settings { filter: Filter::Box, paths_per_pixel: 2, ..settings }, |_| ())
 }

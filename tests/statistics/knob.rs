@@ -3,7 +3,7 @@
 
 use bssrdf::{Medium, Model, built_in, built_in_names};
 use formats::cloud::Cloud;
-use gather::{Input, Settings, estimator::Estimator, film::Pixel};
+use gather::{Settings, estimator::Estimator, film::Pixel};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use scene::{
@@ -14,7 +14,7 @@ use std::path::Path;
 use test_support::{
     EFFORT,
     meshes::{World, repository_scene, scene_file},
-    pipeline::{cloud, orthographic, settings, stratified},
+    pipeline::{cloud, input, orthographic, settings, stratified},
 };
 
 const ACCURACY: f64 = 0.01;
@@ -47,14 +47,7 @@ impl View {
 
     fn image(&self, medium: &Medium, estimator: Estimator) -> Vec<Pixel> {
         let (media, camera) = (std::slice::from_ref(medium), &self.camera);
-        let input = Input {
-            scene: &self.world.scene,
-            rays: &self.world.rays,
-            clouds: std::slice::from_ref(&self.cloud),
-            media,
-            calibration: None,
-            camera,
-        };
+        let input = input(&self.world, std::slice::from_ref(&self.cloud), media, camera);
         let settings = Settings { estimator, ..settings(Model::DirectionalDipole, SIZE, SIZE) };
         gather::render(&input, &settings, |_| ()).pixels
     }

@@ -6,7 +6,7 @@
 
 use bssrdf::{Medium, Model};
 use formats::cloud::Cloud;
-use gather::{Input, Rendered};
+use gather::Rendered;
 use glam::DVec3;
 use rayon::prelude::*;
 use sample_surface::Choice;
@@ -15,7 +15,7 @@ use std::ops::Range;
 use test_support::{
     EFFORT,
     meshes::{Light, Part, World, quad, rectangle, slab, world},
-    pipeline::{Sampling, by_area, cloud, gray, orthographic, sampled, settings, stratified},
+    pipeline::{Sampling, by_area, cloud, gray, input, orthographic, sampled, settings, stratified},
     z_test::{Estimate, assert_equal, assert_mean},
 };
 
@@ -56,14 +56,7 @@ pub fn image_sum(world: &World, camera: &Camera, cloud: &Cloud, model: Model) ->
 
 /// The same picture, of objects of several media.
 pub fn rendered(world: &World, camera: &Camera, cloud: &Cloud, media: &[Medium], model: Model) -> Rendered {
-    let input = Input {
-        scene: &world.scene,
-        rays: &world.rays,
-        clouds: std::slice::from_ref(cloud),
-        media,
-        calibration: None,
-        camera,
-    };
+    let input = input(world, std::slice::from_ref(cloud), media, camera);
     gather::render(&input, &settings(model, 12, 8), |_| ())
 }
 

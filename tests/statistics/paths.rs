@@ -1,28 +1,21 @@
 //! Camera paths through `gather::render`: interfaces, absorption in a medium, emission.
 
 use bssrdf::{Model, fresnel};
-use gather::{Filter, Input, Rendered, Settings};
+use gather::{Filter, Rendered, Settings};
 use glam::DVec3;
 use scene::Camera;
 use std::slice::from_ref;
 use test_support::{
     EFFORT,
     meshes::{Part, World, slab, sphere, world},
-    pipeline::{by_area, cloud, gray, orthographic, settings},
+    pipeline::{by_area, cloud, gray, input, orthographic, settings},
     z_test::{Estimate, assert_mean},
 };
 
 /// An image of an object of index 1.5 that scatters nothing; `sigma_a` in 1/m.
 fn render(world: &World, camera: &Camera, sigma_a: f64, settings: &Settings) -> Rendered {
     let (cloud, media) = (cloud(world, &by_area(16, 0)), [gray(sigma_a, 0.0, 0.0, 1.5)]);
-    let input = Input {
-        scene: &world.scene,
-        rays: &world.rays,
-        clouds: from_ref(&cloud),
-        media: &media,
-        calibration: None,
-        camera,
-    };
+    let input = input(world, from_ref(&cloud), &media, camera);
     gather::render(&input, settings, |_| ())
 }
 

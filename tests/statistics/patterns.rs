@@ -3,14 +3,14 @@
 
 use crate::means::{HALF_SIZE, corner, image_sum, jelly, lamp, lit_by, over_seeds, sun};
 use bssrdf::Model;
-use gather::{Input, Settings, estimator::Estimator};
+use gather::{Settings, estimator::Estimator};
 use glam::{DVec3, Vec3};
 use sample_surface::{Choice, Pattern};
 use std::slice::from_ref;
 use test_support::{
     EFFORT,
     meshes::{Part, World, rectangle, slab, world},
-    pipeline::{Sampling, by_area, cloud, settings, stratified},
+    pipeline::{Sampling, by_area, cloud, input, settings, stratified},
     z_test::{Estimate, assert_equal},
 };
 
@@ -73,14 +73,7 @@ fn few_samples_have_the_mean_of_many() {
     let mean = |samples: u64, seeds: std::ops::Range<u64>, estimator: Estimator| {
         over_seeds(seeds, |seed| {
             let cloud = cloud(&world, &stratified(samples, seed));
-            let input = Input {
-                scene: &world.scene,
-                rays: &world.rays,
-                clouds: from_ref(&cloud),
-                media: &media,
-                calibration: None,
-                camera: &camera,
-            };
+            let input = input(&world, from_ref(&cloud), &media, &camera);
             let settings = Settings { paths_per_pixel: 2, estimator, seed, ..settings(Model::BetterDipole, 4, 3) };
             gather::render(&input, &settings, |_| ()).pixels.iter().map(|p| p.beauty()).sum()
         })

@@ -4,14 +4,14 @@ use crate::error_bars::{Scene, edge, of_paths};
 use bssrdf::built_in;
 use formats::cloud::{Cloud, Shard};
 use gather::{
-    Input, Settings,
+    Settings,
     estimator::{Estimator, Rule},
 };
 use glam::DVec3;
 use rayon::prelude::*;
 use test_support::{
     EFFORT,
-    pipeline::{Sampling, cloud, orthographic},
+    pipeline::{Sampling, cloud, input, orthographic},
     z_test::{Estimate, assert_equal},
 };
 
@@ -23,14 +23,7 @@ const RUNS: u64 = 128 * EFFORT;
 /// Mean of an image, all channels.
 fn brightness(scene: &Scene, clouds: &[Cloud], settings: &Settings) -> f64 {
     let (media, camera) = ([scene.medium.clone()], orthographic(DVec3::new(1.0, 1.2, 1.5), scene.half_height));
-    let input = Input {
-        scene: &scene.world.scene,
-        rays: &scene.world.rays,
-        clouds,
-        media: &media,
-        calibration: None,
-        camera: &camera,
-    };
+    let input = input(&scene.world, clouds, &media, &camera);
     let pixels = gather::render(&input, settings, |_| ()).pixels;
     pixels.iter().map(|p| p.beauty().element_sum()).sum::<f64>() / pixels.len() as f64
 }

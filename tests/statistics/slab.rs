@@ -1,7 +1,7 @@
 //! Reflectance of a plane: sampling and the exhaustive sum together against the tabulated integrals.
 
 use bssrdf::{Medium, Model, built_in, fresnel};
-use gather::{Input, Settings, estimator::Estimator};
+use gather::{Settings, estimator::Estimator};
 use glam::DVec3;
 use rayon::prelude::*;
 use sample_surface::Choice;
@@ -10,7 +10,7 @@ use std::{f64::consts::PI, slice::from_ref};
 use test_support::{
     EFFORT,
     meshes::{Light, Part, World, graded_disc, world},
-    pipeline::{Lit, Point, Sampling, by_area, cloud, orthographic, settings},
+    pipeline::{Lit, Point, Sampling, by_area, cloud, input, orthographic, settings},
     quadrature::{Annulus, integrate, plane_integral},
     z_test::{Estimate, assert_mean},
 };
@@ -144,14 +144,7 @@ fn seen_at_75_degrees(model: Model, integral: DVec3) {
     let media = [skin()];
     let run = |seed: u64| {
         let cloud = cloud(&world, &sampling(10_000, seed));
-        let input = Input {
-            scene: &world.scene,
-            rays: &world.rays,
-            clouds: from_ref(&cloud),
-            media: &media,
-            calibration: None,
-            camera: &camera,
-        };
+        let input = input(&world, from_ref(&cloud), &media, &camera);
         let settings = Settings { paths_per_pixel: 256, seed, ..settings(model, 1, 1) };
         gather::render(&input, &settings, |_| ()).pixels[0].beauty()
     };
