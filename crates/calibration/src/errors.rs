@@ -1,7 +1,7 @@
 //! Estimates of how wrong the model was, and is with the factor.
 
 use crate::{
-    fit::{Fit, Smoothness},
+    fit::{Counts, Fit, Smoothness},
     patches::Patches,
     tally::Counted,
 };
@@ -48,14 +48,15 @@ const DARK: f64 = 0.01;
 /// Patches that fewer counts leave than this are unresolved.
 const FEW: f64 = 4.0;
 
-/// What calibration cannot mend on smooth shapes, as relMSE: the change of the light within a cell, and with the angle
-/// of view (docs/reports/accuracy.md).
+/// What calibration cannot mend on smooth shapes, as relMSE of bright light: the change of the light within a cell, and
+/// with the angle of view (docs/reports/accuracy.md).
 const FLOOR: f64 = 2e-4;
 
 /// The relMSE of a channel before and after the fit, at the size of a cell (docs/method.md 16.6).
 ///
 /// The misfits of the two halves of the walks at a cell are independent, so that their product estimates the square of
-/// what both share, the error of the model, without any noise on average.
+/// what both share, without any noise on average: what the fit leaves. The fits of the halves themselves have less noise
+/// by far, and their product is most of the model's error; the misfits are a part of it where they exceed their scatter.
 pub fn channel_errors(
     smoothness: &Smoothness,
     patches: &Patches,
@@ -65,7 +66,7 @@ pub fn channel_errors(
     fit: &Fit,
 ) -> ChannelErrors {
     let [both, one, two] = [&fit.both, &fit.halves[0], &fit.halves[1]].map(|f| smoothness.at_cells(f));
-    let (mut before, mut misfit, mut noise, mut spread) = (0.0, 0.0, 0.0, 0.0);
+    let (mut smooth, mut misfit, mut noise, mut spread, mut bright) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for cell in 0..both.len() {
         let (share, model, expected) = (light.share[cell], light.radiance[channel][cell], counted.model[cell]);
         if expected <= 0.0 {
@@ -74,21 +75,28 @@ pub fn channel_errors(
         let truth = model * both[cell].exp();
         let weight = share / (truth * truth + DARK);
         let [a, b] = [0, 1].map(|half| counted.halves[half][cell] / expected);
-        before += weight * model * model * (a - 1.0) * (b - 1.0);
+        smooth += weight * model * model * one[cell].exp_m1() * two[cell].exp_m1();
+        bright += weight * truth * truth;
         let product = truth * truth * (a * (-one[cell]).exp() - 1.0) * (b * (-two[cell]).exp() - 1.0);
         misfit += weight * product;
         spread += (weight * product).powi(2);
         noise += weight * (truth * 0.5 * (one[cell] - two[cell])).powi(2);
     }
-    let mut left = vec![0.0; patches.count()];
-    for half in &counted.halves {
-        half.iter().enumerate().for_each(|(cell, n)| left[patches.patch_of_cell(cell as u32) as usize] += n);
-    }
-    let unresolved = left.iter().filter(|n| **n < FEW).count() as f64 / left.len() as f64;
+    let unresolved = unresolved(patches, counted);
+    let scatter = spread.sqrt();
     ChannelErrors {
-        before: before.max(0.0),
-        after: misfit.max(0.0) + noise + FLOOR,
-        uncertainty: spread.sqrt() + noise,
+        before: smooth.max(0.0) + if misfit > scatter { misfit } else { 0.0 },
+        after: misfit.max(0.0) + noise + FLOOR * bright,
+        uncertainty: scatter + noise,
         unresolved,
     }
+}
+
+/// The share of patches that few walks leave, of those that the model sees light leave: not of those inside the solid.
+fn unresolved(patches: &Patches, counted: &Counted) -> f64 {
+    let Counts { model, halves } = counted.at_patches(patches);
+    let few = |(model, left): (&f64, f64)| (*model > 0.0).then_some(left < FEW);
+    let left = halves[0].iter().zip(&halves[1]).map(|(a, b)| a + b);
+    let seen: Vec<bool> = model.iter().zip(left).filter_map(few).collect();
+    seen.iter().filter(|few| **few).count() as f64 / seen.len().max(1) as f64
 }

@@ -177,10 +177,10 @@ fn calibrate_material(
     let scatterer = Arc::new(Scatterer::new(task.model, medium, sampled.area_m2.sqrt()));
     let summation = Summation::of_clouds(scatterer, task.clouds, slot);
     let areas = surface.cell_areas(mesh, &patches, sampled.index, task.seed);
-    let sums = surface.light(&summation, task.seed, progress);
-    let light = Light::new(&sums, &cell_of, &areas, medium.eta);
     let is_translucent = |m: u16| shards::materials(task.clouds).iter().any(|s| s.index == m);
     let solid = Solid::new(mesh, task.rays, sampled.index, is_translucent).ok_or_else(dark)?;
+    let sums = surface.light(&summation, &solid, task.seed, progress);
+    let light = Light::new(&sums, &cell_of, &areas, medium.eta);
     let entries = Entries::new(task.clouds, slot, medium.eta);
     let walking =
         Walking { mesh, solid: &solid, entries: &entries, patches: &patches, eta: medium.eta, seed: task.seed, slot };

@@ -13,6 +13,7 @@ use sums::{
     estimator::{Estimator, Scratch},
     samples::Exit,
 };
+use walks::Solid;
 
 /// Points on the surface of a material.
 pub struct Surface {
@@ -73,16 +74,19 @@ impl Surface {
         self.points.iter().map(|p| Site { position: p.position, normal: p.geometric_normal }).collect()
     }
 
-    /// The sum over the cloud at each point, W/(m² sr): the radiance that leaves, without `T21`.
-    pub fn light(&self, summation: &Summation, seed: u64, progress: impl Fn(u64) + Sync) -> Vec<DVec3> {
+    /// The sum over the cloud at each point, W/(m² sr): the radiance that leaves, without `T21`. None leaves from points
+    /// inside another part of the solid.
+    pub fn light(&self, summation: &Summation, solid: &Solid, seed: u64, progress: impl Fn(u64) + Sync) -> Vec<DVec3> {
         let stream = Stream::new(seed, Purpose::CalibrationSum);
         let estimator = Estimator::Cut { accuracy: ACCURACY };
         let light = |scratch: &mut Scratch, (index, point): (usize, &SurfacePoint)| {
+            progress(1);
+            if solid.is_buried(point.position, point.geometric_normal) {
+                return DVec3::ZERO;
+            }
             let item = stream.item(index as u64);
             let exit = |half: usize| Exit::new(point.position, point.normal, item.bits(half as u64));
-            let radiance = summation.whole(estimator, exit, scratch).radiance;
-            progress(1);
-            radiance
+            summation.whole(estimator, exit, scratch).radiance
         };
         self.points.par_iter().enumerate().map_init(Scratch::default, light).collect()
     }

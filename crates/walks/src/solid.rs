@@ -118,6 +118,20 @@ impl<'a> Solid<'a> {
         None
     }
 
+    /// Whether a point of the boundary lies inside another closed part of it, where overlapping parts fill their union: no
+    /// light leaves there. `normal` is that of the point's triangle.
+    pub fn is_buried(&self, position: DVec3, normal: DVec3) -> bool {
+        let (mut origin, mut left) = (position + normal * self.nudge, 0);
+        while let Some(hit) = self.rays.closest(origin, normal, None) {
+            if self.kind(hit.triangle) == Kind::Boundary {
+                let leaves = self.point(hit.triangle, hit.weights).geometric_normal.dot(normal) > 0.0;
+                left += if leaves { 1 } else { -1 };
+            }
+            origin += normal * (hit.distance + self.nudge);
+        }
+        left > 0
+    }
+
     /// Where the walk begins of light that arrives at a point of the boundary from `towards_light` and is refracted by
     /// `normal`, which may be interpolated; by the triangle's own where that would lead out of the medium
     /// (docs/method.md 14.1). None if there is no triangle, or it faces away from the light.

@@ -118,3 +118,29 @@ fn a_sample_is_found_on_its_triangle() {
         assert!(solid.triangle_at(DVec3::new(0.0, 0.0, 0.5), DVec3::Z).is_none());
     }
 }
+
+/// Points of the boundary inside another part of it are buried; those of a hollow, and of what lies in it, are not.
+///
+/// Seen to catch: every surface that is met counted as left.
+#[test]
+fn points_inside_another_part_are_buried() {
+    let turned = |mesh: Mesh| Mesh { triangles: mesh.triangles.iter().map(|[a, b, c]| [*a, *c, *b]).collect(), ..mesh };
+    let joined = |parts: [Mesh; 3]| {
+        let mut all = Mesh::default();
+        for part in parts {
+            let first = all.positions.len() as u32;
+            all.positions.extend(part.positions);
+            all.triangles.extend(part.triangles.iter().map(|t| t.map(|v| v + first)));
+        }
+        one(all)
+    };
+    let buried = |world: &World| {
+        let solid = Solid::new(&world.scene.mesh, &world.rays, 0, |_| true).expect("it has triangles");
+        let at = |k: usize| world.scene.mesh.point(k as u32, [0.3, 0.3, 0.4], NormalKind::Geometric);
+        let points = (0..world.scene.mesh.triangles.len()).map(at);
+        points.filter(|p| solid.is_buried(p.position, p.geometric_normal)).count()
+    };
+    let sphere = |radius: f64| meshes::sphere(radius, 2);
+    assert_eq!(buried(&joined([sphere(5.0), sphere(4.0), sphere(3.0)])), 2 * 128);
+    assert_eq!(buried(&joined([sphere(5.0), turned(sphere(4.0)), sphere(3.0)])), 0);
+}
