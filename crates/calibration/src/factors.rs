@@ -13,8 +13,10 @@ pub struct Factors {
     /// For each patch, the gradient of the logarithm of the light of each channel, 1/m.
     gradients: Vec<[DVec3; 3]>,
     lobe: [[f64; 2]; 3],
-    /// `l/η = 1/(σ_t' η)` of each channel, m.
-    shift: [f64; 3],
+    /// The smallest `l/η = 1/(σ_t' η)` of the channels, m: so far the model's point is moved.
+    moved: f64,
+    /// The rest of `l/η` of each channel, m.
+    rest: [f64; 3],
 }
 
 /// The largest logarithm of the factor by the shift. Light that is diffuse changes by less within a mean free path.
@@ -34,7 +36,17 @@ impl Factors {
             // Where nothing is scattered there is nothing to shift.
             if reduced > VACUUM { 1.0 / (reduced * medium.eta) } else { 0.0 }
         });
-        Factors { patches: Patches::from_facts(&material.surface), log_factors, gradients, lobe: material.lobe, shift }
+        let shortest = shift.into_iter().filter(|s| *s > 0.0).fold(f64::INFINITY, f64::min);
+        let moved = if shortest.is_finite() { shortest } else { 0.0 };
+        let rest = shift.map(|s| (s - moved).max(0.0));
+        let patches = Patches::from_facts(&material.surface);
+        Factors { patches, log_factors, gradients, lobe: material.lobe, moved, rest }
+    }
+
+    /// How far from a point of the surface the model is evaluated for its light towards the unit vector `view`, m
+    /// (docs/method.md 16.5).
+    pub fn offset(&self, site: &Site, view: DVec3) -> DVec3 {
+        (site.normal.dot(view) * site.normal - view) * self.moved
     }
 
     /// `a` and `b` of the exit lobe `a + b cosθ` of each channel.
@@ -53,7 +65,7 @@ impl Factors {
             sum += weight * DVec3::from_array(self.log_factors[patch as usize].map(f64::from));
             shift += weight * DVec3::from_array(gradients.map(|g| g.dot(along)));
         });
-        let bounded = (shift * DVec3::from_array(self.shift)).clamp(DVec3::splat(-MAX_SHIFT), DVec3::splat(MAX_SHIFT));
+        let bounded = (shift * DVec3::from_array(self.rest)).clamp(DVec3::splat(-MAX_SHIFT), DVec3::splat(MAX_SHIFT));
         let lobe = DVec3::from_array(self.lobe.map(|[a, b]| a + b * cosine));
         lobe * (sum - bounded).exp()
     }

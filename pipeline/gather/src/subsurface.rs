@@ -23,6 +23,13 @@ impl TranslucentObject<'_> {
             }
         }
     }
+
+    /// Where the model is evaluated for the light that leaves at a point for the eye's `view`, m.
+    fn evaluated_at(&self, point: &SurfacePoint, view: &View) -> DVec3 {
+        let site = Site { position: point.position, normal: point.geometric_normal };
+        let offset = self.factors.as_ref().map_or(DVec3::ZERO, |factors| factors.offset(&site, view.direction));
+        point.position + offset
+    }
 }
 
 impl Renderer<'_> {
@@ -44,8 +51,8 @@ impl Renderer<'_> {
         if let Some(walks) = &object.walks {
             return self.walk(state, walks, point, view.normal, light, context);
         }
-        let exit =
-            |half: usize| Exit::new(point.position, view.normal, state.key.bits(2 * state.dimension + half as u64));
+        let position = object.evaluated_at(point, view);
+        let exit = |half: usize| Exit::new(position, view.normal, state.key.bits(2 * state.dimension + half as u64));
         let estimator = self.estimator_for(state.throughput.max_element());
         let scratch = &mut context.scratch[point.material as usize];
         let mut leaving = if self.gathers_by_shard() {
