@@ -49,6 +49,13 @@ impl Program {
         }
     }
 
+    /// What the program prints of its version.
+    pub fn version(&self) -> Result<String, Error> {
+        let output = Command::new(&self.path).arg("--version").stdin(Stdio::null()).output();
+        let output = output.map_err(|source| Error::Start { program: self.path.clone(), source })?;
+        Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+    }
+
     /// Runs the program to its end; `statistics` is the file for its statistics.
     pub fn run(&self, arguments: &[String], statistics: &Path) -> Result<Spent, Error> {
         self.run_list(arguments, statistics, statistics)
