@@ -85,7 +85,7 @@ impl Studio<'_> {
 
     /// The truth of a medium on a shape.
     fn truth(&self, shape: &Shape, medium: &str) -> Result<Truth, Error> {
-        self.with_shot(shape, medium, |shot| self.exact.truth(shot, self.effort.of(4, 64)))
+        self.with_shot(shape, medium, |shot| self.exact.truth(shot, self.effort.of(4, shape.exact_paths)))
     }
 
     /// An image by each model of a medium on a shape.

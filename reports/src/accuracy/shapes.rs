@@ -27,6 +27,8 @@ pub struct Shape {
     eye: DVec3,
     target: DVec3,
     yfov_degrees: f64,
+    /// Paths for each pixel of an exact image, so many that two of skim milk take about a minute of processor time.
+    pub exact_paths: u32,
 }
 
 /// All shapes. Two are lit from the side of the camera, three from behind.
@@ -39,6 +41,7 @@ pub const SHAPES: [Shape; 5] = [
         eye: DVec3::new(0.0, 0.0, 0.12),
         target: DVec3::ZERO,
         yfov_degrees: 24.0,
+        exact_paths: 64,
     },
     Shape {
         name: "chess",
@@ -49,6 +52,7 @@ pub const SHAPES: [Shape; 5] = [
         eye: DVec3::new(0.01, 0.06, 0.15),
         target: DVec3::new(-0.02, 0.018, 0.0),
         yfov_degrees: 18.0,
+        exact_paths: 24,
     },
     Shape {
         name: "piglet",
@@ -58,6 +62,7 @@ pub const SHAPES: [Shape; 5] = [
         eye: DVec3::new(0.07, 0.1, 0.3),
         target: DVec3::new(0.001, 0.045, 0.0),
         yfov_degrees: 23.0,
+        exact_paths: 24,
     },
     Shape {
         name: "bear",
@@ -67,6 +72,7 @@ pub const SHAPES: [Shape; 5] = [
         eye: DVec3::new(0.002, 0.08, 0.178),
         target: DVec3::new(0.002, 0.028, 0.002),
         yfov_degrees: 25.0,
+        exact_paths: 24,
     },
     Shape {
         name: "sheet",
@@ -77,6 +83,7 @@ pub const SHAPES: [Shape; 5] = [
         eye: DVec3::new(0.04, 0.05, 0.2),
         target: DVec3::new(0.0, 0.0, -0.003),
         yfov_degrees: 19.0,
+        exact_paths: 24,
     },
 ];
 
