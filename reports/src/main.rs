@@ -105,6 +105,7 @@ mod tests {
     #[test]
     fn the_command_line_is_checked() {
         assert!(accepts("reports --output c speed --meshes a --programs b --full"));
+        assert!(accepts("reports --output c accuracy --programs b --tiny"));
         assert!(!accepts("reports speed --meshes a --programs b"));
         assert!(!accepts("reports --output c speed --meshes a --programs b --fast"));
     }
