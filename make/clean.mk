@@ -1,8 +1,13 @@
 # Removal: `make clean` and `make clean-images` find the .settings files in OUT that begin with their own names, remove
-# what was made with them, and then the folders that are empty. No other file in OUT was made by make, whatever its
-# name, and no link in OUT is followed. Offers clean and clean-images.
+# what was made with them, and then the folders that are empty. `make clean` also removes the exact images of reports,
+# whose names in OUT/truth are digests. No other file in OUT was made by make, whatever its name, and no link in OUT is
+# followed. Offers clean and clean-images.
 
 .PHONY: clean clean-images
+
+# Six times four hexadecimal digits.
+HEX4   := [0-9a-f][0-9a-f][0-9a-f][0-9a-f]
+DIGEST := $(HEX4)$(HEX4)$(HEX4)$(HEX4)$(HEX4)$(HEX4)
 
 # $(1) images or all.
 define remove
@@ -23,6 +28,7 @@ define remove
     while [ "$$folder" != . ] && rmdir "$$folder" 2>/dev/null; do \
       case $$folder in */*) folder=$${folder%/*} ;; *) folder=. ;; esac; done; \
   done' sh {} +); \
+[ $(1) = images ] || [ -L "$$out/truth" ] || { rm -f "$$out"/truth/$(DIGEST)-[12].exr; rmdir "$$out/truth" 2>/dev/null; }; \
 rmdir "$$out" 2>/dev/null || [ -z "$$(ls -A "$$out")" ] || [ $(1) = images ] || \
   printf '%s\n' $(call quoted,$(OUT) stays: it holds what this Makefile did not make)
 endef

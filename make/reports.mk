@@ -5,9 +5,9 @@
 
 REPORTS := $(CARGO) run --release --quiet --package reports -- --output docs/reports
 
-## accuracy: what the models are worth, against random walks: docs/reports/accuracy.md and its pictures (minutes)
-accuracy:
-	$(REPORTS) accuracy
+## accuracy: what the models are worth, against random walks: docs/reports/accuracy.md and its pictures (an hour; exact images stay in OUT)
+accuracy: build
+	$(REPORTS) accuracy --programs $(BIN) --truths '$(OUT)/truth'
 
 # The folder in which `make curve` finds bunny.glb and dragon.glb, with peers/ in the folder above. Without them it
 # renders a scene of data/.

@@ -7,7 +7,6 @@ mod markdown;
 mod program;
 mod scale;
 mod speed;
-#[expect(dead_code, reason = "the reports that measure against the truth are to use it")]
 mod truth;
 
 use clap::{Parser, Subcommand};
@@ -31,7 +30,17 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Report {
     /// The models against random walks: accuracy.md and its pictures
-    Accuracy,
+    Accuracy {
+        /// Folder of sample-surface and gather
+        #[arg(long)]
+        programs: PathBuf,
+        /// Folder that exact images are kept in
+        #[arg(long, default_value = "out/truth")]
+        truths: PathBuf,
+        /// A minute, to try the program itself: the figures mean nothing
+        #[arg(long)]
+        tiny: bool,
+    },
     /// Time against error: speed.md, its plots and speed.csv
     Speed {
         /// Folder of bunny.glb and dragon.glb
@@ -68,7 +77,10 @@ fn main() -> ExitCode {
 fn run(Arguments { output, report }: &Arguments) -> Result<(), Box<dyn std::error::Error>> {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data");
     match report {
-        Report::Accuracy => accuracy::write(output)?,
+        Report::Accuracy { programs, truths, tiny } => {
+            let effort = if *tiny { accuracy::Effort::Tiny } else { accuracy::Effort::Whole };
+            accuracy::write(programs, truths, effort, output)?;
+        }
         Report::Speed { meshes, programs, full, tiny } => {
             let effort = match (full, tiny) {
                 (true, _) => Effort::Full,
@@ -93,6 +105,7 @@ mod tests {
     #[test]
     fn the_command_line_is_checked() {
         assert!(accepts("reports --output c speed --meshes a --programs b --full"));
+        assert!(accepts("reports --output c accuracy --programs b --tiny"));
         assert!(!accepts("reports speed --meshes a --programs b"));
         assert!(!accepts("reports --output c speed --meshes a --programs b --fast"));
     }

@@ -154,12 +154,13 @@ impl Truth {
     /// of a and that of b are independent. The radiance `white` counts as 1: that of a white Lambertian surface that
     /// faces the light, which is 1 for an irradiance of π.
     ///
-    /// The object is where the references have scattered light.
+    /// The object is where the image or one of the references has scattered light: a choice by the references alone
+    /// would prefer pixels in which few paths met a small light.
     pub fn relative_mse(&self, test: &Scattered, block: usize, white: f64) -> [f64; 3] {
         let [a, b] = &self.references.each_ref().map(|r| r.blocks(block).pixels);
         let test = test.blocks(block).pixels;
         let (mut sum, mut count) = ([0.0; 3], 0.0);
-        for ((t, a), b) in test.iter().zip(a).zip(b).filter(|((_, a), b)| lit(a) || lit(b)) {
+        for ((t, a), b) in test.iter().zip(a).zip(b).filter(|((t, a), b)| lit(t) || lit(a) || lit(b)) {
             for c in 0..3 {
                 let [t, a, b] = [t[c], a[c], b[c]].map(|x| x / white);
                 sum[c] += (t - a) * (t - b) / ((0.5 * (a + b)).powi(2) + 0.01);
@@ -200,7 +201,7 @@ mod tests {
         let references = [picture(&[0.9, 1.1, 0.0, 1.0]), picture(&[1.0, 1.0, 0.0, 1.0])];
         let truth = Truth { references };
         assert!(truth.relative_mse(&picture(&[1.0; 4]), 1, 1.0)[0].abs() < 1e-15);
-        let off = truth.relative_mse(&picture(&[1.0, 1.0, 5.0, 1.1]), 1, 1.0)[0];
+        let off = truth.relative_mse(&picture(&[1.0, 1.0, 0.0, 1.1]), 1, 1.0)[0];
         assert!((off - 0.01 / 1.01 / 3.0).abs() < 1e-9, "{off}");
         let doubled = truth.ratio(&picture(&[2.0, 2.0, 0.0, 2.0]));
         assert_eq!(doubled, [2.0; 3]);

@@ -39,6 +39,10 @@ pub struct Split {
     pub value: f64,
 }
 
+/// The length that a unit normal counts as, in units of the side of a square patch. Surfaces whose normals differ by more
+/// than forty degrees are apart: across the rim of a thin part, one side is lit and the other dark.
+const NORMALS: f64 = 3.0;
+
 /// The support of a patch's weight, in units of the side of a square patch.
 const SUPPORT: f64 = 2.0;
 
@@ -50,7 +54,7 @@ impl Patches {
     /// as well.
     pub fn new(sites: &[Site], area: f64, depth: u32) -> (Patches, Vec<u32>) {
         let count = 1usize << depth;
-        let normal_scale = (area / count as f64).sqrt();
+        let normal_scale = NORMALS * (area / count as f64).sqrt();
         let points: Vec<Six> = sites.iter().map(|s| six(s, normal_scale)).collect();
         let mut order: Vec<u32> = (0..points.len() as u32).collect();
         let mut splits = vec![Split { axis: 0, value: 0.0 }; (count << CELL_LEVELS) - 1];
@@ -203,14 +207,18 @@ impl Patches {
 
     /// `(1 − d²/R²)²` of the distance `d` from the center of patch `j`; 0 beyond the support `R`.
     fn weight(&self, point: &Six, j: u32) -> f64 {
-        let support2 = (SUPPORT * self.normal_scale).powi(2);
-        let rest = (1.0 - distance2(point, &self.centers[j as usize]) / support2).max(0.0);
+        let rest = (1.0 - distance2(point, &self.centers[j as usize]) / self.support().powi(2)).max(0.0);
         rest * rest
+    }
+
+    /// The distance from the center of a patch at which its weight ends, m.
+    fn support(&self) -> f64 {
+        SUPPORT / NORMALS * self.normal_scale
     }
 
     /// The patches whose support meets the ball of each patch with its radius in the six dimensions.
     fn neighbors(&self) -> Vec<Vec<u32>> {
-        let support = SUPPORT * self.normal_scale;
+        let support = self.support();
         let of = |(center, radius): (&Six, &f64)| {
             let reach2 = (support + radius).powi(2);
             let near = |j: &u32| distance2(center, &self.centers[*j as usize]) < reach2;
