@@ -14,23 +14,23 @@ const FULL: f64 = 0.5;
 /// Where nothing is.
 const BACKGROUND: [u8; 3] = [16; 3];
 const PAPER: [u8; 3] = [245; 3];
-const INK: [u8; 3] = [225; 3];
+const INK: [u8; 3] = [40; 3];
 
-/// The truth and the image of each model in a row, each with its name, and below each model its error.
+/// Space between columns, pixels: names are wider than pictures.
+const GAP: usize = 8;
+
+/// The truth and the image of each model in a row, each below its name, and below each model its error.
 pub fn strip(truth: &Scattered, images: &[Scattered; MODELS.len()]) -> Result<Vec<u8>, png::EncodingError> {
-    let (width, height, exposure) = (truth.width, truth.height, exposure(truth));
-    let mut sheet = Picture::new(width * (images.len() + 1), 2 * height, PAPER);
-    let mut show = |column: usize, image: &Scattered, name: &str| {
-        let mut tile = toned(image, exposure);
-        font::dots(name, width - 4).for_each(|(x, y)| tile.dot(x + 3, y + 3, INK));
-        sheet.draw(&tile, column * width, 0);
-    };
-    show(0, truth, "truth");
-    for (k, image) in images.iter().enumerate() {
-        show(k + 1, image, MODELS[k].0);
-    }
-    for (k, image) in images.iter().enumerate() {
-        sheet.draw(&errors(truth, image), (k + 1) * width, height);
+    let (width, height, exposure) = (truth.width + GAP, truth.height, exposure(truth));
+    let mut sheet = Picture::new(width * (images.len() + 1), font::LINE + 2 * height + GAP, PAPER);
+    let named = MODELS.map(|(name, _)| name).into_iter().zip(images);
+    for (column, (name, image)) in [("truth", truth)].into_iter().chain(named).enumerate() {
+        let left = column * width;
+        font::dots(name, width).for_each(|(x, y)| sheet.dot(left + x, y + 1, INK));
+        sheet.draw(&toned(image, exposure), left, font::LINE);
+        if column > 0 {
+            sheet.draw(&errors(truth, image), left, font::LINE + height + GAP);
+        }
     }
     sheet.encode(png::Compression::High, &[])
 }
