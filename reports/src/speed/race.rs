@@ -65,9 +65,9 @@ pub fn race(harness: &mut Harness, subject: &Subject, medium: Medium) -> Result<
         }
     }
     harness.forget_clouds();
-    findings.plots.push((format!("{}-{}", subject.name, medium.name), plot(&case, &runners)));
     let title = format!("{}, {}: {side} x {side}", subject.name, medium.name);
-    findings.section(title, report(&case, &clouds, &runners));
+    let (name, plot) = (format!("{}-{}", subject.name, medium.name), plot(&case, &runners));
+    findings.plotted(title, name, plot, report(&case, &clouds, &runners));
     Ok(findings)
 }
 
