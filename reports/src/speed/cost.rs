@@ -19,7 +19,7 @@ const ROUNDS: u32 = 3;
 pub fn cost(harness: &mut Harness, subject: &Subject) -> Result<Findings, Error> {
     let mut findings = Findings::default();
     let samples = harness.effort.of(3_000, 1_000_000, 1_000_000);
-    let side = harness.effort.of(32, 512, 512);
+    let [side, large] = harness.effort.of([32, 64], [256, 512], [256, 512]);
     let dipole = harness.all();
     let ours = Configuration { model: Model::HalfSpace, ..dipole };
     let (mut rows, mut worst) = (Vec::new(), 0.0f64);
@@ -41,12 +41,12 @@ pub fn cost(harness: &mut Harness, subject: &Subject) -> Result<Findings, Error>
     findings.targets.push(Target::at_most(what, 1.3, Some(worst), "measured"));
     harness.say(&format!("{} marble: cost of a calibration", subject.name));
     let walks = Some(harness.effort.of(3_000, 300_000, 300_000));
-    let image = Shot { samples, spp: 16, size: [side; 2], walks, threads: 1, ..harness.shot(subject, MARBLE, ours) };
+    let image = Shot { samples, spp: 16, size: [large; 2], walks, threads: 1, ..harness.shot(subject, MARBLE, ours) };
     let taken = harness.take(&image)?;
     let (calibration, gather) = (taken.calibrating.map_or(f64::NAN, |c| c.cpu), taken.gathering.cpu);
-    let what = format!("calibration, marble, over an image of {side} x {side} and 16 paths");
+    let what = format!("calibration, marble, over an image of {large} x {large} and 16 paths");
     rows.push(vec![what, three(calibration), three(gather), three(calibration / gather)]);
-    let what = format!("{}: calibration of marble over an image of {side} x {side}, 16 paths, CPU s", subject.name);
+    let what = format!("{}: calibration of marble over an image of {large} x {large}, 16 paths, CPU s", subject.name);
     findings.targets.push(Target::at_most(what, 1.0, Some(calibration / gather), "measured"));
     harness.forget_clouds();
     let text = format!(

@@ -60,7 +60,7 @@ fn method(harness: &Harness, remarks: &[String]) -> String {
 
 /// Explanations of the figures above.
 const WHY: &str = "\
-Lines of the plots of races (512 x 512) are a model's, fitted to few paths a pixel; dots are runs. With ten paths and \
+Lines of the plots of races are a model's, fitted to few paths a pixel; dots are runs. With ten paths and \
 more the cut's own share (`--accuracy`, one per cent of a pixel whatever the paths) remains, so runs err more than the \
 model says: the tables of runs are the measure. The **dragon** takes long to 1 % because the directional dipole has \
 poles at grazing light in creases: a few pixels hold most of the error. Its frame's time goes, by a sampling profiler, \

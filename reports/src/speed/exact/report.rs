@@ -23,7 +23,12 @@ pub fn add(findings: &mut Findings, race: &Race) {
 fn plot(race: &Race, names: &str) -> Plot {
     let mut curves = Vec::new();
     for (way, runs) in &race.runs {
-        curves.push(curve(way.label, runs, |run| run.cpu));
+        let mut own = curve(way.label, runs, |run| run.cpu);
+        if way.label == REFERENCE {
+            // Its error is noise, which falls as 1/time.
+            own.line.extend(race.reference_product().map(|product| (REACH, product / REACH)));
+        }
+        curves.push(own);
         if way.label == CALIBRATED {
             curves.push(curve("the same, next camera", runs, |run| run.gather));
         }
@@ -37,8 +42,11 @@ fn plot(race: &Race, names: &str) -> Plot {
     }
 }
 
+/// CPU seconds up to which exact walks are drawn beyond their runs.
+const REACH: f64 = 100.0;
+
 /// CPU seconds in which other renderers are drawn.
-const RANGE: [f64; 2] = [0.3, 100.0];
+const RANGE: [f64; 2] = [0.3, 30.0];
 
 fn curve(label: &str, runs: &[Run], seconds: impl Fn(&Run) -> f64) -> Curve {
     let points: Vec<(f64, f64)> = runs.iter().map(|r| (seconds(r), r.error())).filter(|p| p.1 > 0.0).collect();
@@ -79,7 +87,7 @@ object of (t - a)(t - b)/(r² + 0.01), with two independent exact images a and b
 of their noise; the plots have the mean of the channels. CPU seconds are of whole processes on one thread: sampling, \
 calibration and image; `next camera` is what another image of the same cloud and calibration takes. In the plots, the \
 samples, paths and walks of each way grow together. Other renderers are drawn from their measured figures, as the \
-error of the converged image plus noise that falls as 1/time.
+error of the converged image plus noise that falls as 1/time; the thin lines have no runs.
 ";
 
 fn runs(race: &Race) -> String {
