@@ -20,7 +20,7 @@ pub struct Plot {
     pub curves: Vec<Curve>,
 }
 
-const WIDTH: f64 = 760.0;
+const WIDTH: f64 = 790.0;
 const HEIGHT: f64 = 440.0;
 /// Left, top, right and bottom of the area that the curves fill.
 const AREA: [f64; 4] = [70.0, 40.0, 560.0, 385.0];

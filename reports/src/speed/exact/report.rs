@@ -54,7 +54,12 @@ fn curve(label: &str, runs: &[Run], seconds: impl Fn(&Run) -> f64) -> Curve {
 }
 
 fn text(race: &Race) -> String {
-    format!("{}\n\n{}\nOther renderers:\n\n{}", reading(race), runs(race), others(race))
+    format!(
+        "{}\n\n{}\nOther renderers: pbrt-v3 (photon beam diffusion), Cycles 4.5, POV-Ray 3.7, Mitsuba 3.9.\n\n{}",
+        reading(race),
+        runs(race),
+        others(race)
+    )
 }
 
 /// What the figures say.

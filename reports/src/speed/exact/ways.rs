@@ -35,11 +35,11 @@ pub fn ways(effort: Effort) -> Vec<Way> {
     let pairs = |list: &[(u64, u64)]| list.iter().map(|(samples, spp)| step(*samples, *spp, None)).collect::<Vec<_>>();
     let noted = effort.of(NOTED[..1].to_vec(), NOTED.to_vec(), NOTED.to_vec());
     let mut ways = vec![Way { label: "note", configuration: note, steps: pairs(&noted) }];
-    let summed = effort.of(SUMMED[..2].to_vec(), SUMMED[..5].to_vec(), SUMMED.to_vec());
+    let summed = effort.of(SUMMED[..2].to_vec(), SUMMED.to_vec(), SUMMED.to_vec());
     for model in [MODEL, Model::BetterDipole, Model::StandardDipole, Model::HalfSpace] {
         ways.push(Way { label: model.name(), configuration: fast(model.name(), model), steps: pairs(&summed) });
     }
-    let steps = effort.of(CALIBRATIONS[..1].to_vec(), CALIBRATIONS[..4].to_vec(), CALIBRATIONS.to_vec());
+    let steps = effort.of(CALIBRATIONS[..1].to_vec(), CALIBRATIONS[..5].to_vec(), CALIBRATIONS.to_vec());
     ways.push(Way { label: CALIBRATED, configuration: fast(CALIBRATED, Model::HalfSpace), steps });
     let paths = effort.of(vec![1], vec![1, 4, 16], vec![1, 4, 16, 64]);
     let configuration = Configuration { summing: Summing::Walks, ..fast(REFERENCE, Model::HalfSpace) };
@@ -56,12 +56,13 @@ const NOTED: [(u64, u64); 4] = [(3_000, 1), (10_000, 2), (30_000, 4), (100_000, 
 const SUMMED: [(u64, u64); 6] =
     [(10_000, 1), (30_000, 2), (100_000, 4), (300_000, 8), (1_000_000, 16), (3_000_000, 32)];
 
-const CALIBRATIONS: [Step; 5] = [
-    step(100_000, 2, Some(10_000)),
-    step(300_000, 4, Some(30_000)),
-    step(1_000_000, 8, Some(100_000)),
-    step(1_000_000, 16, Some(300_000)),
-    step(3_000_000, 32, Some(1_000_000)),
+const CALIBRATIONS: [Step; 6] = [
+    step(100_000, 2, Some(3_000)),
+    step(300_000, 4, Some(10_000)),
+    step(1_000_000, 8, Some(30_000)),
+    step(2_000_000, 16, Some(100_000)),
+    step(3_000_000, 32, Some(300_000)),
+    step(4_000_000, 64, Some(1_000_000)),
 ];
 
 const fn step(samples: u64, spp: u64, walks: Option<u64>) -> Step {
