@@ -12,7 +12,7 @@ accuracy: build
 # The folder in which `make curve` finds bunny.glb and dragon.glb, with peers/ in the folder above. Without them it
 # renders a scene of data/.
 MESHES ?= data/scenes
-CURVE  := $(REPORTS) speed --meshes $(MESHES) --programs $(BIN)
+CURVE  := $(REPORTS) speed --meshes $(MESHES) --programs $(BIN) --truths '$(OUT)/truth'
 
 ## curve: time against error: docs/reports/speed.md with its plots and raw data (minutes; MESHES=folder of bunny.glb, dragon.glb)
 curve: build

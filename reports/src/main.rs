@@ -49,6 +49,9 @@ enum Report {
         /// Folder of sample-surface and gather
         #[arg(long)]
         programs: PathBuf,
+        /// Folder in which exact images are kept
+        #[arg(long)]
+        truths: PathBuf,
         /// Larger clouds and more runs: an hour instead of minutes
         #[arg(long)]
         full: bool,
@@ -81,13 +84,13 @@ fn run(Arguments { output, report }: &Arguments) -> Result<(), Box<dyn std::erro
             let effort = if *tiny { accuracy::Effort::Tiny } else { accuracy::Effort::Whole };
             accuracy::write(programs, truths, effort, output)?;
         }
-        Report::Speed { meshes, programs, full, tiny } => {
+        Report::Speed { meshes, programs, truths, full, tiny } => {
             let effort = match (full, tiny) {
                 (true, _) => Effort::Full,
                 (_, true) => Effort::Tiny,
                 _ => Effort::Quick,
             };
-            speed::write(meshes, programs, &data, effort, output)?;
+            speed::write(meshes, programs, &data, truths, effort, output)?;
         }
         Report::Scale { programs } => fs::write(output.join("scale.md"), scale::document(programs, &data)?)?,
     }
@@ -104,9 +107,9 @@ mod tests {
 
     #[test]
     fn the_command_line_is_checked() {
-        assert!(accepts("reports --output c speed --meshes a --programs b --full"));
+        assert!(accepts("reports --output c speed --meshes a --programs b --truths d --full"));
         assert!(accepts("reports --output c accuracy --programs b --tiny"));
-        assert!(!accepts("reports speed --meshes a --programs b"));
-        assert!(!accepts("reports --output c speed --meshes a --programs b --fast"));
+        assert!(!accepts("reports speed --meshes a --programs b --truths d"));
+        assert!(!accepts("reports --output c speed --meshes a --programs b --truths d --fast"));
     }
 }

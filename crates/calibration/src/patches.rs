@@ -40,8 +40,8 @@ pub struct Split {
 }
 
 /// The length that a unit normal counts as, in units of the side of a square patch. Surfaces whose normals differ by more
-/// than forty degrees are apart: across the rim of a thin part, one side is lit and the other dark.
-const NORMALS: f64 = 3.0;
+/// than sixty degrees are apart: across the rim of a thin part, one side is lit and the other dark.
+const NORMALS: f64 = 2.0;
 
 /// The support of a patch's weight, in units of the side of a square patch.
 const SUPPORT: f64 = 2.0;

@@ -60,9 +60,10 @@ impl Farm {
         let sampling = run(&self.sample_surface, &words, "run.json")?;
         let file = bytes(Path::new(&cloud))?;
         self.write_views(Path::new(&views), size.views)?;
-        let image = ["--view", &views, "--width", &width, "--height", &height, "--spp", &spp, "--medium", "skin1"];
+        let image = ["--view", &views, "--width", &width, "--height", &height, "--spp", &spp];
+        let light = ["--medium", "skin1", "--calibration", "none"];
         let output = path("image.exr");
-        let words = [&[cloud.as_str(), &scene], &image[..], &both, &[&output]].concat();
+        let words = [&[cloud.as_str(), &scene], &image[..], &light, &both, &[&output]].concat();
         let last = if size.views == 1 { "run.json".into() } else { format!("run.{:04}.json", size.views - 1) };
         let gathering = run(&self.gather, &words, &last)?;
         let images = self.take_images()?;

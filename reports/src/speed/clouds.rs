@@ -53,8 +53,7 @@ pub fn clouds(harness: &mut Harness, subject: &Subject) -> Result<Findings, Erro
         harness.forget_clouds();
     }
     let mut findings = Findings { targets: targets(&all), ..Findings::default() };
-    findings.plots.push(("clouds".into(), plot(&all)));
-    findings.section("Error of clouds alone", report(subject, &all));
+    findings.plotted("Error of clouds alone", "clouds", plot(&all), report(subject, &all));
     Ok(findings)
 }
 

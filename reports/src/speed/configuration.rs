@@ -1,5 +1,6 @@
 //! The configurations, scenes and media that are compared.
 
+use bssrdf::Model;
 use std::path::{Path, PathBuf};
 
 /// How `sample-surface` draws its samples.
@@ -20,15 +21,21 @@ pub enum Summing {
     Exhaustive,
     /// The cut; none is the default accuracy.
     Cut(Option<f64>),
+    /// Random walks instead of sums: exact, whatever the model.
+    Walks,
 }
 
-/// A way to use the two programs.
+/// A way to use the programs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Configuration {
     pub name: &'static str,
     pub cloud: CloudKind,
     pub summing: Summing,
+    pub model: Model,
 }
+
+/// The model that is summed wherever sums are compared: the note's.
+pub const MODEL: Model = Model::DirectionalDipole;
 
 const INDEPENDENT_UNIFORM: CloudKind = CloudKind { choice: "uniform", pattern: "independent" };
 pub const INDEPENDENT_AREA: CloudKind = CloudKind { choice: "area", pattern: "independent" };
@@ -43,18 +50,21 @@ pub const FINE_NAME: &str = "all, accuracy 0.003";
 
 /// All configurations: the note's settings, each ingredient alone, and all together.
 pub const CONFIGURATIONS: [Configuration; 7] = [
-    Configuration { name: "note", cloud: INDEPENDENT_UNIFORM, summing: Summing::Roulette },
-    Configuration { name: "area", cloud: INDEPENDENT_AREA, summing: Summing::Roulette },
-    Configuration { name: "stratified", cloud: STRATIFIED_UNIFORM, summing: Summing::Roulette },
-    Configuration { name: "area + stratified", cloud: STRATIFIED_AREA, summing: Summing::Roulette },
-    Configuration { name: "cut", cloud: INDEPENDENT_UNIFORM, summing: Summing::Cut(None) },
-    Configuration { name: "all", cloud: STRATIFIED_AREA, summing: Summing::Cut(None) },
-    Configuration { name: FINE_NAME, cloud: STRATIFIED_AREA, summing: FINE },
+    row("note", INDEPENDENT_UNIFORM, Summing::Roulette),
+    row("area", INDEPENDENT_AREA, Summing::Roulette),
+    row("stratified", STRATIFIED_UNIFORM, Summing::Roulette),
+    row("area + stratified", STRATIFIED_AREA, Summing::Roulette),
+    row("cut", INDEPENDENT_UNIFORM, Summing::Cut(None)),
+    row("all", STRATIFIED_AREA, Summing::Cut(None)),
+    row(FINE_NAME, STRATIFIED_AREA, FINE),
 ];
 
 /// The exhaustive sum over a cloud of the default kind.
-pub const EXHAUSTIVE: Configuration =
-    Configuration { name: "exhaustive", cloud: STRATIFIED_AREA, summing: Summing::Exhaustive };
+pub const EXHAUSTIVE: Configuration = row("exhaustive", STRATIFIED_AREA, Summing::Exhaustive);
+
+const fn row(name: &'static str, cloud: CloudKind, summing: Summing) -> Configuration {
+    Configuration { name, cloud, summing, model: MODEL }
+}
 
 impl CloudKind {
     /// The name in tables.
@@ -69,15 +79,25 @@ impl Configuration {
         ["--choice", self.cloud.choice, "--pattern", self.cloud.pattern].map(String::from).into()
     }
 
-    /// Flags of `gather`.
+    /// Flags of `gather`, without those of a calibration.
     pub fn gather_flags(&self, medium: &Medium) -> Vec<String> {
-        let text = |flags: &[&str]| flags.iter().map(|f| (*f).to_owned()).collect::<Vec<_>>();
-        match self.summing {
-            Summing::Roulette => text(&["--estimator", "roulette", "--roulette", medium.rule]),
-            Summing::Exhaustive => text(&["--estimator", "exhaustive"]),
-            Summing::Cut(None) => text(&["--estimator", "cut"]),
-            Summing::Cut(Some(x)) => text(&["--estimator", "cut", "--accuracy", &x.to_string()]),
-        }
+        let accuracy;
+        let how: &[&str] = match self.summing {
+            Summing::Roulette => &["--estimator", "roulette", "--roulette", medium.rule],
+            Summing::Exhaustive => &["--estimator", "exhaustive"],
+            Summing::Cut(None) => &["--estimator", "cut"],
+            Summing::Cut(Some(x)) => {
+                accuracy = x.to_string();
+                &["--estimator", "cut", "--accuracy", &accuracy]
+            }
+            Summing::Walks => return vec!["--reference".into()],
+        };
+        ["--bssrdf", self.model.name()].iter().chain(how).map(|f| (*f).to_owned()).collect()
+    }
+
+    /// `--bssrdf`; empty for random walks.
+    pub fn model_name(&self) -> &'static str {
+        if self.summing == Summing::Walks { "" } else { self.model.name() }
     }
 
     /// `--accuracy`, as the tables show it.
@@ -180,11 +200,14 @@ mod tests {
     #[test]
     fn flags_say_what_the_row_says() {
         let [note, .., all, fine] = CONFIGURATIONS;
-        assert_eq!(note.gather_flags(&MEDIA[2]), ["--estimator", "roulette", "--roulette", "mixture"]);
-        assert_eq!(note.gather_flags(&MARBLE)[3], "mean");
+        let dipole = ["--bssrdf", "directional-dipole", "--estimator"];
+        assert_eq!(note.gather_flags(&MEDIA[2]), [&dipole[..], &["roulette", "--roulette", "mixture"]].concat());
+        assert_eq!(note.gather_flags(&MARBLE)[5], "mean");
         assert_eq!(all.sample_flags(), ["--choice", "area", "--pattern", "stratified"]);
-        assert_eq!(all.gather_flags(&MARBLE), ["--estimator", "cut"]);
-        assert_eq!(fine.gather_flags(&MARBLE), ["--estimator", "cut", "--accuracy", "0.003"]);
+        assert_eq!(all.gather_flags(&MARBLE), [&dipole[..], &["cut"]].concat());
+        assert_eq!(fine.gather_flags(&MARBLE), [&dipole[..], &["cut", "--accuracy", "0.003"]].concat());
+        let walks = Configuration { summing: Summing::Walks, ..all };
+        assert_eq!(walks.gather_flags(&MARBLE), ["--reference"]);
     }
 
     #[test]

@@ -6,6 +6,7 @@ use crate::{
         effort::Effort,
         findings::{Findings, Target},
         harness::Harness,
+        plot::Plot,
     },
 };
 
@@ -20,11 +21,10 @@ pub fn document(harness: &Harness, findings: &Findings, remarks: &[String]) -> S
         text += "**This was a trial of the program itself: its figures mean nothing.**\n\n";
     }
     text += &format!("## Targets\n\n{}\n{WHY}\n", targets(&findings.targets));
-    for (name, plot) in &findings.plots {
-        text += &format!("![{}](speed-{name}.svg)\n\n", plot.title);
-    }
     for section in &findings.sections {
-        text += &format!("## {}\n\n{}\n", section.title, section.text);
+        let image = |(name, plot): &(String, Plot)| format!("![{}](speed-{name}.svg)\n\n", plot.title);
+        let image = section.plot.as_ref().map_or(String::new(), image);
+        text += &format!("## {}\n\n{image}{}\n", section.title, section.text);
     }
     text + &method(harness, remarks)
 }
@@ -60,16 +60,18 @@ fn method(harness: &Harness, remarks: &[String]) -> String {
 
 /// Explanations of the figures above.
 const WHY: &str = "\
-Lines of the plots are a model's, fitted to few paths a pixel; dots are runs. With ten paths and more the cut's own share \
-(`--accuracy`, one per cent of a pixel whatever the paths) remains, so runs err more than the model says: the tables of \
-runs are the measure. The **dragon** takes long to 1 % because the directional dipole has poles at grazing light in \
-creases: a few pixels hold most of the error. Its frame's time goes, by a sampling profiler, to the kernel (70 %), the rays \
-(10 %) and the lists of the cut (5 %). A hundred million **samples** are 3.8 GB, which `gather` reads once to check them, \
-beside its work: at 256 x 256 that takes longer than the picture; at 512 x 512 it takes 2.1 to 2.3 times as long as from \
-one million.
+Lines of the plots of races are a model's, fitted to few paths a pixel; dots are runs. With ten paths and \
+more the cut's own share (`--accuracy`, one per cent of a pixel whatever the paths) remains, so runs err more than the \
+model says: the tables of runs are the measure. The **dragon** takes long to 1 % because the directional dipole has \
+poles at grazing light in creases: a few pixels hold most of the error. Its frame's time goes, by a sampling profiler, \
+to the kernel (70 %), the rays (10 %) and the lists of the cut (5 %). A hundred million **samples** are 3.8 GB, which \
+`gather` reads once to check them, beside its work: at 256 x 256 that takes longer than the picture; at 512 x 512 it \
+takes 2.1 to 2.3 times as long as from one million.
 ";
 
 const METHOD: &str = "\
+* **Model**: sums are compared by those of the directional dipole, without a calibration. Only the sections on the \
+truth and on what the model and its calibration cost have other models.
 * **References** are means of four or more images of independent clouds and paths, seeds from 1000, which nothing else \
 uses. Their own squared error, from their spread, is subtracted.
 * **Errors of clouds**: a few clouds (seeds from 1), each gathered under the seeds 1 and 2. Differences of two clouds \
@@ -77,10 +79,10 @@ under one seed, times those under the other, share nothing but the clouds.
 * **Errors of paths**: what the seeds 1 and 2 of the gather differ by on one cloud; at K = 1M another estimator stands \
 for the roulette, whose own share is nothing there.
 * **The model**: squared error `v/paths^q + c(K)²`, with `c` a power law of K, `v` a line in 1/K, and `q` measured (1 \
-if the paths of a pixel are independent of each other); seconds `a + b K` for the sampling and for opening the cloud, and \
-pixels times paths times `f + g K` for sums that look at every sample, or times a power of K for the tree. Times to an \
-error are its least over K and paths. The note's times to 2 % and 1 % are extrapolated so, by the measured slopes; ours \
-are run wherever the table says measured.
+if the paths of a pixel are independent of each other); seconds `a + b K` for the sampling and for opening the cloud, \
+and pixels times paths times `f + g K` for sums that look at every sample, or times a power of K for the tree. Times \
+to an error are its least over K and paths. The note's times to 2 % and 1 % are extrapolated so, by the measured \
+slopes; ours are run wherever the table says measured.
 * **Runs** of the model's points have seeds from 100, other than those it was fitted to.
 ";
 

@@ -12,7 +12,7 @@ use crate::{
     },
 };
 
-/// Seconds after which two rounds suffice: the times of short runs vary most.
+/// Seconds after which no further round is needed: the times of short runs vary most.
 const ENOUGH: f64 = 3.0;
 const MAX_ROUNDS: u32 = 6;
 
@@ -40,7 +40,7 @@ pub fn everywhere(harness: &mut Harness, subjects: &[Subject]) -> Result<Finding
     let what = "time over the note's, same K and paths, worst of all scenes, media and K from 10k";
     findings.targets.push(Target::at_most(what, 1.05, Some(worst), "measured"));
     let header = ["scene", "medium", "K", "note, s", "ours, s", "ours / note"];
-    let text = "Both programs together, 4 paths a pixel, 256 x 256; the shortest of two to six runs in turn.";
+    let text = "Both programs together, 4 paths a pixel, 256 x 256; the shortest of one to six runs in turn.";
     findings.section("Beside the note at equal settings", format!("{text}\n\n{}", table(&header, &rows)));
     Ok(findings)
 }
@@ -49,14 +49,14 @@ pub fn everywhere(harness: &mut Harness, subjects: &[Subject]) -> Result<Finding
 /// rounds.
 fn shortest(harness: &mut Harness, shot: &Shot, rivals: [Configuration; 2]) -> Result<[f64; 2], Error> {
     let (mut least, mut spent) = ([f64::INFINITY; 2], 0.0);
-    for round in 0..MAX_ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         harness.forget_clouds();
         for (least, configuration) in least.iter_mut().zip(rivals) {
             let seconds = harness.take(&Shot { configuration, ..shot.clone() })?.seconds();
             *least = least.min(seconds);
             spent += seconds;
         }
-        if round > 0 && spent > ENOUGH {
+        if spent > ENOUGH {
             break;
         }
     }

@@ -30,10 +30,12 @@ impl Target {
     }
 }
 
-/// A heading with text or tables.
+/// A heading with text or tables, and perhaps a plot above them.
 #[derive(Clone, Debug, Default)]
 pub struct Section {
     pub title: String,
+    /// Name of the file without `speed-` and `.svg`, and the plot.
+    pub plot: Option<(String, Plot)>,
     pub text: String,
 }
 
@@ -41,20 +43,22 @@ pub struct Section {
 #[derive(Clone, Debug, Default)]
 pub struct Findings {
     pub targets: Vec<Target>,
-    /// Name of the file without `speed-` and `.svg`, and the plot.
-    pub plots: Vec<(String, Plot)>,
     pub sections: Vec<Section>,
 }
 
 impl Findings {
     pub fn add(&mut self, other: Findings) {
         self.targets.extend(other.targets);
-        self.plots.extend(other.plots);
         self.sections.extend(other.sections);
     }
 
     pub fn section(&mut self, title: impl Into<String>, text: String) {
-        self.sections.push(Section { title: title.into(), text });
+        self.sections.push(Section { title: title.into(), plot: None, text });
+    }
+
+    /// A section whose plot is `speed-NAME.svg`.
+    pub fn plotted(&mut self, title: impl Into<String>, name: impl Into<String>, plot: Plot, text: String) {
+        self.sections.push(Section { title: title.into(), plot: Some((name.into(), plot)), text });
     }
 }
 

@@ -43,10 +43,9 @@ pub fn growth(harness: &mut Harness, subject: &Subject) -> Result<Findings, Erro
     let mut findings = Findings::default();
     let what = format!("{}, marble: time of the gather when K grows 100 times", subject.name);
     findings.targets.push(Target::at_most(what, 2.5, worst, "measured"));
-    findings.plots.push(("growth".into(), plot(&ours, note)));
     let header = ["K", "sampling, s", "gather, s", "evaluations a gather", "nodes a gather", "memory of both, MB"];
     let text = format!("{}, marble, {side} x {side}, 4 paths a pixel.\n\n{}", subject.name, table(&header, &rows));
-    findings.section("What samples cost", text);
+    findings.plotted("What samples cost", "growth", plot(&ours, note), text);
     Ok(findings)
 }
 

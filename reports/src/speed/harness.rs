@@ -4,15 +4,15 @@ use crate::{
     error::Error,
     program::{Program, Spent},
     speed::{
-        configuration::{CONFIGURATIONS, CloudKind, Configuration, FINE, MARBLE, Medium, Subject, Summing},
+        configuration::{CONFIGURATIONS, CloudKind, Configuration, FINE, MARBLE, MODEL, Medium, Subject, Summing},
         effort::Effort,
+        made::Made,
         picture::Picture,
         record::Record,
         shot::Shot,
     },
 };
 use std::{
-    collections::HashMap,
     path::{Path, PathBuf},
     time::Instant,
 };
@@ -21,31 +21,31 @@ use tempfile::TempDir;
 /// A rendered image and its cost.
 pub struct Taken {
     pub picture: Picture,
+    /// Its file, until the next image is rendered.
+    pub file: PathBuf,
     /// Cost of `sample-surface`, also if its cloud was used before.
     pub sampling: Spent,
+    /// Cost of `calibrate`, also if its calibration was used before.
+    pub calibrating: Option<Spent>,
     pub gathering: Spent,
     record: usize,
 }
 
 impl Taken {
-    /// Seconds of both programs.
+    /// All programs that ran.
+    fn programs(&self) -> impl Iterator<Item = &Spent> {
+        [&self.sampling, &self.gathering].into_iter().chain(&self.calibrating)
+    }
+
+    /// Seconds of all programs.
     pub fn seconds(&self) -> f64 {
-        self.sampling.wall + self.gathering.wall
+        self.programs().map(|p| p.wall).sum()
     }
 
-    /// User and system seconds of both programs.
+    /// User and system seconds of all programs.
     pub fn cpu(&self) -> f64 {
-        self.sampling.cpu + self.gathering.cpu
+        self.programs().map(|p| p.cpu).sum()
     }
-}
-
-#[derive(Clone, PartialEq, Eq, Hash)]
-struct CloudKey {
-    scene: PathBuf,
-    kind: CloudKind,
-    samples: u64,
-    seed: u64,
-    threads: usize,
 }
 
 /// The programs, a working folder, and the records of all runs.
@@ -58,11 +58,9 @@ pub struct Harness {
     pub records: Vec<Record>,
     /// The measurements that could not be made, in sentences.
     pub remarks: Vec<String>,
-    sample_surface: Program,
+    made: Made,
     gather: Program,
     folder: TempDir,
-    clouds: HashMap<CloudKey, (PathBuf, Spent)>,
-    made: usize,
     start: Instant,
 }
 
@@ -76,11 +74,9 @@ impl Harness {
             configurations: Vec::new(),
             records: Vec::new(),
             remarks: Vec::new(),
-            sample_surface: Program::of(programs, "sample-surface")?,
+            made: Made::new(programs, folder.path())?,
             gather: Program::of(programs, "gather")?,
             folder,
-            clouds: HashMap::new(),
-            made: 0,
             start: Instant::now(),
         };
         harness.say("trying every configuration");
@@ -129,7 +125,7 @@ impl Harness {
 
     /// The best configuration for this kind of cloud.
     pub fn best_on(&self, cloud: CloudKind) -> Configuration {
-        Configuration { name: "best", cloud, summing: self.all().summing }
+        Configuration { name: "best", cloud, summing: self.all().summing, model: MODEL }
     }
 
     /// A configuration for this kind of cloud whose sums are as good as exact beside the error of the cloud.
@@ -138,7 +134,7 @@ impl Harness {
             Summing::Cut(_) => FINE,
             _ => Summing::Exhaustive,
         };
-        Configuration { name: "fine", cloud, summing }
+        Configuration { name: "fine", cloud, summing, model: MODEL }
     }
 
     /// The kinds of clouds that the programs support.
@@ -164,6 +160,7 @@ impl Harness {
             gather_seed: 1,
             size: [64, 64],
             threads: self.threads,
+            walks: None,
             more: Vec::new(),
         }
     }
@@ -181,31 +178,13 @@ impl Harness {
 
     /// The cloud of a shot, sampled if it does not exist.
     pub fn cloud(&mut self, shot: &Shot) -> Result<(PathBuf, Spent), Error> {
-        let key = CloudKey {
-            scene: shot.subject.path.clone(),
-            kind: shot.configuration.cloud,
-            samples: shot.samples,
-            seed: shot.cloud_seed,
-            threads: shot.threads,
-        };
-        if let Some(known) = self.clouds.get(&key) {
-            return Ok(known.clone());
-        }
-        self.made += 1;
-        let path = self.folder.path().join(format!("{}.cloud", self.made));
-        let mut arguments = vec![text(&shot.subject.path), "-o".into(), text(&path)];
-        arguments.extend(["--samples".into(), shot.samples.to_string(), "--seed".into(), shot.cloud_seed.to_string()]);
-        arguments.extend(["--threads".into(), shot.threads.to_string()]);
-        arguments.extend(shot.configuration.sample_flags());
-        arguments.extend(shot.subject.flags.iter().map(|f| (*f).to_owned()));
-        let spent = self.sample_surface.run(&arguments, &self.folder.path().join("sample.json"))?;
-        self.clouds.insert(key, (path.clone(), spent.clone()));
-        Ok((path, spent))
+        self.made.cloud(shot)
     }
 
     /// Renders a shot.
     pub fn take(&mut self, shot: &Shot) -> Result<Taken, Error> {
-        let (cloud, sampling) = self.cloud(shot)?;
+        let (cloud, sampling) = self.made.cloud(shot)?;
+        let calibration = self.made.calibration(shot)?;
         let image = self.folder.path().join("image.exr");
         let mut arguments = vec![text(&cloud), text(&shot.subject.path), "-o".into(), text(&image)];
         let numbers = [
@@ -218,12 +197,17 @@ impl Harness {
         arguments.extend(numbers.iter().flat_map(|(flag, n)| [(*flag).to_owned(), n.to_string()]));
         arguments.extend(["--medium".into(), shot.medium.name.into()]);
         arguments.extend(shot.configuration.gather_flags(&shot.medium));
+        if shot.configuration.summing != Summing::Walks {
+            let file = calibration.as_ref().map_or("none".into(), |(path, _)| text(path));
+            arguments.extend(["--calibration".into(), file]);
+        }
         arguments.extend(shot.subject.flags.iter().map(|f| (*f).to_owned()));
         arguments.extend(shot.subject.view.iter().chain(&shot.more).cloned());
         let gathering = self.gather.run(&arguments, &self.folder.path().join("gather.json"))?;
         let picture = Picture::read(&image)?;
-        self.records.push(Record::of(shot, &sampling, &gathering));
-        Ok(Taken { picture, sampling, gathering, record: self.records.len() - 1 })
+        let calibrating = calibration.map(|(_, spent)| spent);
+        self.records.push(Record::of(shot, &sampling, calibrating.as_ref(), &gathering));
+        Ok(Taken { picture, file: image, sampling, calibrating, gathering, record: self.records.len() - 1 })
     }
 
     /// Adds the error of an image to the record of its run.
@@ -232,11 +216,14 @@ impl Harness {
         (record.relative_rmse, record.bias) = (Some(relative_rmse), bias);
     }
 
-    /// Removes all clouds: the large ones would fill the disk.
+    /// Adds the error to the truth of an image to the record of its run.
+    pub fn judge_truth(&mut self, taken: &Taken, relative_mse: f64) {
+        self.records[taken.record].relative_mse = Some(relative_mse);
+    }
+
+    /// Removes all clouds, and the calibrations that belong to them.
     pub fn forget_clouds(&mut self) {
-        for (_, (path, _)) in self.clouds.drain() {
-            std::fs::remove_file(path).ok();
-        }
+        self.made.forget();
     }
 }
 

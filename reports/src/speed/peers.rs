@@ -71,11 +71,11 @@ fn scene(harness: &mut Harness, subject: &Subject, medium: Medium) -> Result<Vec
     let side = effort.of(32, SIDE, SIDE);
     let configuration = harness.configuration(FINE_NAME).unwrap_or_else(|| harness.all());
     let shot = Shot { size: [side; 2], threads: 1, ..harness.shot(subject, medium, configuration) };
-    let quality = Quality { clouds: 4, samples: effort.of(20_000, 4_000_000, 8_000_000), spp: effort.of(4, 64, 128) };
+    let quality = Quality { clouds: 4, samples: effort.of(20_000, 4_000_000, 8_000_000), spp: effort.of(4, 32, 128) };
     let converged = reference(harness, &shot, quality)?;
     let rows = effort.of(vec![configuration], vec![configuration], vec![harness.all(), configuration]);
     let mut points = Vec::new();
-    for samples in effort.of(vec![1_000], vec![1_000_000, 3_000_000], vec![100_000, 1_000_000]) {
+    for samples in effort.of(vec![1_000], vec![1_000_000], vec![100_000, 1_000_000]) {
         for spp in effort.of(vec![1], vec![8, 32], vec![8, 32]) {
             for configuration in &rows {
                 let shot = Shot { samples, spp, ..shot.clone() };

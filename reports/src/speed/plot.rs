@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-/// One curve with dots.
+/// One curve with dots; without dots it is thin.
 #[derive(Clone, Debug, Default)]
 pub struct Curve {
     pub label: String,
@@ -20,7 +20,7 @@ pub struct Plot {
     pub curves: Vec<Curve>,
 }
 
-const WIDTH: f64 = 760.0;
+const WIDTH: f64 = 790.0;
 const HEIGHT: f64 = 440.0;
 /// Left, top, right and bottom of the area that the curves fill.
 const AREA: [f64; 4] = [70.0, 40.0, 560.0, 385.0];
@@ -113,7 +113,8 @@ fn draw(svg: &mut String, curve: &Curve, index: usize, [x, y]: [&Axis; 2]) {
     let color = COLORS[index % COLORS.len()];
     let dash = ["", "7 3", "2 3"][index % 3];
     let position = |p: &(f64, f64)| (x.at(p.0), y.at(p.1));
-    let stroke = format!("stroke=\"{color}\" stroke-width=\"2\" stroke-dasharray=\"{dash}\" fill=\"none\"");
+    let width = if curve.dots.is_empty() { 1 } else { 2 };
+    let stroke = format!("stroke=\"{color}\" stroke-width=\"{width}\" stroke-dasharray=\"{dash}\" fill=\"none\"");
     let points: Vec<String> = curve.line.iter().map(position).map(|(a, b)| format!("{a:.1},{b:.1}")).collect();
     let row = AREA[1] + 10.0 + 20.0 * index as f64;
     let from = AREA[2] + 12.0;

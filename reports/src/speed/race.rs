@@ -37,7 +37,7 @@ struct Runner {
 pub fn race(harness: &mut Harness, subject: &Subject, medium: Medium) -> Result<Findings, Error> {
     let effort = harness.effort;
     // Smaller images suffice for media without a target.
-    let side = effort.of(64, 512, if is_target(subject, medium) { 512 } else { 192 });
+    let side = effort.of(64, 256, if is_target(subject, medium) { 512 } else { 192 });
     let shot = Shot { size: [side; 2], ..harness.shot(subject, medium, harness.all()) };
     let quality = Quality { clouds: 4, samples: effort.of(20_000, 4_000_000, 4_000_000), spp: effort.of(4, 8, 8) };
     let converged = reference(harness, &shot, quality)?;
@@ -65,9 +65,9 @@ pub fn race(harness: &mut Harness, subject: &Subject, medium: Medium) -> Result<
         }
     }
     harness.forget_clouds();
-    findings.plots.push((format!("{}-{}", subject.name, medium.name), plot(&case, &runners)));
     let title = format!("{}, {}: {side} x {side}", subject.name, medium.name);
-    findings.section(title, report(&case, &clouds, &runners));
+    let (name, plot) = (format!("{}-{}", subject.name, medium.name), plot(&case, &runners));
+    findings.plotted(title, name, plot, report(&case, &clouds, &runners));
     Ok(findings)
 }
 

@@ -16,6 +16,8 @@ pub struct Shot<'a> {
     /// Width and height, pixels.
     pub size: [u64; 2],
     pub threads: usize,
+    /// Random walks of each channel of a calibration; none for the model as it is.
+    pub walks: Option<u64>,
     /// More flags of `gather`.
     pub more: Vec<String>,
 }
