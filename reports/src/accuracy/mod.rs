@@ -1,5 +1,6 @@
 //! Errors of the models against random walks: `accuracy.md` and its pictures.
 
+mod cases;
 mod half_spaces;
 mod images;
 mod shapes;
@@ -32,12 +33,14 @@ pub fn write(programs: &Path, truths: &Path, effort: Effort, folder: &Path) -> R
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let exact = Exact::new(programs, truths, threads)?;
     let images = images::images(programs, &exact, effort, folder)?;
+    let cases = cases::document(programs, &exact, effort)?;
     let slabs = slabs::document(effort)?;
     let parts = [
         INTRODUCTION,
         &images.summary,
         ADVICE,
         &images.text,
+        &cases,
         &check_of_walks(effort),
         &half_spaces::document(effort),
         &slabs,
