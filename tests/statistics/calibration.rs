@@ -5,7 +5,7 @@
 
 use bssrdf::{DVec3, Medium, Model, fresnel, half_space::exit_moment};
 use calibration::{Factors, Site, Task, calibrate};
-use formats::cloud::Cloud;
+use formats::{calibration::CalibratedMaterial, cloud::Cloud};
 use gather::estimator::Estimator;
 use scene::{
     NormalKind,
@@ -35,13 +35,22 @@ struct Patch {
 
 impl Sunlit {
     fn new(mesh: test_support::meshes::Mesh, towards: DVec3, medium: Medium) -> Sunlit {
-        let sun = Light::Directional { towards, irradiance: DVec3::ONE };
+        Sunlit::of(mesh, towards, medium, 1.0, 1 << 16)
+    }
+
+    /// In a sun of this irradiance, W/m², with a cloud of this many samples.
+    fn of(mesh: test_support::meshes::Mesh, towards: DVec3, medium: Medium, irradiance: f64, samples: u64) -> Sunlit {
+        let sun = Light::Directional { towards, irradiance: DVec3::splat(irradiance) };
         let world = world(&[Part::translucent(mesh)], &[sun], DVec3::ZERO);
-        let cloud = cloud(&world, &stratified(1 << 16, 1));
+        let cloud = cloud(&world, &stratified(samples, 1));
         Sunlit { world, cloud, medium }
     }
 
     fn factors(&self, model: Model, walks: u64, seed: u64) -> Factors {
+        Factors::new(&self.calibrated(model, walks, seed))
+    }
+
+    fn calibrated(&self, model: Model, walks: u64, seed: u64) -> CalibratedMaterial {
         let task = Task {
             scene: &self.world.scene,
             rays: &self.world.rays,
@@ -52,7 +61,7 @@ impl Sunlit {
             walks,
             seed,
         };
-        Factors::new(&calibrate(&task, |_| ()).expect("it is closed and lit").materials[0])
+        calibrate(&task, |_| ()).expect("it is closed and lit").materials.remove(0)
     }
 
     /// Power that enters, W.
@@ -144,4 +153,38 @@ fn a_thin_sheet_shows_the_light_of_its_two_sides() {
     for ((power, _), exact) in sides.into_iter().zip([exact.reflected, exact.transmitted]) {
         assert!((power / lit / exact.mean - 1.0).abs() < 0.03, "{} for {}", power / lit, exact.mean);
     }
+}
+
+/// What is said of the model's error does not depend on the unit of the light.
+///
+/// Seen to catch: radiances that are not divided by that of white.
+#[test]
+fn errors_do_not_depend_on_the_power_of_the_sun() {
+    let errors = |irradiance: f64| {
+        let medium = gray(50.0, 1000.0, 0.0, 1.3);
+        let ball = Sunlit::of(sphere(5e-3, 4), DVec3::X, medium, irradiance, 1 << 14);
+        ball.calibrated(Model::DirectionalDipole, 10_000, 1).errors[0]
+    };
+    let (dim, bright) = (errors(1e-3), errors(1e3));
+    assert!(dim.before > 1e-3 && dim.after > 0.0, "{dim:?}");
+    for (dim, bright) in [(dim.before, bright.before), (dim.after, bright.after)] {
+        assert!((dim / bright - 1.0).abs() < 1e-3, "{dim:e} {bright:e}");
+    }
+}
+
+/// A cloud whose samples are ten mean free paths apart and more is not calibrated, and that is said.
+///
+/// Seen to catch: no bound of the variance; a variance of the whole cloud, not of its halves.
+#[test]
+fn grain_is_not_calibrated() {
+    let unresolved = |samples: u64| {
+        let ball = Sunlit::of(sphere(5e-3, 4), DVec3::X, gray(100.0, 50e3, 0.0, 1.3), 1.0, samples);
+        let material = ball.calibrated(Model::HalfSpace, 10_000, 1);
+        let is_one = material.surface.patches.iter().all(|patch| patch.log_factor[0] == 0.0);
+        (material.errors[0].unresolved, is_one)
+    };
+    assert_eq!(unresolved(1 << 10), (1.0, true));
+    let (share, is_one) = unresolved(1 << 18);
+    // The dark half of the ball is unresolved in any case.
+    assert!(share < 0.6 && !is_one, "{share}");
 }

@@ -3,6 +3,7 @@
 use formats::cloud::{Cloud, TILE, shards};
 use glam::DVec3;
 use rayon::prelude::*;
+use std::f64::consts::PI;
 use sums::samples::{Exit, LitSamples};
 
 /// The lit samples of one material in all shards and halves of a cloud, with the sums of `T12 Φ` over its tiles.
@@ -12,6 +13,10 @@ pub struct Entries<'a> {
     tiles: Vec<(u32, u32)>,
     /// For each channel, the sum of `T12 Φ` before each tile and, last, over all, W.
     before: [Vec<f64>; 3],
+    /// The sum of `(T12 Φ)²` of all channels, W².
+    squares: f64,
+    /// The area of all sampled surfaces, m².
+    area: f64,
     /// `K`.
     drawn: u64,
 }
@@ -34,18 +39,33 @@ impl<'a> Entries<'a> {
         let groups: Vec<LitSamples> = clouds.iter().flat_map(halves).collect();
         let of = |(g, group): (usize, &LitSamples)| (0..group.tile_count()).map(move |t| (g as u32, t as u32));
         let tiles: Vec<(u32, u32)> = groups.iter().enumerate().flat_map(|pair| of(pair).collect::<Vec<_>>()).collect();
-        let sums: Vec<[f64; 3]> = tiles.par_iter().map(|(g, t)| entering(&groups[*g as usize], *t).1).collect();
+        let sums: Vec<([f64; 3], f64)> = (tiles.par_iter())
+            .map(|(g, t)| {
+                let (flux, sums) = entering(&groups[*g as usize], *t);
+                (sums, flux.iter().flatten().map(|f| f64::from(*f).powi(2)).sum())
+            })
+            .collect();
+        let squares = sums.iter().map(|(_, squares)| squares).sum();
         let before = [0, 1, 2].map(|c| {
             let mut before = vec![0.0];
-            sums.iter().for_each(|tile| before.push(before[before.len() - 1] + tile[c]));
+            sums.iter().for_each(|(tile, _)| before.push(before[before.len() - 1] + tile[c]));
             before
         });
-        Entries { groups, tiles, before, drawn: shards::drawn(clouds) }
+        let area = shards::materials(clouds).iter().map(|m| m.area_m2).sum();
+        Entries { groups, tiles, before, squares, area, drawn: shards::drawn(clouds) }
     }
 
     /// The power that enters in one channel, `(1/K) Σ T12 Φ`, W.
     pub fn power(&self, channel: usize) -> f64 {
         self.before[channel].last().copied().unwrap_or(0.0) / self.drawn.max(1) as f64
+    }
+
+    /// About the radiance of a white diffuse surface that faces the light, W/(m² sr); 1 if no light enters. A sample carries
+    /// the irradiance times the area, whose mean over the light that a ball in the sun receives is two thirds of the largest.
+    pub fn white(&self) -> f64 {
+        let all: f64 = self.before.iter().filter_map(|before| before.last()).sum();
+        let white = 1.5 * self.squares / (all * self.area * PI);
+        if white > 0.0 && white.is_finite() { white } else { 1.0 }
     }
 
     /// The sample at this share of the power of a channel, with the samples in their spatial order; none if no light

@@ -45,7 +45,7 @@ pub use patches::{Patches, Site};
 use bssrdf::{Medium, Model, half_space::exit_lobe};
 use entries::Entries;
 use errors::{Light, channel_errors};
-use fit::Smoothness;
+use fit::{Fit, Smoothness};
 use formats::{
     calibration::{CalibratedMaterial, Calibration, ChannelErrors, MediumFacts, version},
     cloud::{Cloud, shards},
@@ -107,6 +107,10 @@ const MIN_SHARE: f64 = 1.0 / 16.0;
 
 /// Points of each patch at which the model is evaluated.
 const POINTS: usize = 128;
+
+/// The largest relative variance of the model's light on a patch by the positions of the samples. Above it, the sum over
+/// a cloud is spikes about its samples, most of which the points of a patch miss: a factor would be too large by half.
+const MAX_GRAIN: f64 = 0.1;
 
 /// The largest share of walks that may leave through holes.
 const HOLES: f64 = 1e-3;
@@ -180,8 +184,8 @@ fn calibrate_material(
     let is_translucent = |m: u16| shards::materials(task.clouds).iter().any(|s| s.index == m);
     let solid = Solid::new(mesh, task.rays, sampled.index, is_translucent).ok_or_else(dark)?;
     let sums = surface.light(&summation, &solid, task.seed, progress);
-    let light = Light::new(&sums, &cell_of, &areas, medium.eta);
     let entries = Entries::new(task.clouds, slot, medium.eta);
+    let light = Light::new(&sums, &cell_of, &areas, medium.eta, entries.white());
     let walking =
         Walking { mesh, solid: &solid, entries: &entries, patches: &patches, eta: medium.eta, seed: task.seed, slot };
     let smoothness = Smoothness::new(&patches, &sites, &cell_of);
@@ -199,9 +203,14 @@ fn calibrate_material(
             continue;
         };
         let counts = counted.at_patches(&patches);
-        let fit = smoothness.fit(&counts);
+        let is_grain = light.grain(&patches, channel) > MAX_GRAIN;
+        let fit = if is_grain { Fit::none(patches.count()) } else { smoothness.fit(&counts) };
         lobe[channel] = exit_lobe(medium.eta, tally.cosines / tally.sum());
         errors[channel] = channel_errors(&smoothness, &patches, &light, channel, &counted, &fit);
+        if is_grain {
+            errors[channel].unresolved = 1.0;
+            continue;
+        }
         let fitted = smoothness.at_patches(&fit.both);
         let leaving: Vec<f64> = fitted.iter().zip(&counts.model).map(|(f, m)| f + m.ln()).collect();
         for (gradient, fitted) in gradients.iter_mut().zip(patches.gradient(&leaving)) {

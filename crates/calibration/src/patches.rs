@@ -173,6 +173,13 @@ impl Patches {
         (node - splits) as u32
     }
 
+    /// Sums over the cells of each patch.
+    pub fn sums(&self, cells: &[f64]) -> Vec<f64> {
+        let mut sums = vec![0.0; self.count()];
+        cells.iter().enumerate().for_each(|(cell, x)| sums[self.patch_of_cell(cell as u32) as usize] += x);
+        sums
+    }
+
     /// Weights that sum to 1 and change smoothly along the surface, of the patches near a site (docs/method.md 16.4). A
     /// function with the value `f_j` at patch `j` is interpolated as `Σ w_j f_j`.
     pub fn weights(&self, site: &Site, mut tell: impl FnMut(u32, f64)) {

@@ -22,6 +22,15 @@ pub struct Surface {
     pub points: Vec<SurfacePoint>,
 }
 
+/// A sum over the cloud at one point, W/(m² sr).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sum {
+    /// What leaves, without `T21`.
+    pub radiance: DVec3,
+    /// The difference of the sums over the two halves of the cloud.
+    pub difference: DVec3,
+}
+
 /// Relative error of the model's light at one point. The mean over a patch has a tenth of it.
 const ACCURACY: f64 = 0.05;
 
@@ -74,19 +83,19 @@ impl Surface {
         self.points.iter().map(|p| Site { position: p.position, normal: p.geometric_normal }).collect()
     }
 
-    /// The sum over the cloud at each point, W/(m² sr): the radiance that leaves, without `T21`. None leaves from points
-    /// inside another part of the solid.
-    pub fn light(&self, summation: &Summation, solid: &Solid, seed: u64, progress: impl Fn(u64) + Sync) -> Vec<DVec3> {
+    /// The sum over the cloud at each point. No light leaves from points inside another part of the solid.
+    pub fn light(&self, summation: &Summation, solid: &Solid, seed: u64, progress: impl Fn(u64) + Sync) -> Vec<Sum> {
         let stream = Stream::new(seed, Purpose::CalibrationSum);
         let estimator = Estimator::Cut { accuracy: ACCURACY };
         let light = |scratch: &mut Scratch, (index, point): (usize, &SurfacePoint)| {
             progress(1);
             if solid.is_buried(point.position, point.geometric_normal) {
-                return DVec3::ZERO;
+                return Sum::default();
             }
             let item = stream.item(index as u64);
             let exit = |half: usize| Exit::new(point.position, point.normal, item.bits(half as u64));
-            summation.whole(estimator, exit, scratch).radiance
+            let leaving = summation.whole(estimator, exit, scratch);
+            Sum { radiance: leaving.radiance, difference: leaving.halves[0] - leaving.halves[1] }
         };
         self.points.par_iter().enumerate().map_init(Scratch::default, light).collect()
     }

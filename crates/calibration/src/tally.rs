@@ -96,12 +96,7 @@ pub struct Counted {
 impl Counted {
     /// The same at each patch.
     pub fn at_patches(&self, patches: &Patches) -> Counts {
-        let sum = |cells: &Vec<f64>| {
-            let mut sums = vec![0.0; patches.count()];
-            cells.iter().enumerate().for_each(|(cell, n)| sums[patches.patch_of_cell(cell as u32) as usize] += n);
-            sums
-        };
-        Counts { model: sum(&self.model), halves: [0, 1].map(|half| sum(&self.halves[half])) }
+        Counts { model: patches.sums(&self.model), halves: self.halves.each_ref().map(|half| patches.sums(half)) }
     }
 }
 

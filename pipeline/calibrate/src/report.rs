@@ -19,7 +19,9 @@ pub fn lines(calibration: &Calibration) -> Vec<String> {
                 continue;
             }
             let unresolved = match e.unresolved {
-                share if share > 0.0 => format!("; too few walks leave {:.1} % of the surface", 100.0 * share),
+                share if share > 0.0 => {
+                    format!("; unresolved (few walks, or samples far apart): {:.1} % of the surface", 100.0 * share)
+                }
                 _ => String::new(),
             };
             lines.push(format!(
