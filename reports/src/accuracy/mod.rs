@@ -65,6 +65,8 @@ an error of about one per cent, 0.01 of ten. *Calibrated* is what `gather` does 
 smooth factor that random walks measure on the shape.
 
 * **Leave the default** unless you want to reproduce a published model. It is the only one that knows the shape.
+* What the default misses most is the little light that is left behind a lit object of a medium that absorbs most of it: up
+  to a third of the green and blue of ketchup.
 * *Half-space* (`--bssrdf half-space --calibration none`) is right on planes, for any albedo, index and angle of the light,
   and costs no calibration. Where an object is thin beside the way that light travels, or lit from behind, it is not.
 * The *dipoles* are wrong on planes as well (tables of half-spaces below). The directional one is too bright, by a quarter
