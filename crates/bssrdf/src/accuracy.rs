@@ -8,7 +8,7 @@ const ALBEDOS: [f64; 11] = [0.02, 0.1, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99
 
 /// Relative errors of a model's reflectance of a half-space under normal incidence: a row for each of the indices 1.3
 /// and 1.5, whose columns are the reduced albedos 0.02, 0.1, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99 and 0.999. The
-/// reference are the random walks of `docs/reports/accuracy.md`.
+/// reference are random walks, which agree with the exact values of `docs/reports/accuracy.md`.
 pub type ReflectanceErrors = [[f64; ALBEDOS.len()]; 2];
 
 /// The error at a reduced albedo and an index; beyond the ends of the table that of the end.

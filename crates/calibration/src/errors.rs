@@ -71,6 +71,7 @@ const FLOOR: f64 = 2e-4;
 /// The misfits of the two halves of the walks at a cell are independent, so that their product estimates the square of
 /// what both share, without any noise on average: what the fit leaves. The fits of the halves themselves have less noise
 /// by far, and their product is most of the model's error; the misfits are a part of it where they exceed their scatter.
+/// `turn` is, at each patch, the mean square of the factor by the eye's angle, less 1: without a calibration no image has it.
 pub fn channel_errors(
     smoothness: &Smoothness,
     patches: &Patches,
@@ -78,9 +79,10 @@ pub fn channel_errors(
     channel: usize,
     counted: &Counted,
     fit: &Fit,
+    turn: &[f64],
 ) -> ChannelErrors {
     let [both, one, two] = [&fit.both, &fit.halves[0], &fit.halves[1]].map(|f| smoothness.at_cells(f));
-    let (mut smooth, mut misfit, mut noise, mut spread, mut bright) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    let (mut smooth, mut turned, mut misfit, mut noise, mut spread, mut bright) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     for cell in 0..both.len() {
         let (share, model, expected) = (light.share[cell], light.radiance[channel][cell], counted.model[cell]);
         if expected <= 0.0 {
@@ -90,6 +92,7 @@ pub fn channel_errors(
         let weight = share / (truth * truth + DARK);
         let [a, b] = [0, 1].map(|half| counted.halves[half][cell] / expected);
         smooth += weight * model * model * one[cell].exp_m1() * two[cell].exp_m1();
+        turned += weight * model * model * turn[patches.patch_of_cell(cell as u32) as usize];
         bright += weight * truth * truth;
         let product = truth * truth * (a * (-one[cell]).exp() - 1.0) * (b * (-two[cell]).exp() - 1.0);
         misfit += weight * product;
@@ -99,7 +102,7 @@ pub fn channel_errors(
     let unresolved = unresolved(patches, counted);
     let scatter = spread.sqrt();
     ChannelErrors {
-        before: smooth.max(0.0) + if misfit > scatter { misfit } else { 0.0 },
+        before: turned + smooth.max(0.0) + if misfit > scatter { misfit } else { 0.0 },
         after: misfit.max(0.0) + noise + FLOOR * bright,
         uncertainty: scatter + noise,
         unresolved,

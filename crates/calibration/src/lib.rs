@@ -45,12 +45,13 @@ pub use patches::{Patches, Site};
 use bssrdf::{Medium, Model, half_space::exit_lobe};
 use entries::Entries;
 use errors::{Light, channel_errors};
+use factors::{mean_square_turn, shift};
 use fit::{Fit, Smoothness};
 use formats::{
     calibration::{CalibratedMaterial, Calibration, ChannelErrors, MediumFacts, version},
     cloud::{Cloud, shards},
 };
-use scene::{NormalKind, Rays, Scene};
+use scene::{DVec3, NormalKind, Rays, Scene};
 use std::sync::Arc;
 use sums::{Summation, estimator::Scatterer};
 use surface::Surface;
@@ -205,16 +206,18 @@ fn calibrate_material(
         let counts = counted.at_patches(&patches);
         let is_grain = light.grain(&patches, channel) > MAX_GRAIN;
         let fit = if is_grain { Fit::none(patches.count()) } else { smoothness.fit(&counts) };
-        lobe[channel] = exit_lobe(medium.eta, tally.cosines / tally.sum());
-        errors[channel] = channel_errors(&smoothness, &patches, &light, channel, &counted, &fit);
-        if is_grain {
-            errors[channel].unresolved = 1.0;
-            continue;
-        }
         let fitted = smoothness.at_patches(&fit.both);
         let leaving: Vec<f64> = fitted.iter().zip(&counts.model).map(|(f, m)| f + m.ln()).collect();
-        for (gradient, fitted) in gradients.iter_mut().zip(patches.gradient(&leaving)) {
-            gradient[channel] = fitted.as_vec3().to_array();
+        let slopes = if is_grain { vec![DVec3::ZERO; patches.count()] } else { patches.gradient(&leaving) };
+        let shift = shift(&medium.channels[channel], medium.eta);
+        let turn: Vec<f64> = slopes.iter().map(|slope| mean_square_turn(shift * slope.length())).collect();
+        lobe[channel] = exit_lobe(medium.eta, tally.cosines / tally.sum());
+        errors[channel] = channel_errors(&smoothness, &patches, &light, channel, &counted, &fit, &turn);
+        if is_grain {
+            errors[channel].unresolved = 1.0;
+        }
+        for (gradient, slope) in gradients.iter_mut().zip(&slopes) {
+            gradient[channel] = slope.as_vec3().to_array();
         }
         for (factor, fitted) in log_factors.iter_mut().zip(&fit.both) {
             factor[channel] = *fitted as f32;

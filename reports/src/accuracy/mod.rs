@@ -97,7 +97,7 @@ fn check_of_walks(effort: Effort) -> String {
             [format!("{exact:.5}"), format!("{:.5} ± {:.5}", walked.mean, walked.error), format!("{difference:+.1}")];
         rows.push(numbers.into_iter().chain(found).collect());
     }
-    let text = "## Test of the random walk\n\nWhat a half-space of isotropic scatterers scatters back, by Chandrasekhar's \
+    let text = "\n## Test of the random walk\n\nWhat a half-space of isotropic scatterers scatters back, by Chandrasekhar's \
                 law of reflection (1950) with a smooth boundary, and\nby the walks of this report. Differences are in \
                 standard errors:\n\n";
     text.to_owned() + &table(&["albedo", "angle", "index", "exact", "walk", "difference"], &rows) + "\n"
