@@ -200,7 +200,7 @@ mod tests {
     fn noise_of_the_references_does_not_count() {
         let references = [picture(&[0.9, 1.1, 0.0, 1.0]), picture(&[1.0, 1.0, 0.0, 1.0])];
         let truth = Truth { references };
-        assert!(truth.relative_mse(&picture(&[1.0; 4]), 1, 1.0)[0].abs() < 1e-15);
+        assert!(truth.relative_mse(&picture(&[1.0, 1.0, 0.0, 1.0]), 1, 1.0)[0].abs() < 1e-15);
         let off = truth.relative_mse(&picture(&[1.0, 1.0, 0.0, 1.1]), 1, 1.0)[0];
         assert!((off - 0.01 / 1.01 / 3.0).abs() < 1e-9, "{off}");
         let doubled = truth.ratio(&picture(&[2.0, 2.0, 0.0, 2.0]));
