@@ -136,6 +136,9 @@ impl Scattered {
     }
 }
 
+/// Pixels of a block whose mean is compared, along each side.
+pub const BLOCK: usize = 4;
+
 /// The exact light of an image, twice.
 pub struct Truth {
     references: [Scattered; 2],

@@ -8,7 +8,7 @@ use crate::{
     error::Error,
     markdown::table,
     program::Program,
-    truth::{Exact, Scattered, Shot},
+    truth::{BLOCK, Exact, Scattered, Shot},
 };
 use list::CASES;
 use scenes::Case;
@@ -31,12 +31,9 @@ struct Measured {
     /// relMSE of both sides together, and what `calibrate` said of it.
     actual: Pair,
     said: Pair,
-    /// Share of the surface that too few walks leave, of the worst channel.
+    /// Share of the surface that the calibration does not resolve, of the worst channel.
     unresolved: f64,
 }
-
-/// Pixels of a block, along each side.
-const BLOCK: usize = 4;
 
 /// The programs, and where files go.
 struct Bench<'a> {

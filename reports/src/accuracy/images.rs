@@ -9,7 +9,7 @@ use crate::{
     error::Error,
     markdown::table,
     program::Program,
-    truth::{Exact, Scattered, Shot, Truth},
+    truth::{BLOCK, Exact, Scattered, Shot, Truth},
 };
 use bssrdf::built_in;
 use std::{fs, path::Path};
@@ -18,7 +18,7 @@ use std::{fs, path::Path};
 const MEDIA: [&str; 6] = ["skimmilk", "marble", "skin1", "skin2", "ketchup", "apple"];
 
 /// The models with their arguments of `gather`; the last is its default.
-pub const MODELS: [(&str, &[&str]); 5] = [
+const MODELS: [(&str, &[&str]); 5] = [
     ("directional", &["--bssrdf", "directional-dipole"]),
     ("better", &["--bssrdf", "better-dipole"]),
     ("standard", &["--bssrdf", "standard-dipole"]),
@@ -36,9 +36,6 @@ const SHOWN: [(&str, &str); 7] = [
     ("sheet", "skin1"),
     ("sheet", "marble"),
 ];
-
-/// Pixels of a block, along each side.
-pub const BLOCK: usize = 4;
 
 /// One medium on one shape.
 struct Measured {
@@ -135,7 +132,8 @@ pub fn images(programs: &Path, exact: &Exact, effort: Effort, folder: &Path) -> 
             if SHOWN.contains(&(shape.name, medium)) {
                 let name = format!("accuracy-{}-{medium}.png", shape.name);
                 let path = folder.join(&name);
-                let strip = strips::strip(&truth.mean(), &images).map_err(|e| Error::Usage(e.to_string()))?;
+                let named: Vec<_> = MODELS.iter().map(|(name, _)| *name).zip(&images).collect();
+                let strip = strips::strip(&truth.mean(), &named).map_err(|e| Error::Usage(e.to_string()))?;
                 fs::write(&path, strip).map_err(Error::file(&path))?;
                 pictures += &format!("\n{} of {medium}:\n\n![{0} of {medium}]({name})\n", shape.name);
             }

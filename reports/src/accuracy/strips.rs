@@ -1,9 +1,6 @@
 //! Pictures of models beside the truth, with their signed errors below.
 
-use crate::{
-    accuracy::images::{BLOCK, MODELS},
-    truth::Scattered,
-};
+use crate::truth::{BLOCK, Scattered};
 use bssrdf::DVec3;
 use color::srgb;
 use picture::{Picture, font};
@@ -19,12 +16,12 @@ const INK: [u8; 3] = [40; 3];
 /// Space between columns, pixels: names are wider than pictures.
 const GAP: usize = 8;
 
-/// The truth and the image of each model in a row, each below its name, and below each model its error.
-pub fn strip(truth: &Scattered, images: &[Scattered; MODELS.len()]) -> Result<Vec<u8>, png::EncodingError> {
+/// The truth and the images of models in a row, each below its name, and below each model its error.
+pub fn strip(truth: &Scattered, models: &[(&str, &Scattered)]) -> Result<Vec<u8>, png::EncodingError> {
     let (width, height, exposure) = (truth.width + GAP, truth.height, exposure(truth));
-    let mut sheet = Picture::new(width * (images.len() + 1), font::LINE + 2 * height + GAP, PAPER);
-    let named = MODELS.map(|(name, _)| name).into_iter().zip(images);
-    for (column, (name, image)) in [("truth", truth)].into_iter().chain(named).enumerate() {
+    let mut sheet = Picture::new(width * (models.len() + 1), font::LINE + 2 * height + GAP, PAPER);
+    let columns = [("truth", truth)].into_iter().chain(models.iter().copied());
+    for (column, (name, image)) in columns.enumerate() {
         let left = column * width;
         font::dots(name, width).for_each(|(x, y)| sheet.dot(left + x, y + 1, INK));
         sheet.draw(&toned(image, exposure), left, font::LINE);

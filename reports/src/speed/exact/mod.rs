@@ -14,7 +14,7 @@ use crate::{
         harness::Harness,
         shot::Shot,
     },
-    truth::{Exact, Scattered, Shot as TruthShot, Truth},
+    truth::{BLOCK, Exact, Scattered, Shot as TruthShot, Truth},
 };
 use others::{ON_BUNNY, ON_SPHERE, Other};
 use ways::{REFERENCE, Step, Way, ways};
@@ -118,7 +118,7 @@ fn run(harness: &mut Harness, shot: &Shot, step: Step, truth: &Truth) -> Result<
     let Step { samples, spp, walks } = step;
     let taken = harness.take(&Shot { samples, spp, walks, ..shot.clone() })?;
     let scattered = Scattered::read(&taken.file)?;
-    let [pixels, blocks] = [1, 4].map(|block| truth.relative_mse(&scattered, block, WHITE));
+    let [pixels, blocks] = [1, BLOCK].map(|block| truth.relative_mse(&scattered, block, WHITE));
     let run =
         Run { step, cpu: taken.cpu(), gather: taken.gathering.cpu, pixels, blocks, ratio: truth.ratio(&scattered) };
     harness.judge_truth(&taken, run.error());
