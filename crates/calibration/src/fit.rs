@@ -51,7 +51,7 @@ const STEPS: usize = 20;
 const MAX_CHANGE: f64 = 1.0;
 
 /// The change below which the fit has converged.
-const CONVERGED: f64 = 1e-4;
+const CONVERGED: f64 = 1e-3;
 
 /// What the fits of all channels share.
 pub struct Smoothness {
@@ -71,7 +71,7 @@ fn mean_weights(patches: &Patches, sites: &[Site], part_of: impl Fn(usize) -> u3
         patches.weights(site, |j, weight| *rows[part].entry(j).or_default() += weight);
     }
     let mean = |(row, count): (BTreeMap<u32, f64>, &f64)| row.into_iter().map(|(j, w)| (j, w / count)).collect();
-    Sparse(rows.into_iter().zip(&counts).map(mean).collect())
+    Sparse::new(rows.into_iter().zip(&counts).map(mean).collect())
 }
 
 impl Smoothness {
@@ -91,7 +91,7 @@ impl Smoothness {
                 row.push((i as u32, -1.0));
             }
         }
-        Smoothness { interpolation, to_cells, laplacian: Sparse(rows) }
+        Smoothness { interpolation, to_cells, laplacian: Sparse::new(rows) }
     }
 
     /// A function of position at each patch, as the mean over the patch.
@@ -111,7 +111,8 @@ impl Smoothness {
         let (mut best, mut best_score) = ((None, [none.clone(), none.clone()]), score([&none, &none]));
         let mut start = [none.clone(), none.clone()];
         for lambda in LAMBDAS {
-            start = [0, 1].map(|half| self.minimize(&counts.model, &counts.halves[half], lambda, &start[half]));
+            let of = |half: usize| self.minimize(&counts.model, &counts.halves[half], lambda, &start[half]);
+            start = rayon::join(|| of(0), || of(1)).into();
             let reached = score([&start[0], &start[1]]);
             if reached > best_score {
                 (best, best_score) = ((Some(lambda), start.clone()), reached);

@@ -107,7 +107,7 @@ const MIN_DEPTH: u32 = 6;
 const MIN_SHARE: f64 = 1.0 / 16.0;
 
 /// Points of each patch at which the model is evaluated.
-const POINTS: usize = 128;
+const POINTS: usize = 64;
 
 /// The largest relative variance of the model's light on a patch by the positions of the samples. Above it, the sum over
 /// a cloud is spikes about its samples, most of which the points of a patch miss: a factor would be too large by half.

@@ -31,8 +31,8 @@ pub struct Sum {
     pub difference: DVec3,
 }
 
-/// Relative error of the model's light at one point. The mean over a patch has a tenth of it.
-const ACCURACY: f64 = 0.05;
+/// Relative error of the model's light at one point. The mean over a patch has an eighth of it.
+const ACCURACY: f64 = 0.1;
 
 /// Points for the areas of cells, for each point at which the model is evaluated.
 const AREA_POINTS: usize = 16;
@@ -53,8 +53,8 @@ struct Spread {
 
 impl Surface {
     /// Draws `count` points on the triangles of `material`. Each triangle gets its share by area, to within one point,
-    /// and those of one triangle follow a sequence of low discrepancy: the mean over a patch of 128 points is as good as
-    /// that of five hundred independent ones.
+    /// and those of one triangle follow a sequence of low discrepancy: the mean over a patch is as good as that of
+    /// several times as many independent ones.
     pub fn new(mesh: &Mesh, material: u16, normals: NormalKind, count: usize, seed: u64) -> Surface {
         let spread = Spread::new(mesh, material, count, Stream::new(seed, Purpose::CalibrationPoint));
         let of = |k: usize| spread.points(k).map(|(triangle, weights)| mesh.point(triangle, weights, normals));
