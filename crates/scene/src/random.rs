@@ -14,6 +14,9 @@ pub enum Purpose {
     Gather,
     /// Points at which paths cross their pixel.
     Pixel,
+    /// Points around exitant points, and their light.
+    Near,
+    NearLight,
     /// Transmittance rays of edge pixels.
     Edge,
     /// Points at which phase two corrects the error that the cut predicts.
@@ -57,6 +60,8 @@ impl Purpose {
             Purpose::CalibrationPoint => u64::MAX - 4,
             Purpose::CalibrationSum => u64::MAX - 5,
             Purpose::CalibrationArea => u64::MAX - 6,
+            Purpose::Near => u64::MAX - 8,
+            Purpose::NearLight => u64::MAX - 9,
             Purpose::HalfSpaceTable => u64::MAX - 3,
             Purpose::Remainder(k) => 7 + k,
         }

@@ -13,6 +13,9 @@ pub struct Counts {
     pub shadow_rays: u64,
     pub gathers: u64,
     pub evaluations: u64,
+    /// Points around exitant points that were lit, and the rays that were traced for them.
+    pub near_points: u64,
+    pub near_rays: u64,
     /// Nodes of the trees over the samples that were visited.
     pub nodes: u64,
     /// Paths that were ended by the depth limit, so that their light is missing.
@@ -50,6 +53,8 @@ impl Counts {
         self.shadow_rays += other.shadow_rays;
         self.gathers += other.gathers;
         self.evaluations += other.evaluations;
+        self.near_points += other.near_points;
+        self.near_rays += other.near_rays;
         self.nodes += other.nodes;
         self.cut_by_depth += other.cut_by_depth;
         self.escaped_inside += other.escaped_inside;

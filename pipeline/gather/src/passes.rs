@@ -11,9 +11,11 @@ use crate::{
     reference::{Walks, meets_light},
     renderer::{Renderer, TranslucentObject},
 };
+use bssrdf::Partition;
 use calibration::Factors;
 use formats::cloud::shards;
 use glam::DVec2;
+use near_field::{LitScene, NearField};
 use rayon::prelude::*;
 use scene::{
     DVec3,
@@ -42,6 +44,8 @@ pub struct Passes<'a> {
     paths: u32,
     counts: Counts,
     pixel_stream: Stream,
+    near_stream: Stream,
+    near_light_stream: Stream,
     edge_stream: Stream,
 }
 
@@ -52,11 +56,16 @@ impl<'a> Passes<'a> {
     /// Prepares an image; the cut is as accurate as `settings.paths_per_pixel` paths need.
     pub fn new(input: &Input<'a>, settings: &Settings) -> Self {
         let objects = objects(input, settings);
+        let translucent = |material: u16| objects[material as usize].is_some();
+        let any_near = objects.iter().flatten().any(|object| object.near.is_some());
+        let lit = || LitScene::new(input.scene, input.rays, settings.normals, translucent);
+        let lit = any_near.then(lit);
         let mut renderer = Renderer {
             input: *input,
             meets_light: meets_light(input, |material| objects[material as usize].is_none()),
             settings: settings.clone(),
             lights: LightTree::new(input.scene.lights()),
+            lit,
             objects,
             drawn: DrawnCounts::of(input.clouds),
             paths_per_pixel: settings.paths_per_pixel,
@@ -76,6 +85,8 @@ impl<'a> Passes<'a> {
             paths: 0,
             counts: Counts::default(),
             pixel_stream: Stream::new(settings.seed, Purpose::Pixel),
+            near_stream: Stream::new(settings.seed, Purpose::Near),
+            near_light_stream: Stream::new(settings.seed, Purpose::NearLight),
             edge_stream: Stream::new(settings.seed, Purpose::Edge),
         };
         let walks = passes.renderer.objects.iter().flatten().filter_map(|object| object.walks.as_ref());
@@ -153,6 +164,8 @@ impl<'a> Passes<'a> {
             [0, 1, 2].map(|channel| Sequence::new(stream.item((2 * pixel + half) * 3 + channel), stream))
         };
         let walks = settings.reference.then(|| [0, 1].map(walks_by));
+        let near = spread_by(self.near_stream);
+        let near_light = spread_by(self.near_light_stream);
         let mut edge = self.edges[index].clone().map(|edge| (edge, spread_by(self.edge_stream)));
         let alone = settings.paths_per_pixel == 1;
         let mut sum = self.sums[index];
@@ -166,7 +179,12 @@ impl<'a> Passes<'a> {
             };
             let (origin, direction) = self.ray(index, offset);
             let walks = walks.as_ref().map(|by_half| by_half[path as usize % 2].map(|s| s.point(path / 2)));
-            let light = self.renderer.trace(PathIndex { pixel, path, walks }, origin, direction, context);
+            let near = {
+                let [a, b, c, d] = near[path as usize % 2].point(path / 2);
+                let [e, f, ..] = near_light[path as usize % 2].point(path / 2);
+                [a, b, e, c, d, f]
+            };
+            let light = self.renderer.trace(PathIndex { pixel, path, walks, near }, origin, direction, context);
             sum.add(path, alone, &light);
             if let Some((edge, spread)) = &mut edge {
                 let half = path as usize % 2;
@@ -232,7 +250,10 @@ pub fn render(input: &Input, settings: &Settings, progress: impl Fn(u64) + Sync)
 fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<TranslucentObject<'a>>> {
     let mut objects: Vec<Option<TranslucentObject>> = input.scene.materials.iter().map(|_| None).collect();
     for (slot, (sampled, medium)) in shards::materials(input.clouds).iter().zip(input.media).enumerate() {
-        let scatterer = Arc::new(Scatterer::new(settings.model, medium, sampled.area_m2.sqrt()));
+        let near = near_field(input, settings, slot);
+        let partition = near.as_ref().map_or(Partition::NONE, NearField::partition);
+        let scatterer =
+            Arc::new(Scatterer::new(settings.model, medium, sampled.area_m2.sqrt()).far(partition));
         let is_translucent = |material| shards::materials(input.clouds).iter().any(|m| m.index == material);
         let walks = settings.reference.then(|| Walks::new(input, sampled.index, medium, is_translucent));
         let extinction = || medium.map(|c| c.extinction());
@@ -242,8 +263,22 @@ fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<Translucent
             factors: input.calibration.map(|c| Factors::new(&c.materials[slot])),
             lobe: settings.model.exit_lobe(medium),
             summation: Summation::of_clouds(scatterer, input.clouds, slot),
+            near,
             medium: medium.clone(),
         });
     }
     objects
+}
+
+/// The near part of a material whose samples are too far apart for it.
+fn near_field(input: &Input, settings: &Settings, slot: usize) -> Option<NearField> {
+    let (sampled, medium) = (&shards::materials(input.clouds)[slot], &input.media[slot]);
+    if settings.reference || medium.is_clear() {
+        return None;
+    }
+    let spec = std::env::var("NEAR").ok()?;
+    let v: Vec<f64> = spec.split(',').map(|x| x.parse().unwrap()).collect();
+    let area: f64 = shards::materials(input.clouds).iter().map(|m| m.area_m2).sum();
+    let spacing = (area / shards::drawn(input.clouds) as f64).sqrt();
+    Some(NearField::new(settings.model, medium, sampled.index, [v[0] * spacing, v[1] * spacing]))
 }

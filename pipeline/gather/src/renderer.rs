@@ -7,6 +7,7 @@ use crate::{
 use bsdf::Surface;
 use bssrdf::Medium;
 use calibration::Factors;
+use near_field::NearField;
 use scene::{DVec3, light::LightTree, random::Stream};
 use std::ops::Range;
 use sums::{Summation, drawn::DrawnCounts};
@@ -16,6 +17,8 @@ pub struct Renderer<'a> {
     pub input: Input<'a>,
     pub settings: Settings,
     pub lights: LightTree<'a>,
+    /// What near fields are lit by; none if there is no near field.
+    pub lit: Option<near_field::LitScene<'a>>,
     /// The translucent object of each material; none for opaque materials.
     pub objects: Vec<Option<TranslucentObject<'a>>>,
     /// Samples of each cloud, the unlit ones included.
@@ -42,6 +45,8 @@ pub struct TranslucentObject<'a> {
     /// `a` and `b` of the light that leaves in proportion to `T21 (a + b μ)`, for each channel (docs/method.md 15.8).
     pub lobe: [[f64; 2]; 3],
     pub summation: Summation<'a>,
+    /// The near part, if the samples are too far apart for it; the summation then has the far part alone.
+    pub near: Option<NearField>,
     /// The factors of its surface, if it is calibrated.
     pub factors: Option<Factors>,
     /// Random walks, if they take the place of the summation.

@@ -6,6 +6,7 @@ use crate::{
 };
 use bsdf::View;
 use calibration::Site;
+use near_field::Place;
 use scene::{DVec3, SurfacePoint};
 use sums::{estimator::Estimator, samples::Exit};
 
@@ -60,6 +61,17 @@ impl Renderer<'_> {
         } else {
             object.summation.whole(estimator, exit, scratch)
         };
+        if let (Some(near), Some(lit)) = (&object.near, &self.lit) {
+            let place = Place { surface: *point, position, normal: view.normal };
+            let random = |d: u64| state.key.uniform(1 << 40 | (8 * state.dimension + d));
+            let numbers = state.near.unwrap_or_else(|| std::array::from_fn(|d| random(d as u64)));
+            let mut work = near_field::Work::default();
+            let light = near.light(lit, &place, &numbers, state.key, &mut context.near, &mut work);
+            leaving.radiance += light;
+            leaving.halves.iter_mut().for_each(|half| *half += light);
+            context.counts.near_points += work.points;
+            context.counts.near_rays += work.rays;
+        }
         let factor = object.factor(point, view);
         leaving.radiance *= factor;
         leaving.halves.iter_mut().for_each(|half| *half *= factor);

@@ -302,7 +302,7 @@ fn predict(tables: &FalloffTables, exit: &Exit, nodes: &[Node], scale: f32, ids:
         let value = if far2 > disc2 { tables.value.at(far2) } else { tables.disc.at(disc2) };
         // The mean of an exponential over a node is close to the geometric mean of its values at the center and at the
         // near end.
-        let near_value = (value * tables.value.at(near2)).sqrt();
+        let near_value = (value * tables.peak.at(near2)).sqrt();
         let by_flux = value * flux_deviation[i];
         predicted.error[i] =
             flux[i] * (by_position * by_position + by_direction * by_direction + by_flux * by_flux).sqrt();
