@@ -70,7 +70,7 @@ fn open_meshes_are_refused() {
 
 /// A slab of which a few triangles are missing is refused by its first walks, although its image would take hours.
 ///
-/// Seen to catch: the walks counted at the end alone; walks of the first path of each pixel alone, which are too few here.
+/// Seen to catch: the walks counted at the end alone.
 #[test]
 fn an_open_mesh_is_refused_before_the_work() {
     let bench = Bench::new();

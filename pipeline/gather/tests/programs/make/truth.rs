@@ -53,7 +53,7 @@ fn there_is_no_truth_of_an_open_mesh() {
     tree.open_scene("thing.gltf");
     tree.write("s.json", view(0.5));
     tree.write("m.json", medium(1.0));
-    let own = ["truth", "SCENE=thing.gltf", "MEDIUM=m.json", "VIEWS=s.json", "WIDTH=512", "ERROR=0.0001"];
+    let own = ["truth", "SCENE=thing.gltf", "MEDIUM=m.json", "VIEWS=s.json", "WIDTH=6", "ERROR=0.9"];
     let output = tree.command(&own).output().expect("make starts");
     let said = Said(super::said(&output));
     assert_eq!(output.status.code(), Some(2), "{}", said.0);
