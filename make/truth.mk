@@ -1,5 +1,6 @@
 # What the model is worth on your own scene: `make truth SCENE=path.glb MEDIUM=marble` renders each view twice, as
 # `make` does and by random walks in the mesh, which are exact but for their noise, and compares the two on a page.
+# The exact images come first: a mesh that is open has none, which gather says at once.
 # Offers the target truth, and the variables
 #   WIDTH=128   of the pictures, pixels
 #   ERROR=0.05  relative standard error of the reference; half of it takes four times as long
@@ -17,7 +18,7 @@ $(call own_pictures,$(TRUTH_REFERENCE),--width $(WIDTH),own_reference)
 $(eval $(call settings,$(TRUTH_MODEL)))
 
 ## truth: your own SCENE=path.glb MEDIUM=marble beside its exact images, as a page (minutes a view; WIDTH=128 ERROR=0.05)
-truth: $(OWN_PICTURES:%=$(TRUTH_MODEL)/%) $(OWN_PICTURES:%=$(TRUTH_REFERENCE)/%) $(TRUTH_MODEL).settings | $(COMPARE)
+truth: $(OWN_PICTURES:%=$(TRUTH_REFERENCE)/%) $(OWN_PICTURES:%=$(TRUTH_MODEL)/%) $(TRUTH_MODEL).settings | $(COMPARE)
 	@{ $(foreach p,$(OWN_PICTURES),$(if $(filter %.views,$(p)),cat $(TRUTH_MODEL)/$(p),echo $(p));) } | { set --; \
 	while IFS= read -r image; do \
 	  page=$(TRUTH_MODEL)/$${image%.exr}.html; set -- "$$@" "$$page"; \

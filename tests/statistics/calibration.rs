@@ -1,7 +1,8 @@
 //! The calibrated light of whole objects against what must leave them.
 //!
-//! Seen to catch: walks that leave without a collision counted; a patch found by position alone, so that the light of a
-//! thin sheet is on its wrong side; the areas of cells taken as equal. The walks themselves are tested in `crates/walks`.
+//! Seen to catch: the normal of an exit turned around, and a patch found by position alone, so that the light of a thin
+//! sheet is on its wrong side; the areas of cells taken as equal. The walks themselves are tested in `crates/walks`, and
+//! so are those that leave without a collision.
 
 use bssrdf::{DVec3, Medium, Model, fresnel, half_space::exit_moment};
 use calibration::{Factors, Site, Task, calibrate};

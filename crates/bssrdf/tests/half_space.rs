@@ -53,8 +53,8 @@ fn hostile_offsets(random: &mut Random, refracted: DVec3) -> Vec<DVec3> {
 /// A beam of power 1 leaves from any place no brighter than this over `σ_t'²`: the tabulated distances end at 2⁻¹¹.
 const BRIGHTEST: f64 = 1000.0;
 
-/// Seen to catch: the softness of the source left out (infinite at the source); z without its absolute value (the image
-/// is a pole above the surface).
+/// Seen to catch: the softness of the source left out (float32 loses the distance next to it); z without its absolute
+/// value (NaN above the surface).
 #[test]
 fn finite_and_positive_anywhere() {
     let mut random = Random(3);
@@ -78,8 +78,7 @@ fn finite_and_positive_anywhere() {
 
 /// A step of 10⁻⁹ mean free paths in any direction, also across the tangent plane, changes little.
 ///
-/// Seen to catch: the constant value near the entry point not that of the first distance; a step of the table whose
-/// ends do not meet those of its neighbors.
+/// Seen to catch: `w` without its blur, so that it turns at once where light enters.
 #[test]
 fn continuous_anywhere() {
     let mut random = Random(4);
@@ -102,8 +101,35 @@ fn continuous_anywhere() {
     }
 }
 
+/// The squared distances, in reduced mean free paths, where steps of the table meet: eight for each doubling. They are
+/// so narrow that random offsets cross none of them.
+fn ends_of_steps() -> impl Iterator<Item = f64> {
+    (-23..16).flat_map(|doubling| (0..8).map(move |step| f64::from(doubling).exp2() * (1.0 + f64::from(step) / 8.0)))
+}
+
+/// Seen to catch: the constant value near the entry point not that of the first distance; a step of the table whose
+/// ends do not meet those of its neighbors.
+#[test]
+fn continuous_where_steps_of_the_table_meet() {
+    let mut random = Random(5);
+    for medium in media() {
+        let model = Model::HalfSpace.of(&medium);
+        for r2 in ends_of_steps() {
+            let Some(first) = separation(medium.eta, random.uniform(), DVec3::ZERO) else { continue };
+            let end = random.direction() * r2.sqrt();
+            // Steps are found by the distance in float32, of which these two differ.
+            let [below, above] =
+                [1.0 - 2e-7, 1.0 + 2e-7].map(|scale| model.bare(0, &Separation { offset: end * scale, ..first }));
+            // The farthest end is at 200 mean free paths, where light falls by e^{-200}.
+            assert!((below - above).abs() <= 2e-4 * below, "{below:e} {above:e} at {end} in {:?}", medium.channels[0]);
+        }
+    }
+}
+
 /// The light on the back of a sheet falls as `e^{−κ z}/z²`, times a factor that hardly varies: the depth that the images
 /// see is bounded.
+///
+/// Seen to catch: z in place of z̃, for which the far side is bright.
 #[test]
 fn deep_below_the_surface_light_falls_as_the_diffuse_mode() {
     for absorbed in [1e-3, 0.01, 0.1, 0.5] {

@@ -1,24 +1,35 @@
 //! Renders with a given number of paths, or with as many paths as a target error needs.
 
-use cli::{Common, Progress, count, count_up};
+use crate::{holes, image_jobs::ImageJob};
+use cli::{Common, Failure, Progress, count, count_up};
 use formats::cloud::{Cloud, Pattern, shards};
-use gather::{Input, Passes, Rendered, Settings, estimator::Estimator, film::Errors, render};
+use gather::{Input, Passes, Rendered, Settings, estimator::Estimator, film::Errors};
 use sums::confidence::Estimate;
 
-/// Renders `settings.paths_per_pixel` paths.
-pub fn render_all(input: &Input, settings: &Settings, common: &Common) -> Rendered {
+/// Renders the job's paths for each pixel.
+pub fn render_all(input: &Input, job: &ImageJob, common: &Common) -> Result<Rendered, Failure> {
+    let settings = &job.settings;
+    let mut passes = begin(input, settings, job)?;
     let progress = Progress::start(common, "gathering", settings.part().pixels() as u64, "pixels");
-    let rendered = render(input, settings, |n| progress.add(n));
+    passes.pass(settings.paths_per_pixel, |n| progress.add(n));
     progress.finish();
-    rendered
+    Ok(passes.finish())
+}
+
+/// An image that can be rendered, as far as a few of its paths tell.
+fn begin<'a>(input: &Input<'a>, settings: &Settings, job: &ImageJob) -> Result<Passes<'a>, Failure> {
+    let passes = Passes::new(input, settings);
+    holes::probe(&passes, job)?;
+    Ok(passes)
 }
 
 /// Doubles the paths until the error meets the target, or the cloud's own error exceeds it, or
-/// `settings.paths_per_pixel` are reached.
-pub fn render_to(target: f64, input: &Input, settings: &Settings, common: &Common) -> Rendered {
+/// the most paths of the job are reached.
+pub fn render_to(target: f64, input: &Input, job: &ImageJob, common: &Common) -> Result<Rendered, Failure> {
+    let settings = &job.settings;
     let max_paths = settings.paths_per_pixel;
     let mut paths = FIRST_PATHS.min(max_paths);
-    let mut passes = Passes::new(input, &Settings { paths_per_pixel: paths, ..settings.clone() });
+    let mut passes = begin(input, &Settings { paths_per_pixel: paths, ..settings.clone() }, job)?;
     let pixels = settings.part().pixels() as u64;
     let (mut done, mut before) = (0, f64::INFINITY);
     loop {
@@ -46,7 +57,7 @@ pub fn render_to(target: f64, input: &Input, settings: &Settings, common: &Commo
         done = paths;
         paths = (2 * paths).min(max_paths);
     }
-    passes.finish()
+    Ok(passes.finish())
 }
 
 /// The unit of a pass's progress: pixels, each with this range of paths.

@@ -4,6 +4,7 @@ mod adaptive;
 mod arguments;
 mod calibrated;
 mod cameras;
+mod holes;
 mod image_jobs;
 mod inputs;
 mod lists;
@@ -85,19 +86,19 @@ fn render_image(
     job: &ImageJob,
     mut seconds: Seconds,
 ) -> Result<(), Failure> {
-    let (common, settings) = (&request.common, &job.settings);
+    let common = &request.common;
     let output = Output::create(&job.file(&request.outputs.image))?;
     let (scene, clouds, media, camera) = (&inputs.scene, inputs.clouds(), &inputs.media, &job.camera);
     let input = Input { scene, rays, clouds, media, calibration, camera };
     let rendered = seconds.time("render", || {
         common.in_pool(|| match request.target_error {
-            None => adaptive::render_all(&input, settings, common),
-            Some(target) => adaptive::render_to(target, &input, settings, common),
+            None => adaptive::render_all(&input, job, common),
+            Some(target) => adaptive::render_to(target, &input, job, common),
         })
-    })?;
+    })??;
     inputs.cloud_files.check_unchanged()?;
     let facts = Facts::new(request, inputs, calibration, job, &rendered);
-    summary::check_walks(&facts)?;
+    holes::check(&rendered.counts, job)?;
     outputs::write(&facts, output, seconds)?;
     summary::show(&facts)
 }

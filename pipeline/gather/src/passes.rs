@@ -225,6 +225,25 @@ impl<'a> Passes<'a> {
         self.paths = range.end;
     }
 
+    /// The counts of some of the first paths, which are added to no sum. Paths that are numbered one after another are
+    /// spread over the whole image.
+    pub fn first_paths(&self, numbers: Range<u64>) -> Counts {
+        let pixels = self.part.pixels();
+        let of_path = |number: u64| {
+            // Multiples of the golden section leave no large part of the image out.
+            let share = (number as f64 * 0.618_033_988_749_895).fract();
+            let (pixel, path) = ((share * pixels as f64) as usize, (number / pixels as u64) as u32);
+            let mut context = ThreadContext::new(self.renderer.objects.len());
+            self.add_paths(pixel.min(pixels - 1), path..path + 1, &mut context);
+            context.counts
+        };
+        let all: Vec<Counts> = numbers.into_par_iter().map(of_path).collect();
+        all.iter().fold(Counts::default(), |mut sum, counts| {
+            sum.add(counts);
+            sum
+        })
+    }
+
     /// The errors of the image so far; none if it is black.
     pub fn errors(&self) -> Option<Errors> {
         Errors::of([self.part.width, self.part.height], self.sums.iter().zip(self.edges.iter().map(Option::as_deref)))

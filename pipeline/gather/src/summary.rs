@@ -50,24 +50,6 @@ pub fn show(facts: &Facts) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Of walks, this share may leave through holes of the surface.
-const ESCAPED: f64 = 1e-3;
-
-/// Refuses the image of random walks that leave their medium through holes: it would lack their light.
-pub fn check_walks(facts: &Facts) -> Result<(), Failure> {
-    let counts = &facts.rendered.counts;
-    let share = counts.walks_escaped as f64 / counts.walks.max(1) as f64;
-    if share > ESCAPED {
-        let message = format!(
-            "--reference: {:.2} % of the random walks left through holes of the surface: the mesh is open, and has no \
-             inside that light could be followed in; no image was written",
-            100.0 * share
-        );
-        return Err(facts.job.failure(Failure::usage(message)));
-    }
-    Ok(())
-}
-
 /// Refuses an image with values that are not finite, and names some of their pixels.
 fn check_finite(facts: &Facts) -> Result<(), Failure> {
     let rendered = facts.rendered;

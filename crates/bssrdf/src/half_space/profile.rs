@@ -42,13 +42,11 @@ impl Profile {
         let corrections = Corrections::new(absorbed, eta);
         let [a, b, c] = forward_ratio(absorbed, asymmetry, eta);
         let [d, e] = corrections.high;
-        let critical = critical_cosine(eta);
-        let scale = 1.0 / (1.0 - critical);
         let mut profile = Profile {
             images: Images::new(absorbed, eta),
             words: words(&corrections),
             constant: [a, b, c, d, e],
-            place: [scale, -critical * scale],
+            place: place(eta),
         };
         profile.restore_power();
         profile
@@ -108,6 +106,13 @@ impl Profile {
         let exponent = self.constant.iter().rev().fold(0.0, |sum, c| sum * m + c) + exponent;
         self.images.exitance(place.r2, place.along, place.depth, place.cosine) * exponent.exp2()
     }
+}
+
+/// `scale` and `shift` of `m = scale μ12 + shift` (docs/method.md 15.5).
+pub fn place(eta: f64) -> [f64; 2] {
+    let critical = critical_cosine(eta);
+    let scale = 1.0 / (1.0 - critical);
+    [scale, -critical * scale]
 }
 
 /// The terms at the steps of the squared distance.

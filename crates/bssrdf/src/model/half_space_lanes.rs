@@ -8,7 +8,7 @@ use crate::{
     half_space::{
         GRAZING, SOFTNESS2, exit_moment,
         layout::UNIT,
-        profile::{FARTHEST2, NEAREST2, Profile, SHIFT, START, WORDS},
+        profile::{FARTHEST2, NEAREST2, Profile, SHIFT, START, WORDS, place},
     },
     lanes::{
         block::{Block, LANES, Lane, LaneModel},
@@ -64,7 +64,7 @@ struct Geometry {
 impl LaneModel for HalfSpaceLanes {
     fn new(medium: &Medium) -> Self {
         let channels = [0, 1, 2].map(|k| Channel::new(&medium.channels[k], medium.eta));
-        let place = Profile::new(0.5, 0.0, medium.eta).place.map(|x| x as f32);
+        let place = place(medium.eta).map(|x| x as f32);
         let blur2 = blur2(medium).clamp(f64::from(f32::MIN_POSITIVE), f64::from(f32::MAX));
         HalfSpaceLanes { channels, place, blur2: blur2 as f32 }
     }

@@ -84,6 +84,16 @@ impl Tree {
         text
     }
 
+    /// The same without its last triangles, so that the slab is open.
+    fn open_scene(&self, name: &str) {
+        let text = self.scene(name, 1.0);
+        let mut root: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
+        let indices = root["meshes"][0]["primitives"][0]["indices"].as_u64().expect("an index") as usize;
+        let count = root["accessors"][indices]["count"].as_u64().expect("a count");
+        root["accessors"][indices]["count"] = json!(count / 2 / 3 * 3);
+        self.write(name, root.to_string());
+    }
+
     fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new("make");
         command.current_dir(self.path("")).env_clear().env("PATH", env::var_os("PATH").unwrap_or_default());
