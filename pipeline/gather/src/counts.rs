@@ -45,6 +45,12 @@ pub struct Counts {
 }
 
 impl Counts {
+    /// Adds the work of near fields.
+    pub fn near_field(&mut self, work: &near_field::Work) {
+        self.near_points += work.points;
+        self.near_rays += work.rays;
+    }
+
     pub fn add(&mut self, other: &Counts) {
         self.paths += other.paths;
         self.from_outside += other.from_outside;

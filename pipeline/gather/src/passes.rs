@@ -15,7 +15,7 @@ use bssrdf::Partition;
 use calibration::Factors;
 use formats::cloud::shards;
 use glam::DVec2;
-use near_field::{LitScene, NearField};
+use near_field::{NearField, Surroundings};
 use rayon::prelude::*;
 use scene::{
     DVec3,
@@ -44,8 +44,8 @@ pub struct Passes<'a> {
     paths: u32,
     counts: Counts,
     pixel_stream: Stream,
-    near_stream: Stream,
-    near_light_stream: Stream,
+    /// The first four numbers of near fields, and the rest.
+    near_streams: [Stream; 2],
     edge_stream: Stream,
 }
 
@@ -56,16 +56,16 @@ impl<'a> Passes<'a> {
     /// Prepares an image; the cut is as accurate as `settings.paths_per_pixel` paths need.
     pub fn new(input: &Input<'a>, settings: &Settings) -> Self {
         let objects = objects(input, settings);
+        let is_near = objects.iter().flatten().any(|object| object.near.is_some());
         let translucent = |material: u16| objects[material as usize].is_some();
-        let any_near = objects.iter().flatten().any(|object| object.near.is_some());
-        let lit = || LitScene::new(input.scene, input.rays, settings.normals, translucent);
-        let lit = any_near.then(lit);
+        let surroundings = || Surroundings::new(input.scene, input.rays, settings.normals, translucent);
+        let surroundings = is_near.then(surroundings);
         let mut renderer = Renderer {
             input: *input,
             meets_light: meets_light(input, |material| objects[material as usize].is_none()),
             settings: settings.clone(),
             lights: LightTree::new(input.scene.lights()),
-            lit,
+            surroundings,
             objects,
             drawn: DrawnCounts::of(input.clouds),
             paths_per_pixel: settings.paths_per_pixel,
@@ -75,6 +75,7 @@ impl<'a> Passes<'a> {
             gathers: Stream::new(settings.seed, Purpose::Gather),
             shard_picks: Stream::new(settings.seed, Purpose::ShardPick),
             walk_starts: Stream::new(settings.seed, Purpose::WalkStart),
+            near_points: Stream::new(settings.seed, Purpose::NearPoint),
         };
         cut_correction::correct(&mut renderer);
         let mut passes = Passes {
@@ -85,8 +86,7 @@ impl<'a> Passes<'a> {
             paths: 0,
             counts: Counts::default(),
             pixel_stream: Stream::new(settings.seed, Purpose::Pixel),
-            near_stream: Stream::new(settings.seed, Purpose::Near),
-            near_light_stream: Stream::new(settings.seed, Purpose::NearLight),
+            near_streams: [Purpose::NearField, Purpose::NearLight].map(|purpose| Stream::new(settings.seed, purpose)),
             edge_stream: Stream::new(settings.seed, Purpose::Edge),
         };
         let walks = passes.renderer.objects.iter().flatten().filter_map(|object| object.walks.as_ref());
@@ -164,8 +164,7 @@ impl<'a> Passes<'a> {
             [0, 1, 2].map(|channel| Sequence::new(stream.item((2 * pixel + half) * 3 + channel), stream))
         };
         let walks = settings.reference.then(|| [0, 1].map(walks_by));
-        let near = spread_by(self.near_stream);
-        let near_light = spread_by(self.near_light_stream);
+        let near = self.renderer.surroundings.is_some().then(|| self.near_streams.map(spread_by));
         let mut edge = self.edges[index].clone().map(|edge| (edge, spread_by(self.edge_stream)));
         let alone = settings.paths_per_pixel == 1;
         let mut sum = self.sums[index];
@@ -179,11 +178,11 @@ impl<'a> Passes<'a> {
             };
             let (origin, direction) = self.ray(index, offset);
             let walks = walks.as_ref().map(|by_half| by_half[path as usize % 2].map(|s| s.point(path / 2)));
-            let near = {
-                let [a, b, c, d] = near[path as usize % 2].point(path / 2);
-                let [e, f, ..] = near_light[path as usize % 2].point(path / 2);
-                [a, b, e, c, d, f]
-            };
+            let near = near.as_ref().map(|by_stream| {
+                let [[radius, azimuth, l1, l2], [axis, xi, ..]] =
+                    by_stream.each_ref().map(|by_half| by_half[path as usize % 2].point(path / 2));
+                [radius, azimuth, axis, xi, l1, l2]
+            });
             let light = self.renderer.trace(PathIndex { pixel, path, walks, near }, origin, direction, context);
             sum.add(path, alone, &light);
             if let Some((edge, spread)) = &mut edge {
@@ -215,6 +214,7 @@ impl<'a> Passes<'a> {
             let add = |index: usize| (index, self.add_paths(index, range.clone(), &mut context));
             let sums: Vec<(usize, Sums)> = self.pixels_of(tile).map(add).collect();
             progress(sums.len() as u64);
+            context.counts.near_field(&context.near.work);
             (sums, context.counts)
         };
         let tiles: Vec<_> = (0..self.tiles()).into_par_iter().map(tile).collect();
@@ -267,12 +267,13 @@ pub fn render(input: &Input, settings: &Settings, progress: impl Fn(u64) + Sync)
 
 /// The translucent objects by the materials of the scene; none for opaque ones.
 fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<TranslucentObject<'a>>> {
+    // The other estimators are the sum over the samples alone.
+    let is_summed = settings.estimator.is_hierarchical() && !settings.reference;
     let mut objects: Vec<Option<TranslucentObject>> = input.scene.materials.iter().map(|_| None).collect();
     for (slot, (sampled, medium)) in shards::materials(input.clouds).iter().zip(input.media).enumerate() {
-        let near = near_field(input, settings, slot);
+        let near = is_summed.then(|| NearField::of_clouds(settings.model, medium, input.clouds, slot)).flatten();
         let partition = near.as_ref().map_or(Partition::NONE, NearField::partition);
-        let scatterer =
-            Arc::new(Scatterer::new(settings.model, medium, sampled.area_m2.sqrt()).far(partition));
+        let scatterer = Arc::new(Scatterer::new(settings.model, medium, sampled.area_m2.sqrt()).far(partition));
         let is_translucent = |material| shards::materials(input.clouds).iter().any(|m| m.index == material);
         let walks = settings.reference.then(|| Walks::new(input, sampled.index, medium, is_translucent));
         let extinction = || medium.map(|c| c.extinction());
@@ -287,17 +288,4 @@ fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<Translucent
         });
     }
     objects
-}
-
-/// The near part of a material whose samples are too far apart for it.
-fn near_field(input: &Input, settings: &Settings, slot: usize) -> Option<NearField> {
-    let (sampled, medium) = (&shards::materials(input.clouds)[slot], &input.media[slot]);
-    if settings.reference || medium.is_clear() {
-        return None;
-    }
-    let spec = std::env::var("NEAR").ok()?;
-    let v: Vec<f64> = spec.split(',').map(|x| x.parse().unwrap()).collect();
-    let area: f64 = shards::materials(input.clouds).iter().map(|m| m.area_m2).sum();
-    let spacing = (area / shards::drawn(input.clouds) as f64).sqrt();
-    Some(NearField::new(settings.model, medium, sampled.index, [v[0] * spacing, v[1] * spacing]))
 }

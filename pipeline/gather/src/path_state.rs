@@ -12,8 +12,8 @@ pub struct PathIndex {
     pub path: u32,
     /// The first numbers of the walks that it begins at its first interface, one for each channel, if it begins any.
     pub walks: Option<WalkStarts>,
-    /// The numbers of its try around its first interface.
-    pub near: near_field::Numbers,
+    /// The numbers of its points around the first exitant point, if it draws any.
+    pub near: Option<near_field::Numbers>,
 }
 
 /// The first numbers of the walks of three channels.
@@ -25,7 +25,7 @@ pub struct ThreadContext {
     pub counts: Counts,
     /// The buffers of the cut, for each material.
     pub scratch: Vec<Scratch>,
-    pub near: near_field::Memory,
+    pub near: near_field::Scratch,
 }
 
 impl ThreadContext {
@@ -61,8 +61,10 @@ pub struct PathState {
     pub shard_pick: ShardPick,
     /// The first numbers of the walks at the path's first interface, until they are used.
     pub walks: Option<WalkStarts>,
-    /// The numbers of the try around the path's first interface, until they are used.
+    /// The numbers of the points around the first exitant point, until they are used.
     pub near: Option<near_field::Numbers>,
+    /// Random numbers of its other points around exitant points.
+    pub near_points: Item,
     /// Random numbers of the path, and the dimension of the next one.
     pub random: Item,
     pub dimension: u64,

@@ -7,7 +7,7 @@ use crate::{
 use bsdf::Surface;
 use bssrdf::Medium;
 use calibration::Factors;
-use near_field::NearField;
+use near_field::{NearField, Surroundings};
 use scene::{DVec3, light::LightTree, random::Stream};
 use std::ops::Range;
 use sums::{Summation, drawn::DrawnCounts};
@@ -17,8 +17,8 @@ pub struct Renderer<'a> {
     pub input: Input<'a>,
     pub settings: Settings,
     pub lights: LightTree<'a>,
-    /// What near fields are lit by; none if there is no near field.
-    pub lit: Option<near_field::LitScene<'a>>,
+    /// What lights near fields; none if there is no near field.
+    pub surroundings: Option<Surroundings<'a>>,
     /// The translucent object of each material; none for opaque materials.
     pub objects: Vec<Option<TranslucentObject<'a>>>,
     /// Samples of each cloud, the unlit ones included.
@@ -35,6 +35,7 @@ pub struct Renderer<'a> {
     pub gathers: Stream,
     pub shard_picks: Stream,
     pub walk_starts: Stream,
+    pub near_points: Stream,
 }
 
 /// A translucent material with its medium and its samples.

@@ -13,6 +13,10 @@ use sums::{estimator::Estimator, samples::Exit};
 /// The largest relative error that is asked of one sum. Above it, the cut does not predict its own error.
 const MAX_ERROR: f64 = 0.5;
 
+/// Dimensions of a path's numbers from which those of its later exitant points are taken, each of so many.
+const LATER: u64 = 1 << 32;
+const NUMBERS: u64 = 8;
+
 impl TranslucentObject<'_> {
     /// The factor of the light that leaves at a point for the eye's `view`: the exit lobe or, if the object is calibrated, the
     /// factor of its surface.
@@ -61,17 +65,9 @@ impl Renderer<'_> {
         } else {
             object.summation.whole(estimator, exit, scratch)
         };
-        if let (Some(near), Some(lit)) = (&object.near, &self.lit) {
-            let place = Place { surface: *point, position, normal: view.normal };
-            let random = |d: u64| state.key.uniform(1 << 40 | (8 * state.dimension + d));
-            let numbers = state.near.unwrap_or_else(|| std::array::from_fn(|d| random(d as u64)));
-            let mut work = near_field::Work::default();
-            let light = near.light(lit, &place, &numbers, state.key, &mut context.near, &mut work);
-            leaving.radiance += light;
-            leaving.halves.iter_mut().for_each(|half| *half += light);
-            context.counts.near_points += work.points;
-            context.counts.near_rays += work.rays;
-        }
+        let nearby = self.nearby(state, object, &Place { surface: *point, position, normal: view.normal }, context);
+        leaving.radiance += nearby;
+        leaving.halves.iter_mut().for_each(|half| *half += nearby);
         let factor = object.factor(point, view);
         leaving.radiance *= factor;
         leaving.halves.iter_mut().for_each(|half| *half *= factor);
@@ -79,6 +75,16 @@ impl Renderer<'_> {
         context.counts.evaluations += leaving.evaluations;
         context.counts.nodes += leaving.nodes;
         light.add_halves(state, Layer::Subsurface, leaving.radiance, leaving.halves);
+    }
+
+    /// The light that enters near an exitant point and is not left to the samples (docs/method.md section 17).
+    fn nearby(&self, state: &PathState, object: &TranslucentObject, at: &Place, context: &mut ThreadContext) -> DVec3 {
+        let (Some(near), Some(surroundings)) = (&object.near, &self.surroundings) else {
+            return DVec3::ZERO;
+        };
+        let random = |k: usize| state.near_points.uniform(LATER + NUMBERS * state.dimension + k as u64);
+        let numbers = state.near.unwrap_or_else(|| std::array::from_fn(random));
+        near.light(surroundings, at, &numbers, state.near_points, &mut context.near)
     }
 
     /// Whether each path of a pixel gathers from one half of one shard, round-robin, instead of from all samples.

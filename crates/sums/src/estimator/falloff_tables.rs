@@ -51,7 +51,8 @@ impl FalloffTables {
     /// one.
     pub fn new(medium: &Medium, model: &dyn Bssrdf, size: f64) -> FalloffTables {
         let table = || Table(Box::new([0.0; ENTRIES]));
-        let mut tables = FalloffTables { value: table(), peak: table(), disc: table(), slope: table(), scatter: table() };
+        let mut tables =
+            FalloffTables { value: table(), peak: table(), disc: table(), slope: table(), scatter: table() };
         let (nearest, farthest) = distances(medium, model);
         let variations = variations(model, &directions(medium.eta), nearest, farthest, size);
         let (mut slope, mut peak) = (0.0f64, 0.0f64);
