@@ -123,7 +123,7 @@ fn a_surface_without_light_wants_no_samples() {
         root["extensions"]["KHR_lights_punctual"]["lights"][0] = json!({ "type": "point", "intensity": 1 });
     });
     sample(&bench, &scene, "100");
-    let said = gather(&bench, &scene, "8", &["--medium", "marble", "--spp", "1"]);
+    let said = gather(&bench, &scene, "8", &["--medium", "marble", "--spp", "1", "--estimator", "exhaustive"]);
     assert!(said.contains("`Slab`: samples lie") && !said.contains("`Below`: samples lie"), "{said}");
     assert!(said.contains("warning: `Below`: none of its samples carries light"), "{said}");
 }
