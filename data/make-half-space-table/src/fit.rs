@@ -1,7 +1,7 @@
 //! The terms of the table from walks and exact reflectances (docs/method.md 15.6).
 
 use crate::{
-    grid::{ALBEDOS, ANGLES, PLACES, STEPS, cosines},
+    grid::{ALBEDOS, ANGLES, PLACES, STEPS, back, cosines},
     linear::{smooth, solve},
     reflectance::Exact,
     single::Single,
@@ -9,8 +9,9 @@ use crate::{
 };
 use bssrdf::half_space::{
     Images, forwardness,
-    layout::{self, FIRST, RINGS, RINGS_PER_OCTAVE, TERMS},
+    layout::{self, FIRST, LARGEST_POWER, LARGEST_SQUARE, RINGS, RINGS_PER_OCTAVE, TERMS},
 };
+use rayon::prelude::*;
 use std::f64::consts::{LN_2, PI};
 
 /// The terms at all distances.
@@ -44,51 +45,109 @@ fn area(ring: usize) -> f64 {
     2.0 * PI * middle(ring).powi(2) * LN_2 / RINGS_PER_OCTAVE
 }
 
-/// The carrier at one distance and angle: for each azimuth its exitance and `w = sin θ12 cos φ`.
-struct Carrier([[f64; 3]; AZIMUTHS]);
+/// The coefficients of the azimuth at one distance, `p` and `q`.
+type Azimuth = [f64; 2];
+
+/// The carrier at one distance and angle, for each azimuth.
+struct Carrier([Direction; AZIMUTHS]);
+
+/// The carrier in one direction.
+struct Direction {
+    exitance: f64,
+    /// `sin θ12 cos φ`, and 1 if light that leaves here goes [`back`].
+    along: f64,
+    back: f64,
+    /// `W` and `w²`.
+    functions: Azimuth,
+}
 
 impl Carrier {
     fn new(images: &Images, cosine: f64, r: f64) -> Carrier {
         let sine = (1.0 - cosine * cosine).sqrt();
         Carrier(std::array::from_fn(|k| {
-            let w = sine * (PI * (k as f64 + 0.5) / AZIMUTHS as f64).cos();
-            [images.exitance(r * r, r * w, 0.0, cosine), w, forwardness(w * r / r.hypot(FIRST))]
+            let azimuth = (PI * (k as f64 + 0.5) / AZIMUTHS as f64).cos();
+            let along = sine * azimuth;
+            let w = along * r / r.hypot(FIRST);
+            let exitance = images.exitance(r * r, r * along, 0.0, cosine);
+            Direction { exitance, along, back: back(azimuth), functions: [forwardness(w), w * w] }
         }))
     }
 
-    /// The means over the azimuth of the exitance and of its product with `w`, with the factor `2^{slope w}`.
-    fn means(&self, slope: f64) -> [f64; 2] {
-        let mut means = [0.0; 2];
-        for [exitance, w, forward] in self.0 {
-            let value = exitance * (slope * forward).exp2() / AZIMUTHS as f64;
+    /// The means over the azimuth of the exitance, of its product with the cosine to the beam and of what goes back.
+    fn means(&self, [p, q]: Azimuth) -> [f64; 3] {
+        let mut means = [0.0; 3];
+        for direction in &self.0 {
+            let [forward, square] = direction.functions;
+            let value = direction.exitance * (p * forward + q * square).exp2() / AZIMUTHS as f64;
             means[0] += value;
-            means[1] += value * w;
+            means[1] += value * direction.along;
+            means[2] += value * direction.back;
         }
         means
     }
 
-    /// The slope with which the mean of `w` is this.
-    fn slope(&self, mean: f64) -> f64 {
-        let (mut low, mut high) = (-12.0, 12.0);
-        for _ in 0..40 {
-            let middle = 0.5 * (low + high);
-            let [all, first] = self.means(middle);
-            if first > mean * all { high = middle } else { low = middle }
-        }
-        0.5 * (low + high)
+    /// The `p` with which the mean cosine is this.
+    fn slope(&self, mean: f64, q: f64) -> f64 {
+        zero([-LARGEST_POWER, LARGEST_POWER], |p| {
+            let [all, first, _] = self.means([p, q]);
+            mean - first / all
+        })
+    }
+}
+
+/// Where a function falls through zero.
+fn zero([mut low, mut high]: [f64; 2], f: impl Fn(f64) -> f64) -> f64 {
+    for _ in 0..30 {
+        let middle = 0.5 * (low + high);
+        if f(middle) < 0.0 { high = middle } else { low = middle }
+    }
+    0.5 * (low + high)
+}
+
+/// Angles at one distance, but for the one along the normal: what the walks say of the azimuth, and the carriers.
+struct Azimuths<'a> {
+    /// `sin² θ12`: so much do the angles count.
+    weights: [f64; ANGLES - 1],
+    /// The mean cosine to the beam, and the share of the light that goes back.
+    targets: [[f64; 2]; ANGLES - 1],
+    carriers: &'a [Carrier; ANGLES],
+}
+
+impl Azimuths<'_> {
+    fn mean(&self, of_angle: impl Fn(usize) -> f64) -> f64 {
+        let sum: f64 = (0..ANGLES - 1).map(|k| self.weights[k] * of_angle(k)).sum();
+        sum / self.weights.iter().sum::<f64>()
+    }
+
+    /// The mean `p` of the angles.
+    fn slope(&self, q: f64) -> f64 {
+        self.mean(|k| self.carriers[k].slope(self.targets[k][0], q))
+    }
+
+    /// `q` is such that as much light goes back as it should, with the `p` that belongs to it.
+    fn fit(&self) -> Azimuth {
+        let q = zero([-LARGEST_SQUARE, LARGEST_SQUARE], |q| {
+            let p = self.slope(q);
+            self.mean(|k| {
+                let [all, _, back] = self.carriers[k].means([p, q]);
+                self.targets[k][1] - back / all
+            })
+        });
+        [self.slope(q), q]
     }
 }
 
 impl Measured {
-    /// Power over `α` in a ring, and its mean of `w`; `albedo` is none for the limit of no scattering.
-    fn ring(&self, angle: usize, ring: usize, albedo: Option<usize>) -> [f64; 2] {
+    /// Power over `α` in a ring, its mean of `w`, and its share that goes back; `albedo` is none for the limit of no
+    /// scattering.
+    fn ring(&self, angle: usize, ring: usize, albedo: Option<usize>) -> [f64; 3] {
         let sine = (1.0 - cosines(self.eta)[angle].powi(2)).sqrt();
         let mut sums = self.single.rings[angle][ring];
         if let Some(k) = albedo {
             let walks = &self.walks.0[angle][ring];
-            sums = [sums[0] + walks[0][k], sums[1] + walks[1][k]];
+            sums = [0, 1, 2].map(|i| sums[i] + walks[i][k]);
         }
-        [sums[0], sine * sums[1] / sums[0]]
+        [sums[0], sine * sums[1] / sums[0], sums[2] / sums[0]]
     }
 
     /// The record of one albedo of the grid.
@@ -96,25 +155,22 @@ impl Measured {
         let step = albedo.map_or(1.0, |k| STEPS[k]);
         let images = Images::new(step * step, self.eta);
         let cosines = cosines(self.eta);
-        let rings: Vec<[[f64; 2]; ANGLES]> =
+        let rings: Vec<[[f64; 3]; ANGLES]> =
             (0..RINGS).map(|b| std::array::from_fn(|k| self.ring(k, b, albedo))).collect();
         let carriers: Vec<[Carrier; ANGLES]> =
             (0..RINGS).map(|b| cosines.map(|c| Carrier::new(&images, c, middle(b)))).collect();
         let share = |b: usize| rings[b][2][0] / rings.iter().map(|r| r[2][0]).sum::<f64>();
         let shares: [f64; RINGS] = std::array::from_fn(share);
-        let slope = |b: usize| {
-            let (mut sum, mut weight) = (0.0, 0.0);
-            for k in 0..ANGLES - 1 {
-                let w = 1.0 - cosines[k] * cosines[k];
-                sum += w * carriers[b][k].slope(rings[b][k][1]);
-                weight += w;
-            }
-            sum / weight
+        let weights = std::array::from_fn(|k| 1.0 - cosines[k] * cosines[k]);
+        let azimuth = |b: usize| {
+            let targets = std::array::from_fn(|k| [rings[b][k][1], rings[b][k][2]]);
+            Azimuths { weights, targets, carriers: &carriers[b] }.fit()
         };
-        let slopes = smooth(&std::array::from_fn(slope), &shares);
+        let azimuths: [Azimuth; RINGS] = std::array::from_fn(azimuth);
+        let [p, q] = [0, 1].map(|i| smooth(&azimuths.map(|azimuth| azimuth[i]), &shares));
         let mut terms = [[0.0; RINGS]; TERMS];
         for b in 0..RINGS {
-            let logarithm = |k: usize| (rings[b][k][0] / area(b) / carriers[b][k].means(slopes[b])[0]).log2();
+            let logarithm = |k: usize| (rings[b][k][0] / area(b) / carriers[b][k].means([p[b], q[b]])[0]).log2();
             let fitted = quadratic(&std::array::from_fn(logarithm));
             for (term, value) in terms.iter_mut().zip(fitted) {
                 term[b] = value;
@@ -123,7 +179,7 @@ impl Measured {
         for term in &mut terms[..3] {
             *term = smooth(term, &shares);
         }
-        terms[3] = slopes;
+        (terms[3], terms[4]) = (p, q);
         let mut record = Record { terms, high: [0.0; 2], cosine: 0.0 };
         self.normalize(&mut record, step, &images);
         record
@@ -147,7 +203,7 @@ impl Measured {
 
     /// The records of all albedos of the table.
     pub fn records(&self) -> Vec<Record> {
-        let measured: Vec<Record> = (0..ALBEDOS).map(|k| self.record(Some(k))).collect();
+        let measured: Vec<Record> = (0..ALBEDOS).into_par_iter().map(|k| self.record(Some(k))).collect();
         let mut records = vec![self.without_absorption(&measured)];
         records.extend(measured.into_iter().skip(1));
         records.push(self.record(None));
@@ -174,7 +230,7 @@ impl Measured {
 fn reflectance(terms: &Terms, images: &Images, cosine: f64, place: f64) -> f64 {
     let value = |b: usize| {
         let ratio = (terms[0][b] + place * (terms[1][b] + place * terms[2][b])).exp2();
-        ratio * Carrier::new(images, cosine, middle(b)).means(terms[3][b])[0]
+        ratio * Carrier::new(images, cosine, middle(b)).means([terms[3][b], terms[4][b]])[0]
     };
     // The value at the first ring holds within it; beyond the last one the exitance falls as r⁻³ at least.
     let inner = PI * FIRST * FIRST * value(0);
@@ -183,7 +239,9 @@ fn reflectance(terms: &Terms, images: &Images, cosine: f64, place: f64) -> f64 {
         .map(|k| {
             let r = last * ((k as f64 + 0.5) / 40.0).exp2();
             let ratio = (terms[0][RINGS - 1] + place * (terms[1][RINGS - 1] + place * terms[2][RINGS - 1])).exp2();
-            2.0 * PI * r * r * LN_2 / 40.0 * ratio * Carrier::new(images, cosine, r).means(terms[3][RINGS - 1])[0]
+            2.0 * PI * r * r * LN_2 / 40.0
+                * ratio
+                * Carrier::new(images, cosine, r).means([terms[3][RINGS - 1], terms[4][RINGS - 1]])[0]
         })
         .sum();
     inner + (0..RINGS).map(|b| area(b) * value(b)).sum::<f64>() + outer

@@ -39,3 +39,9 @@ pub fn bin_of(r2: f64) -> Option<usize> {
 pub fn radius(k: usize) -> f64 {
     FIRST * (k as f64 / 4.0).exp2()
 }
+
+/// 1 for light that leaves within 60 degrees of where it came from, by the cosine of its azimuth.
+#[inline(always)]
+pub fn back(azimuth: f64) -> f64 {
+    if azimuth < -0.5 { 1.0 } else { 0.0 }
+}

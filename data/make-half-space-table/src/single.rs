@@ -1,20 +1,21 @@
 //! Light that is scattered once, by quadrature.
 
-use crate::grid::{ANGLES, BINS, cosines, radius};
+use crate::grid::{ANGLES, BINS, back, cosines, radius};
 use bssrdf::fresnel::transmittance;
 use std::f64::consts::{PI, TAU};
 
 /// As [`crate::walks::Tally`] for one scattering, over `α`.
 pub struct Single {
-    /// Power that leaves in each ring, for each angle: the sum, and that times the cosine of the azimuth.
-    pub rings: Vec<[[f64; 2]; BINS]>,
+    /// Power that leaves in each ring, for each angle: the sum, that times the cosine of the azimuth, and that of the light
+    /// that goes [`back`].
+    pub rings: Vec<[[f64; 3]; BINS]>,
 }
 
 const AZIMUTHS: usize = 48;
 const DEPTHS: usize = 400;
 
 /// The exitance at a distance and the cosine of an azimuth, `∫ e^{−s} T(μ) μ e^{−d}/(4π d²) ds`.
-fn exitance(eta: f64, cosine: f64, r: f64, azimuth: f64) -> f64 {
+pub fn exitance(eta: f64, cosine: f64, r: f64, azimuth: f64) -> f64 {
     let sine = (1.0 - cosine * cosine).sqrt();
     // s = r sinh(u): graded around r.
     let top = (40.0 / r).asinh();
@@ -34,7 +35,7 @@ fn exitance(eta: f64, cosine: f64, r: f64, azimuth: f64) -> f64 {
 
 pub fn rings(eta: f64) -> Single {
     let cosines = cosines(eta);
-    let mut rings = vec![[[0.0; 2]; BINS]; ANGLES];
+    let mut rings = vec![[[0.0; 3]; BINS]; ANGLES];
     for (k, cosine) in cosines.iter().enumerate() {
         for (bin, ring) in rings[k].iter_mut().enumerate() {
             // Power in the ring by its middle and ends, M r² being nearly linear in ln r.
@@ -49,6 +50,7 @@ pub fn rings(eta: f64) -> Single {
                     let power = exitance(eta, *cosine, r, azimuth) * TAU * r * width * weight / AZIMUTHS as f64;
                     ring[0] += power;
                     ring[1] += power * azimuth;
+                    ring[2] += power * back(azimuth);
                 }
             }
         }

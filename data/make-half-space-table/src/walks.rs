@@ -7,7 +7,7 @@
 //! `M = α ∫ e^{−s} P(s μ12, ‖r − s ω12‖) ds`, r and ω12 along the surface (docs/method.md 15.9). So one set of walks serves
 //! every albedo, by the number of collisions, and every direction, by their depths.
 
-use crate::grid::{ALBEDOS, ANGLES, BINS, albedo, bin_of, cosines};
+use crate::grid::{ALBEDOS, ANGLES, BINS, albedo, back, bin_of, cosines};
 use bssrdf::{DVec3, fresnel};
 use rayon::prelude::*;
 use scene::random::{Item, Purpose, Stream};
@@ -30,12 +30,12 @@ const DEEPEST: f64 = 16.0;
 pub type Row = [f64; ALBEDOS];
 
 /// What the light of two and more scatterings does, over `α`: the power that leaves in each ring, for each angle of the
-/// light; the sum, and that times the cosine of the azimuth.
-pub struct Tally(pub Vec<[[Row; 2]; BINS]>);
+/// light; the sum, that times the cosine of the azimuth, and that of the light that goes [`back`].
+pub struct Tally(pub Vec<[[Row; 3]; BINS]>);
 
 impl Tally {
     fn new() -> Tally {
-        Tally(vec![[[[0.0; ALBEDOS]; 2]; BINS]; ANGLES])
+        Tally(vec![[[[0.0; ALBEDOS]; 3]; BINS]; ANGLES])
     }
 
     fn add(&mut self, other: &Tally, scale: f64) {
@@ -184,10 +184,12 @@ impl Start {
 }
 
 #[inline(always)]
-fn add(sums: &mut [Row; 2], weights: &Row, strength: f64, factor: f64) {
-    let second = strength * factor;
+fn add(sums: &mut [Row; 3], weights: &Row, strength: f64, azimuth: f64) {
+    let second = strength * azimuth;
+    let third = strength * back(azimuth);
     for i in 0..ALBEDOS {
         sums[0][i] += strength * weights[i];
         sums[1][i] += second * weights[i];
+        sums[2][i] += third * weights[i];
     }
 }

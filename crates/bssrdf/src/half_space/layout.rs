@@ -3,7 +3,7 @@
 use super::boundary::critical_cosine;
 
 /// The first bytes of the file; the digit is the version of its layout and of [`Images`](super::Images).
-pub const MAGIC: &[u8; 8] = b"HALFSPC1";
+pub const MAGIC: &[u8; 8] = b"HALFSPC2";
 
 /// Relative indices, inside over outside.
 pub const ETAS: [f64; 19] =
@@ -21,7 +21,11 @@ pub const FIRST: f64 = 1.0 / 2048.0;
 pub const RINGS_PER_OCTAVE: f64 = 4.0;
 
 /// The number of terms of a profile at each distance.
-pub const TERMS: usize = 4;
+pub const TERMS: usize = 5;
+
+/// The model knows `p` and `q` up to these; they are larger only where no light is left.
+pub const LARGEST_POWER: f64 = 8.0;
+pub const LARGEST_SQUARE: f64 = 4.0;
 
 /// Numbers are stored as integers of 16 bits, in units of 1/1024.
 pub const UNIT: f64 = 1.0 / 1024.0;

@@ -54,7 +54,7 @@ impl Corrections {
             }
             b + 0.5 * t * (c - a + t * (2.0 * a - 5.0 * b + 4.0 * c - d + t * (3.0 * (b - c) + d - a)))
         };
-        [0, 1, 2, 3].map(|k| value(&self.terms[k]))
+        std::array::from_fn(|k| value(&self.terms[k]))
     }
 }
 

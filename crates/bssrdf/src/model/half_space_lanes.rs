@@ -8,7 +8,7 @@ use crate::{
     half_space::{
         GRAZING, SOFTNESS2, exit_moment,
         layout::UNIT,
-        profile::{FARTHEST2, NEAREST2, Profile, SHIFT, START, WORDS, place},
+        profile::{FARTHEST2, LOW_UNITS, NEAREST2, Profile, SHIFT, START, WORDS, low_terms, place},
     },
     lanes::{
         block::{Block, LANES, Lane, LaneModel},
@@ -57,8 +57,9 @@ struct Geometry {
     /// `μ12`, and `m`.
     cosine: Lane,
     place: Lane,
-    /// `−log₂(1.01 − w)`.
+    /// `W = −log₂(1.01 − w)` and `w²`, times the units of `p` and `q`.
     forward: Lane,
+    square: Lane,
 }
 
 impl LaneModel for HalfSpaceLanes {
@@ -81,7 +82,8 @@ impl HalfSpaceLanes {
     #[inline(always)]
     fn geometry(&self, block: &Block) -> Geometry {
         let zero = [0.0; LANES];
-        let mut g = Geometry { r2: zero, twice: zero, depth: zero, cosine: zero, place: zero, forward: zero };
+        let mut g =
+            Geometry { r2: zero, twice: zero, depth: zero, cosine: zero, place: zero, forward: zero, square: zero };
         let ([x, y, z], [nx, ny, nz], [wx, wy, wz]) = (&block.offset, &block.normal_in, &block.refracted);
         for i in 0..LANES {
             let r2 = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
@@ -97,7 +99,8 @@ impl HalfSpaceLanes {
             g.twice[i] = 2.0 * along;
             g.cosine[i] = cosine;
             g.place[i] = if place < 1.0 { place } else { 1.0 };
-            g.forward[i] = -log2_near_one(GRAZING as f32 - forward);
+            g.forward[i] = -LOW_UNITS[2] as f32 * log2_near_one(GRAZING as f32 - forward);
+            g.square[i] = LOW_UNITS[1] as f32 * (forward * forward);
         }
         g
     }
@@ -153,8 +156,9 @@ impl Channel {
             let at = 2 * ((bits >> SHIFT) - START) as usize;
             let t = (bits & ((1 << SHIFT) - 1)) as f32 * (1.0 / (1u32 << SHIFT) as f32);
             let m = g.place[i];
-            let near = terms(self.words[at & (WORDS - 1)], self.words[(at + 1) & (WORDS - 1)], m, g.forward[i]);
-            let far = terms(self.words[(at + 2) & (WORDS - 1)], self.words[(at + 3) & (WORDS - 1)], m, g.forward[i]);
+            let azimuth = [g.forward[i], g.square[i]];
+            let near = terms(self.words[at & (WORDS - 1)], self.words[(at + 1) & (WORDS - 1)], m, azimuth);
+            let far = terms(self.words[(at + 2) & (WORDS - 1)], self.words[(at + 3) & (WORDS - 1)], m, azimuth);
             let [a, b, c, d, e] = self.constant;
             let constant = a + m * (b + m * (c + m * (d + m * e)));
             corrections[i] = (near + t * (far - near) + constant) * UNIT as f32;
@@ -166,10 +170,10 @@ impl Channel {
 /// The largest squared distance below [`FARTHEST2`].
 const LAST2: f32 = FARTHEST2.next_down();
 
-/// `c₀ + m (c₁ + m c₂) + p W` of the words of a step.
+/// `c₀ + m (c₁ + m c₂) + p W + q w²` of the words of a step.
 #[inline(always)]
-fn terms(high: u32, low: u32, m: f32, forward: f32) -> f32 {
-    let upper = |word: u32| (word as i32 >> 16) as f32;
-    let lower = |word: u32| ((word << 16) as i32 >> 16) as f32;
-    upper(high) + m * (lower(high) + m * upper(low)) + lower(low) * forward
+fn terms(high: u32, low: u32, m: f32, [forward, square]: [f32; 2]) -> f32 {
+    let (first, second) = ((high as i32 >> 16) as f32, ((high << 16) as i32 >> 16) as f32);
+    let [third, q, p] = low_terms(low);
+    first + m * (second + m * (third as f32 * LOW_UNITS[0] as f32)) + p as f32 * forward + q as f32 * square
 }
