@@ -72,7 +72,7 @@ pub struct Work {
 /// error of a bunny of marble is least where samples lie 0.5 and 5 mean free paths apart, and nearly so at 50.
 const STEP: [f64; 2] = [1.0, 3.0];
 
-/// Samples that are closer than this many reduced mean free paths resolve any model: none varies within less than 0.06
+/// Samples that are closer than this many reduced mean free paths resolve any model: none varies within less than 0.07
 /// (docs/method.md 15.12).
 const RESOLVED: f64 = 0.03;
 
