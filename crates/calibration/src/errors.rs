@@ -64,7 +64,7 @@ const FEW: f64 = 4.0;
 
 /// What calibration cannot mend on smooth shapes, as relMSE of bright light: the change of the light within a cell, and
 /// with the angle of view (docs/reports/accuracy.md).
-const FLOOR: f64 = 2e-4;
+const FLOOR: f64 = 5e-5;
 
 /// The relMSE of a channel before and after the fit, at the size of a cell (docs/method.md 16.6).
 ///

@@ -115,9 +115,10 @@ impl Surface {
                 return Sum::default();
             }
             let item = stream.item(index as u64);
-            let exit = |half: usize| Exit::new(point.position, point.normal, item.bits(half as u64));
+            let nearby = lit.nearby(point, item, near);
+            let exit = |half: usize| Exit::new(point.position, point.normal, item.bits(half as u64)).besides(nearby);
             let leaving = lit.summation.whole(estimator, exit, scratch);
-            let radiance = leaving.radiance + lit.nearby(point, item, near);
+            let radiance = leaving.radiance + nearby;
             Sum { radiance, difference: leaving.halves[0] - leaving.halves[1] }
         };
         self.points.par_iter().enumerate().map_init(Default::default, light).collect()

@@ -7,7 +7,7 @@ use crate::{
 use bsdf::View;
 use calibration::Site;
 use near_field::Place;
-use scene::{DVec3, SurfacePoint};
+use scene::{DVec3, SurfacePoint, random::Item};
 use sums::{estimator::Estimator, samples::Exit};
 
 /// The largest relative error that is asked of one sum. Above it, the cut does not predict its own error.
@@ -57,7 +57,10 @@ impl Renderer<'_> {
             return self.walk(state, walks, point, view.normal, light, context);
         }
         let position = object.evaluated_at(point, view);
-        let exit = |half: usize| Exit::new(position, view.normal, state.key.bits(2 * state.dimension + half as u64));
+        let nearby = self.nearby(state, object, &Place { surface: *point, position, normal: view.normal }, context);
+        let exit = |half: usize| {
+            Exit::new(position, view.normal, state.key.bits(2 * state.dimension + half as u64)).besides(nearby)
+        };
         let estimator = self.estimator_for(state.throughput.max_element());
         let scratch = &mut context.scratch[point.material as usize];
         let mut leaving = if self.gathers_by_shard() {
@@ -65,7 +68,6 @@ impl Renderer<'_> {
         } else {
             object.summation.whole(estimator, exit, scratch)
         };
-        let nearby = self.nearby(state, object, &Place { surface: *point, position, normal: view.normal }, context);
         leaving.radiance += nearby;
         leaving.halves.iter_mut().for_each(|half| *half += nearby);
         let factor = object.factor(point, view);
@@ -85,6 +87,22 @@ impl Renderer<'_> {
         let random = |k: usize| state.near_points.uniform(LATER + NUMBERS * state.dimension + k as u64);
         let numbers = state.near.unwrap_or_else(|| std::array::from_fn(random));
         near.light(surroundings, at, &numbers, state.near_points, &mut context.near)
+    }
+
+    /// The same at a point of the surface, with the random numbers of an item.
+    pub(crate) fn nearby_at(
+        &self,
+        object: &TranslucentObject,
+        point: &SurfacePoint,
+        item: Item,
+        context: &mut ThreadContext,
+    ) -> DVec3 {
+        let (Some(near), Some(surroundings)) = (&object.near, &self.surroundings) else {
+            return DVec3::ZERO;
+        };
+        let numbers = std::array::from_fn(|k| item.uniform(LATER + k as u64));
+        let at = Place { surface: *point, position: point.position, normal: point.normal };
+        near.light(surroundings, &at, &numbers, item, &mut context.near)
     }
 
     /// Whether each path of a pixel gathers from one half of one shard, round-robin, instead of from all samples.
