@@ -46,13 +46,13 @@ use bssrdf::{Medium, Model, Partition, half_space::exit_lobe};
 use entries::Entries;
 use errors::{Light, channel_errors};
 use factors::{mean_square_turn, shift};
-use fit::{Fit, Smoothness};
+use fit::Smoothness;
 use formats::{
     calibration::{CalibratedMaterial, Calibration, ChannelErrors, MediumFacts, version},
     cloud::{Cloud, shards},
 };
 use near_field::{NearField, Surroundings};
-use scene::{DVec3, NormalKind, Rays, Scene};
+use scene::{NormalKind, Rays, Scene};
 use std::sync::Arc;
 use sums::{Summation, estimator::Scatterer};
 use surface::{Lit, Surface};
@@ -109,10 +109,6 @@ const MIN_SHARE: f64 = 1.0 / 16.0;
 
 /// Points of each patch at which the model is evaluated.
 const POINTS: usize = 64;
-
-/// The largest relative variance of the model's light on a patch by the positions of the samples. Above it, the sum over
-/// a cloud is spikes about its samples, most of which the points of a patch miss: a factor would be too large by half.
-const MAX_GRAIN: f64 = 0.1;
 
 /// The largest share of walks that may leave through holes.
 const HOLES: f64 = 1e-3;
@@ -211,18 +207,14 @@ fn calibrate_material(
             continue;
         };
         let counts = counted.at_patches(&patches);
-        let is_grain = light.grain(&patches, channel) > MAX_GRAIN;
-        let fit = if is_grain { Fit::none(patches.count()) } else { smoothness.fit(&counts) };
+        let fit = smoothness.fit(&counts);
         let fitted = smoothness.at_patches(&fit.both);
         let leaving: Vec<f64> = fitted.iter().zip(&counts.model).map(|(f, m)| f + m.ln()).collect();
-        let slopes = if is_grain { vec![DVec3::ZERO; patches.count()] } else { patches.gradient(&leaving) };
+        let slopes = patches.gradient(&leaving);
         let shift = shift(&medium.channels[channel], medium.eta);
         let turn: Vec<f64> = slopes.iter().map(|slope| mean_square_turn(shift * slope.length())).collect();
         lobe[channel] = exit_lobe(medium.eta, tally.cosines / tally.sum());
         errors[channel] = channel_errors(&smoothness, &patches, &light, channel, &counted, &fit, &turn);
-        if is_grain {
-            errors[channel].unresolved = 1.0;
-        }
         for (gradient, slope) in gradients.iter_mut().zip(&slopes) {
             gradient[channel] = slope.as_vec3().to_array();
         }

@@ -44,15 +44,6 @@ impl Lit<'_> {
     }
 }
 
-/// The model's light at one point, W/(m² sr).
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Sum {
-    /// What leaves, without `T21`.
-    pub radiance: DVec3,
-    /// The difference of the sums over the two halves of the cloud.
-    pub difference: DVec3,
-}
-
 /// Relative error of the model's light at one point. The mean over a patch has an eighth of it.
 const ACCURACY: f64 = 0.1;
 
@@ -105,21 +96,20 @@ impl Surface {
         self.points.iter().map(|p| Site { position: p.position, normal: p.geometric_normal }).collect()
     }
 
-    /// The model's light at each point. No light leaves from points inside another part of the solid.
-    pub fn light(&self, lit: &Lit, solid: &Solid, seed: u64, progress: impl Fn(u64) + Sync) -> Vec<Sum> {
+    /// The radiance without `T21` that leaves each point by the model, W/(m² sr). No light leaves from points inside another part of the solid.
+    pub fn light(&self, lit: &Lit, solid: &Solid, seed: u64, progress: impl Fn(u64) + Sync) -> Vec<DVec3> {
         let stream = Stream::new(seed, Purpose::CalibrationSum);
         let estimator = Estimator::Cut { accuracy: ACCURACY };
         let light = |(scratch, near): &mut (Scratch, near_field::Scratch), (index, point): (usize, &SurfacePoint)| {
             progress(1);
             if solid.is_buried(point.position, point.geometric_normal) {
-                return Sum::default();
+                return DVec3::ZERO;
             }
             let item = stream.item(index as u64);
             let nearby = lit.nearby(point, item, near);
             let exit = |half: usize| Exit::new(point.position, point.normal, item.bits(half as u64)).besides(nearby);
             let leaving = lit.summation.whole(estimator, exit, scratch);
-            let radiance = leaving.radiance + nearby;
-            Sum { radiance, difference: leaving.halves[0] - leaving.halves[1] }
+            leaving.radiance + nearby
         };
         self.points.par_iter().enumerate().map_init(Default::default, light).collect()
     }

@@ -267,11 +267,10 @@ pub fn render(input: &Input, settings: &Settings, progress: impl Fn(u64) + Sync)
 
 /// The translucent objects by the materials of the scene; none for opaque ones.
 fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<TranslucentObject<'a>>> {
-    // The other estimators are the sum over the samples alone.
-    let is_summed = settings.estimator.is_hierarchical() && !settings.reference;
     let mut objects: Vec<Option<TranslucentObject>> = input.scene.materials.iter().map(|_| None).collect();
     for (slot, (sampled, medium)) in shards::materials(input.clouds).iter().zip(input.media).enumerate() {
-        let near = is_summed.then(|| NearField::of_clouds(settings.model, medium, input.clouds, slot)).flatten();
+        let near = || NearField::of_clouds(settings.model, medium, input.clouds, slot);
+        let near = settings.near_field.then(near).flatten();
         let partition = near.as_ref().map_or(Partition::NONE, NearField::partition);
         let scatterer = Arc::new(Scatterer::new(settings.model, medium, sampled.area_m2.sqrt()).far(partition));
         let is_translucent = |material| shards::materials(input.clouds).iter().any(|m| m.index == material);

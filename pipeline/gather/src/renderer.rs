@@ -67,6 +67,6 @@ impl TranslucentObject<'_> {
 
     /// True if no scattered light leaves it.
     pub fn is_dark(&self) -> bool {
-        self.medium.is_clear() || self.walks.is_none() && self.summation.is_empty()
+        self.medium.is_clear() || self.walks.is_none() && self.near.is_none() && self.summation.is_empty()
     }
 }

@@ -6,7 +6,7 @@ use crate::{
 };
 use bsdf::View;
 use calibration::Site;
-use near_field::Place;
+use near_field::{Numbers, Place};
 use scene::{DVec3, SurfacePoint, random::Item};
 use sums::{estimator::Estimator, samples::Exit};
 
@@ -57,9 +57,11 @@ impl Renderer<'_> {
             return self.walk(state, walks, point, view.normal, light, context);
         }
         let position = object.evaluated_at(point, view);
-        let nearby = self.nearby(state, object, &Place { surface: *point, position, normal: view.normal }, context);
+        let place = Place { surface: *point, position, normal: view.normal };
+        let nearby = self.nearby(state, object, &place, context);
+        let besides = 0.5 * (nearby[0] + nearby[1]);
         let exit = |half: usize| {
-            Exit::new(position, view.normal, state.key.bits(2 * state.dimension + half as u64)).besides(nearby)
+            Exit::new(position, view.normal, state.key.bits(2 * state.dimension + half as u64)).besides(besides)
         };
         let estimator = self.estimator_for(state.throughput.max_element());
         let scratch = &mut context.scratch[point.material as usize];
@@ -68,8 +70,8 @@ impl Renderer<'_> {
         } else {
             object.summation.whole(estimator, exit, scratch)
         };
-        leaving.radiance += nearby;
-        leaving.halves.iter_mut().for_each(|half| *half += nearby);
+        leaving.radiance += besides;
+        leaving.halves.iter_mut().zip(nearby).for_each(|(half, nearby)| *half += nearby);
         let factor = object.factor(point, view);
         leaving.radiance *= factor;
         leaving.halves.iter_mut().for_each(|half| *half *= factor);
@@ -79,14 +81,24 @@ impl Renderer<'_> {
         light.add_halves(state, Layer::Subsurface, leaving.radiance, leaving.halves);
     }
 
-    /// The light that enters near an exitant point and is not left to the samples (docs/method.md section 17).
-    fn nearby(&self, state: &PathState, object: &TranslucentObject, at: &Place, context: &mut ThreadContext) -> DVec3 {
-        let (Some(near), Some(surroundings)) = (&object.near, &self.surroundings) else {
-            return DVec3::ZERO;
-        };
-        let random = |k: usize| state.near_points.uniform(LATER + NUMBERS * state.dimension + k as u64);
-        let numbers = state.near.unwrap_or_else(|| std::array::from_fn(random));
-        near.light(surroundings, at, &numbers, state.near_points, &mut context.near)
+    /// The light that enters near an exitant point and is not left to the samples (docs/method.md section 17): one
+    /// estimate for each half of the cloud, or the same for both if paths alternate between the halves.
+    fn nearby(
+        &self,
+        state: &PathState,
+        object: &TranslucentObject,
+        at: &Place,
+        context: &mut ThreadContext,
+    ) -> [DVec3; 2] {
+        let random =
+            |k: usize, half: u64| state.near_points.uniform(LATER + NUMBERS * (2 * state.dimension + half) + k as u64);
+        let first = state.near.unwrap_or_else(|| std::array::from_fn(|k| random(k, 0)));
+        let one = self.nearby_once(object, at, &first, state.near_points, context);
+        if self.gathers_by_shard() {
+            return [one; 2];
+        }
+        let second = std::array::from_fn(|k| random(k, 1));
+        [one, self.nearby_once(object, at, &second, state.key, context)]
     }
 
     /// The same at a point of the surface, with the random numbers of an item.
@@ -97,12 +109,23 @@ impl Renderer<'_> {
         item: Item,
         context: &mut ThreadContext,
     ) -> DVec3 {
+        let numbers = std::array::from_fn(|k| item.uniform(LATER + k as u64));
+        let at = Place { surface: *point, position: point.position, normal: point.normal };
+        self.nearby_once(object, &at, &numbers, item, context)
+    }
+
+    fn nearby_once(
+        &self,
+        object: &TranslucentObject,
+        at: &Place,
+        numbers: &Numbers,
+        random: Item,
+        context: &mut ThreadContext,
+    ) -> DVec3 {
         let (Some(near), Some(surroundings)) = (&object.near, &self.surroundings) else {
             return DVec3::ZERO;
         };
-        let numbers = std::array::from_fn(|k| item.uniform(LATER + k as u64));
-        let at = Place { surface: *point, position: point.position, normal: point.normal };
-        near.light(surroundings, &at, &numbers, item, &mut context.near)
+        near.light(surroundings, at, numbers, random, &mut context.near)
     }
 
     /// Whether each path of a pixel gathers from one half of one shard, round-robin, instead of from all samples.
