@@ -186,10 +186,14 @@ impl Around<'_> {
     /// The plane through the place in the light of the exitant point: its integral, less the value at the point drawn.
     fn plane(&self, drawn: (f64, f64), light: &Arriving) -> DVec3 {
         let (near, normal, refracted) = (self.near, self.at.normal, light.refracted);
+        let Some(integral) = near.plane.at(-normal.dot(refracted)) else {
+            // The plane is left out by the direction of the light alone, which is as right as with it.
+            return DVec3::ZERO;
+        };
         let offset = -self.on_disc(0, drawn);
         let value = near.value(&Separation { offset, normal_in: normal, refracted, normal_out: normal });
         let density = LINES[0] * near.radii.density(drawn.0);
-        light.entering * (near.plane.at(-normal.dot(refracted)) - value / density)
+        light.entering * (integral - value / density)
     }
 
     /// The light that enters at a point and leaves at the place, over the density of such points. Each point belongs to

@@ -14,8 +14,10 @@ const SHORTEST: f64 = 1e-3;
 const AZIMUTHS: usize = 16;
 const GAUSS: f64 = 0.577_350_269_189_625_8;
 
-/// Cosines of the refracted light for which the integrals are tabulated.
+/// Cosines of the refracted light for which the integrals are tabulated, and the least of them: light that grazes below
+/// the surface, in media of an index below 1.03, gives the directional dipole a peak that no table of rings resolves.
 const COSINES: usize = 13;
+const GRAZING: f64 = 0.25;
 
 /// Distances from the exitant point in the plane, drawn nearly in proportion to the light from there.
 pub struct Radii {
@@ -54,13 +56,18 @@ pub struct PlaneIntegral {
 }
 
 impl PlaneIntegral {
-    /// `∫ (1 − w) S_bare dA` of the channels for light whose cosine below the surface is `cosine`, 1/sr.
-    pub fn at(&self, cosine: f64) -> DVec3 {
+    /// `∫ (1 − w) S_bare dA` of the channels for light whose cosine below the surface is `cosine`, 1/sr; none for light
+    /// that is not tabulated.
+    pub fn at(&self, cosine: f64) -> Option<DVec3> {
+        // The critical cosine itself may be rounded down.
+        if cosine < self.lowest - 1e-6 {
+            return None;
+        }
         let place = ((cosine - self.lowest) / (1.0 - self.lowest)).clamp(0.0, 1.0) * (COSINES - 1) as f64;
         let first = (place as usize).saturating_sub(1).min(COSINES - 4);
         let t = place - first as f64;
         let weights = cubic(t);
-        DVec3::from_array(self.values.each_ref().map(|v| (0..4).map(|k| weights[k] * v[first + k]).sum()))
+        Some(DVec3::from_array(self.values.each_ref().map(|v| (0..4).map(|k| weights[k] * v[first + k]).sum())))
     }
 }
 
@@ -86,7 +93,7 @@ impl Profile<'_> {
         let first = (SHORTEST * shortest).min(0.5 * self.reach);
         let ratio = (self.reach / first).powf(1.0 / RINGS as f64);
         let ends: Vec<f64> = (0..=RINGS).map(|k| first * ratio.powi(k as i32)).collect();
-        let lowest = if self.eta > 1.0 { (1.0 - 1.0 / (self.eta * self.eta)).sqrt() } else { 0.0 };
+        let lowest = (1.0 - 1.0 / (self.eta * self.eta)).max(GRAZING * GRAZING).sqrt();
         let mut values = [[0.0; COSINES]; 3];
         let mut rings = vec![0.0; ends.len()];
         for k in 0..COSINES {
@@ -135,3 +142,7 @@ impl Profile<'_> {
         DVec3::from_array([0, 1, 2].map(|channel| share * self.model.bare(channel, s)))
     }
 }
+
+#[cfg(test)]
+#[path = "profile_tests.rs"]
+mod tests;
