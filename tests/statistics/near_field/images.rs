@@ -27,7 +27,8 @@ fn sums(world: &World, cloud: &Cloud, paths: u32, seed: u64) -> [DVec3; 2] {
     let filter = if paths == 1 { Filter::Point } else { Filter::Box };
     let [cut, whole] = [Estimator::Cut { accuracy: 0.1 }, Estimator::Exhaustive].map(|estimator| {
         let settings = settings(Model::HalfSpace, 8, 6);
-        let settings = gather::Settings { estimator, paths_per_pixel: paths, filter, seed, ..settings };
+        let near_field = estimator.is_hierarchical();
+        let settings = gather::Settings { estimator, near_field, paths_per_pixel: paths, filter, seed, ..settings };
         let rendered = gather::render(&input(world, std::slice::from_ref(cloud), &media, &camera), &settings, |_| ());
         rendered.pixels.iter().map(|p| p.beauty()).sum::<DVec3>()
     });
