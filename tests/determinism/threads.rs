@@ -78,6 +78,7 @@ fn render(world: &World, cloud: &Cloud, estimator: Estimator) -> Rendered {
         filter: Filter::Box,
         estimator,
         normals: NormalKind::Shading,
+        near_field: true,
         ..settings(Model::DirectionalDipole, 40, 30)
     };
     let input = input(world, std::slice::from_ref(cloud), &media, &camera);

@@ -7,8 +7,8 @@ use crate::{
 use formats::cloud::Cloud;
 use gather::estimator::{Estimator, Rule};
 use glam::{DQuat, DVec3};
-use sample_surface::{Bounce, LitSurface, Numbers, SampleOutcome, TriangleChoice, draw};
-use scene::light::LightTree;
+use sample_surface::{Numbers, SampleOutcome, TriangleChoice, draw};
+use scene::light::{Bounce, LightTree, LitSurface};
 use serde_json::json;
 use test_support::{
     meshes::World,

@@ -14,6 +14,7 @@ mod error_bars;
 mod half_space;
 mod knob;
 mod means;
+mod near_field;
 mod objects;
 mod paths;
 mod patterns;

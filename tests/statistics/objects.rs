@@ -23,7 +23,7 @@ fn image_sum(world: &World, camera: &Camera, cloud: &Cloud, media: &[Medium], mo
     rendered(world, camera, cloud, media, model).pixels.iter().map(|p| p.beauty()).sum()
 }
 
-fn at(mut mesh: Mesh, offset: DVec3) -> Mesh {
+pub fn at(mut mesh: Mesh, offset: DVec3) -> Mesh {
     mesh.positions.iter_mut().for_each(|p| *p += offset.as_vec3());
     mesh
 }

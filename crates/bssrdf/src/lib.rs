@@ -34,6 +34,7 @@ mod media;
 mod medium;
 mod medium_file;
 mod model;
+mod partition;
 
 pub use accuracy::GOOD;
 pub use albedo::single_scattering_albedo;
@@ -44,4 +45,5 @@ pub use media::{built_in, built_in_names};
 pub use medium::{Coefficients, ETA_MAX, ETA_MIN, Interface, Medium};
 pub use medium_file::{MediumError, MediumFile, Optics, Unit};
 pub use model::{AnyLanes, BetterDipole, DirectionalDipole, HalfSpace, LaneWork, Model, StandardDipole};
+pub use partition::{Far, Partition};
 pub use simd;

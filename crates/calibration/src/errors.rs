@@ -3,7 +3,6 @@
 use crate::{
     fit::{Counts, Fit, Smoothness},
     patches::Patches,
-    surface::Sum,
     tally::Counted,
 };
 use bssrdf::half_space::exit_moment;
@@ -15,8 +14,6 @@ use std::f64::consts::PI;
 pub struct Light {
     /// For each channel, the power that leaves each cell, W (docs/method.md 16.2).
     pub power: [Vec<f64>; 3],
-    /// For each channel, the variance of that power by the positions of the samples, W²: its cloud is one of many.
-    variance: [Vec<f64>; 3],
     /// For each channel, the mean radiance that leaves each cell, in units of `white`.
     radiance: [Vec<f64>; 3],
     /// The share of the surface that each cell is.
@@ -26,33 +23,22 @@ pub struct Light {
 impl Light {
     /// From the sums over the cloud at points of a surface, which lie in the cells `cell_of`, and the areas of the cells,
     /// m². `white` is the radiance of a white diffuse surface that faces the light, W/(m² sr).
-    pub fn new(sums: &[Sum], cell_of: &[u32], areas: &[f64], eta: f64, white: f64) -> Light {
+    pub fn new(sums: &[DVec3], cell_of: &[u32], areas: &[f64], eta: f64, white: f64) -> Light {
         let cells = areas.len();
-        let (mut total, mut count) = (vec![Sum::default(); cells], vec![0.0; cells]);
+        let (mut total, mut count) = (vec![DVec3::ZERO; cells], vec![0.0; cells]);
         for (sum, cell) in sums.iter().zip(cell_of) {
-            total[*cell as usize].radiance += sum.radiance;
-            total[*cell as usize].difference += sum.difference;
+            total[*cell as usize] += *sum;
             count[*cell as usize] += 1.0;
         }
         let transmitted = exit_moment(0, eta);
-        let mean = |cell: usize, of: fn(&Sum) -> DVec3| of(&total[cell]) / f64::max(count[cell], 1.0);
-        let power = |cell: usize, of| mean(cell, of) * (areas[cell] * transmitted);
-        let half_difference = |cell: usize| 0.5 * power(cell, |sum| sum.difference);
+        let mean = |cell: usize| total[cell] / f64::max(count[cell], 1.0);
         let of = |f: &dyn Fn(usize) -> DVec3| [0, 1, 2].map(|c| (0..cells).map(|p| f(p)[c]).collect());
         let area: f64 = areas.iter().sum();
         Light {
-            power: of(&|cell| power(cell, |sum| sum.radiance)),
-            variance: of(&|cell| half_difference(cell) * half_difference(cell)),
-            radiance: of(&|cell| mean(cell, |sum| sum.radiance) * (transmitted / (PI * white))),
+            power: of(&|cell| mean(cell) * (areas[cell] * transmitted)),
+            radiance: of(&|cell| mean(cell) * (transmitted / (PI * white))),
             share: areas.iter().map(|own| own / area).collect(),
         }
-    }
-
-    /// The relative variance of the power that leaves a patch, by the positions of the samples: the same for all
-    /// patches, lest those where it happens to be large count less.
-    pub fn grain(&self, patches: &Patches, channel: usize) -> f64 {
-        let squares: f64 = patches.sums(&self.power[channel]).iter().map(|power| power * power).sum();
-        if squares > 0.0 { self.variance[channel].iter().sum::<f64>() / squares } else { 0.0 }
     }
 }
 
@@ -64,7 +50,7 @@ const FEW: f64 = 4.0;
 
 /// What calibration cannot mend on smooth shapes, as relMSE of bright light: the change of the light within a cell, and
 /// with the angle of view (docs/reports/accuracy.md).
-const FLOOR: f64 = 2e-4;
+const FLOOR: f64 = 5e-5;
 
 /// The relMSE of a channel before and after the fit, at the size of a cell (docs/method.md 16.6).
 ///

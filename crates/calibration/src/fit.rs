@@ -32,14 +32,6 @@ pub struct Fit {
     pub halves: [Vec<f64>; 2],
 }
 
-impl Fit {
-    /// No factor.
-    pub fn none(patches: usize) -> Fit {
-        let none = vec![0.0; patches];
-        Fit { both: none.clone(), halves: [none.clone(), none] }
-    }
-}
-
 /// The values of `λ` that are tried, from the smoothest.
 const LAMBDAS: [f64; 9] = [1e6, 1e5, 3e4, 1e4, 3e3, 1e3, 3e2, 1e2, 1e1];
 

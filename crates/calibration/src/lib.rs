@@ -42,19 +42,20 @@ mod tally;
 pub use factors::Factors;
 pub use patches::{Patches, Site};
 
-use bssrdf::{Medium, Model, half_space::exit_lobe};
+use bssrdf::{Medium, Model, Partition, half_space::exit_lobe};
 use entries::Entries;
 use errors::{Light, channel_errors};
 use factors::{mean_square_turn, shift};
-use fit::{Fit, Smoothness};
+use fit::Smoothness;
 use formats::{
     calibration::{CalibratedMaterial, Calibration, ChannelErrors, MediumFacts, version},
     cloud::{Cloud, shards},
 };
-use scene::{DVec3, NormalKind, Rays, Scene};
+use near_field::{NearField, Surroundings};
+use scene::{NormalKind, Rays, Scene};
 use std::sync::Arc;
 use sums::{Summation, estimator::Scatterer};
-use surface::Surface;
+use surface::{Lit, Surface};
 use tally::Walking;
 use walks::Solid;
 
@@ -109,10 +110,6 @@ const MIN_SHARE: f64 = 1.0 / 16.0;
 /// Points of each patch at which the model is evaluated.
 const POINTS: usize = 64;
 
-/// The largest relative variance of the model's light on a patch by the positions of the samples. Above it, the sum over
-/// a cloud is spikes about its samples, most of which the points of a patch miss: a factor would be too large by half.
-const MAX_GRAIN: f64 = 0.1;
-
 /// The largest share of walks that may leave through holes.
 const HOLES: f64 = 1e-3;
 
@@ -154,8 +151,10 @@ impl Task<'_> {
 
 /// Measures and fits the factors of all materials; `progress` is called with units of work that were done.
 pub fn calibrate(task: &Task, progress: impl Fn(u64) + Sync) -> Result<Calibration, CalibrateError> {
+    let is_translucent = |m: u16| shards::materials(task.clouds).iter().any(|s| s.index == m);
+    let surroundings = Surroundings::new(task.scene, task.rays, task.normals, is_translucent);
     let materials = (task.portions().into_iter().enumerate())
-        .map(|(slot, portion)| calibrate_material(task, slot, portion, &progress))
+        .map(|(slot, portion)| calibrate_material(task, &surroundings, slot, portion, &progress))
         .collect::<Result<_, _>>()?;
     Ok(Calibration {
         content: task.identity(),
@@ -169,6 +168,7 @@ pub fn calibrate(task: &Task, progress: impl Fn(u64) + Sync) -> Result<Calibrati
 
 fn calibrate_material(
     task: &Task,
+    surroundings: &Surroundings,
     slot: usize,
     portion: Portion,
     progress: &(impl Fn(u64) + Sync),
@@ -179,12 +179,15 @@ fn calibrate_material(
     let surface = Surface::new(mesh, sampled.index, task.normals, POINTS << depth, task.seed);
     let sites = surface.sites();
     let (patches, cell_of) = Patches::new(&sites, surface.area, depth);
-    let scatterer = Arc::new(Scatterer::new(task.model, medium, sampled.area_m2.sqrt()));
+    let near = NearField::of_clouds(task.model, medium, task.clouds, slot);
+    let partition = near.as_ref().map_or(Partition::NONE, NearField::partition);
+    let scatterer = Arc::new(Scatterer::new(task.model, medium, sampled.area_m2.sqrt()).far(partition));
     let summation = Summation::of_clouds(scatterer, task.clouds, slot);
+    let lit = Lit { summation, near: near.map(|near| (near, surroundings)) };
     let areas = surface.cell_areas(mesh, &patches, sampled.index, task.seed);
     let is_translucent = |m: u16| shards::materials(task.clouds).iter().any(|s| s.index == m);
     let solid = Solid::new(mesh, task.rays, sampled.index, is_translucent).ok_or_else(dark)?;
-    let sums = surface.light(&summation, &solid, task.seed, progress);
+    let sums = surface.light(&lit, &solid, task.seed, progress);
     let entries = Entries::new(task.clouds, slot, medium.eta);
     let light = Light::new(&sums, &cell_of, &areas, medium.eta, entries.white());
     let walking =
@@ -204,18 +207,14 @@ fn calibrate_material(
             continue;
         };
         let counts = counted.at_patches(&patches);
-        let is_grain = light.grain(&patches, channel) > MAX_GRAIN;
-        let fit = if is_grain { Fit::none(patches.count()) } else { smoothness.fit(&counts) };
+        let fit = smoothness.fit(&counts);
         let fitted = smoothness.at_patches(&fit.both);
         let leaving: Vec<f64> = fitted.iter().zip(&counts.model).map(|(f, m)| f + m.ln()).collect();
-        let slopes = if is_grain { vec![DVec3::ZERO; patches.count()] } else { patches.gradient(&leaving) };
+        let slopes = patches.gradient(&leaving);
         let shift = shift(&medium.channels[channel], medium.eta);
         let turn: Vec<f64> = slopes.iter().map(|slope| mean_square_turn(shift * slope.length())).collect();
         lobe[channel] = exit_lobe(medium.eta, tally.cosines / tally.sum());
         errors[channel] = channel_errors(&smoothness, &patches, &light, channel, &counted, &fit, &turn);
-        if is_grain {
-            errors[channel].unresolved = 1.0;
-        }
         for (gradient, slope) in gradients.iter_mut().zip(&slopes) {
             gradient[channel] = slope.as_vec3().to_array();
         }

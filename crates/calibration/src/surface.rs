@@ -2,10 +2,11 @@
 
 use crate::patches::{Patches, Site};
 use glam::DVec3;
+use near_field::{NearField, Place, Surroundings};
 use rayon::prelude::*;
 use scene::{
     Mesh, NormalKind, SurfacePoint,
-    random::{Purpose, Stream},
+    random::{Item, Purpose, Stream},
     warp,
 };
 use sums::{
@@ -22,13 +23,25 @@ pub struct Surface {
     pub points: Vec<SurfacePoint>,
 }
 
-/// A sum over the cloud at one point, W/(m² sr).
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Sum {
-    /// What leaves, without `T21`.
-    pub radiance: DVec3,
-    /// The difference of the sums over the two halves of the cloud.
-    pub difference: DVec3,
+/// What lights the points.
+pub struct Lit<'a> {
+    pub summation: Summation<'a>,
+    /// The near part of the model, if the samples do not carry it, and what lights it.
+    pub near: Option<(NearField, &'a Surroundings<'a>)>,
+}
+
+/// Dimensions of a point's numbers that are those of its near field.
+const NEAR: u64 = 1 << 32;
+
+impl Lit<'_> {
+    fn nearby(&self, point: &SurfacePoint, item: Item, scratch: &mut near_field::Scratch) -> DVec3 {
+        let Some((near, surroundings)) = &self.near else {
+            return DVec3::ZERO;
+        };
+        let numbers = std::array::from_fn(|k| item.uniform(NEAR + k as u64));
+        let at = Place { surface: *point, position: point.position, normal: point.normal };
+        near.light(surroundings, &at, &numbers, item, scratch)
+    }
 }
 
 /// Relative error of the model's light at one point. The mean over a patch has an eighth of it.
@@ -83,21 +96,22 @@ impl Surface {
         self.points.iter().map(|p| Site { position: p.position, normal: p.geometric_normal }).collect()
     }
 
-    /// The sum over the cloud at each point. No light leaves from points inside another part of the solid.
-    pub fn light(&self, summation: &Summation, solid: &Solid, seed: u64, progress: impl Fn(u64) + Sync) -> Vec<Sum> {
+    /// The radiance without `T21` that leaves each point by the model, W/(m² sr). No light leaves from points inside another part of the solid.
+    pub fn light(&self, lit: &Lit, solid: &Solid, seed: u64, progress: impl Fn(u64) + Sync) -> Vec<DVec3> {
         let stream = Stream::new(seed, Purpose::CalibrationSum);
         let estimator = Estimator::Cut { accuracy: ACCURACY };
-        let light = |scratch: &mut Scratch, (index, point): (usize, &SurfacePoint)| {
+        let light = |(scratch, near): &mut (Scratch, near_field::Scratch), (index, point): (usize, &SurfacePoint)| {
             progress(1);
             if solid.is_buried(point.position, point.geometric_normal) {
-                return Sum::default();
+                return DVec3::ZERO;
             }
             let item = stream.item(index as u64);
-            let exit = |half: usize| Exit::new(point.position, point.normal, item.bits(half as u64));
-            let leaving = summation.whole(estimator, exit, scratch);
-            Sum { radiance: leaving.radiance, difference: leaving.halves[0] - leaving.halves[1] }
+            let nearby = lit.nearby(point, item, near);
+            let exit = |half: usize| Exit::new(point.position, point.normal, item.bits(half as u64)).besides(nearby);
+            let leaving = lit.summation.whole(estimator, exit, scratch);
+            leaving.radiance + nearby
         };
-        self.points.par_iter().enumerate().map_init(Scratch::default, light).collect()
+        self.points.par_iter().enumerate().map_init(Default::default, light).collect()
     }
 }
 

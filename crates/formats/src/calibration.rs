@@ -93,7 +93,7 @@ pub struct ChannelErrors {
     /// With the factor, and the standard error of that estimate.
     pub after: f64,
     pub uncertainty: f64,
-    /// Share of the surface where too few walks leave to tell; 1 if the samples are too far apart for the medium.
+    /// Share of the surface where too few walks leave to tell.
     pub unresolved: f64,
 }
 

@@ -14,6 +14,11 @@ pub enum Purpose {
     Gather,
     /// Points at which paths cross their pixel.
     Pixel,
+    /// Points around the first exitant point of a path: place and direction of their light, and the rest.
+    NearField,
+    NearLight,
+    /// Points around later exitant points, and light that opaque surfaces reflect to any.
+    NearPoint,
     /// Transmittance rays of edge pixels.
     Edge,
     /// Points at which phase two corrects the error that the cut predicts.
@@ -57,6 +62,9 @@ impl Purpose {
             Purpose::CalibrationPoint => u64::MAX - 4,
             Purpose::CalibrationSum => u64::MAX - 5,
             Purpose::CalibrationArea => u64::MAX - 6,
+            Purpose::NearField => u64::MAX - 8,
+            Purpose::NearLight => u64::MAX - 9,
+            Purpose::NearPoint => u64::MAX - 10,
             Purpose::HalfSpaceTable => u64::MAX - 3,
             Purpose::Remainder(k) => 7 + k,
         }

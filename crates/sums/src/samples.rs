@@ -36,13 +36,20 @@ pub struct Exit {
     pub normal: [f32; 3],
     /// Selects the random numbers of the sum.
     pub key: u64,
+    /// Light that leaves there besides the sum, summed over channels, W/(m² sr): errors are relative to both.
+    pub besides: f32,
 }
 
 impl Exit {
     pub fn new(position: DVec3, normal: DVec3, key: u64) -> Exit {
         let high = position.as_vec3();
         let low = (position - high.as_dvec3()).as_vec3();
-        Exit { high: high.to_array(), low: low.to_array(), normal: normal.as_vec3().to_array(), key }
+        Exit { high: high.to_array(), low: low.to_array(), normal: normal.as_vec3().to_array(), key, besides: 0.0 }
+    }
+
+    /// This point where light leaves besides the sum, W/(m² sr); an estimate below 0 is none.
+    pub fn besides(self, light: DVec3) -> Exit {
+        Exit { besides: light.element_sum().max(0.0) as f32, ..self }
     }
 
     /// This point with random numbers for one of several shards; the first shard keeps the point's own.

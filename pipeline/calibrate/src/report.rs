@@ -20,7 +20,7 @@ pub fn lines(calibration: &Calibration) -> Vec<String> {
             }
             let unresolved = match e.unresolved {
                 share if share > 0.0 => {
-                    format!("; unresolved (few walks, or samples far apart): {:.1} % of the surface", 100.0 * share)
+                    format!("; unresolved (few walks): {:.1} % of the surface", 100.0 * share)
                 }
                 _ => String::new(),
             };

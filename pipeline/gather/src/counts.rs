@@ -13,6 +13,9 @@ pub struct Counts {
     pub shadow_rays: u64,
     pub gathers: u64,
     pub evaluations: u64,
+    /// Points around exitant points that were lit, and the rays that were traced for them.
+    pub near_points: u64,
+    pub near_rays: u64,
     /// Nodes of the trees over the samples that were visited.
     pub nodes: u64,
     /// Paths that were ended by the depth limit, so that their light is missing.
@@ -42,6 +45,12 @@ pub struct Counts {
 }
 
 impl Counts {
+    /// Adds the work of near fields.
+    pub fn near_field(&mut self, work: &near_field::Work) {
+        self.near_points += work.points;
+        self.near_rays += work.rays;
+    }
+
     pub fn add(&mut self, other: &Counts) {
         self.paths += other.paths;
         self.from_outside += other.from_outside;
@@ -50,6 +59,8 @@ impl Counts {
         self.shadow_rays += other.shadow_rays;
         self.gathers += other.gathers;
         self.evaluations += other.evaluations;
+        self.near_points += other.near_points;
+        self.near_rays += other.near_rays;
         self.nodes += other.nodes;
         self.cut_by_depth += other.cut_by_depth;
         self.escaped_inside += other.escaped_inside;

@@ -5,7 +5,7 @@ use crate::{path_state::ThreadContext, renderer::Renderer};
 use glam::DVec2;
 use rayon::prelude::*;
 use scene::{
-    DVec3,
+    DVec3, SurfacePoint,
     random::{Purpose, Stream},
     sequence::Sequence,
 };
@@ -67,8 +67,8 @@ fn fit(measured: &[Measured]) -> CutCorrection {
     CutCorrection::new(&factors.collect::<Vec<_>>())
 }
 
-/// For each material, points that the camera sees, with their normals.
-fn points(renderer: &Renderer, stream: Stream) -> Vec<Vec<(DVec3, DVec3)>> {
+/// For each material, points that the camera sees.
+fn points(renderer: &Renderer, stream: Stream) -> Vec<Vec<SurfacePoint>> {
     let (input, size) = (&renderer.input, renderer.settings.size());
     let mut points = vec![Vec::new(); renderer.objects.len()];
     let spread = Sequence::new(stream.item(0), stream);
@@ -81,7 +81,7 @@ fn points(renderer: &Renderer, stream: Stream) -> Vec<Vec<(DVec3, DVec3)>> {
         let point = input.scene.mesh.point(hit.triangle, hit.weights, renderer.settings.normals);
         let own: &mut Vec<_> = &mut points[point.material as usize];
         if own.len() < POINTS && point.normal.dot(direction) < 0.0 {
-            own.push((point.position, point.normal));
+            own.push(point);
         }
     }
     points
@@ -98,28 +98,24 @@ struct Measured {
 }
 
 /// Sums at each point of a material; none if it is opaque.
-fn measure(
-    renderer: &Renderer,
-    material: usize,
-    points: &[(DVec3, DVec3)],
-    stream: Stream,
-    round: u64,
-) -> Vec<Measured> {
+fn measure(renderer: &Renderer, material: usize, points: &[SurfacePoint], stream: Stream, round: u64) -> Vec<Measured> {
     let estimator = renderer.estimator_for(1.0);
     let (Some(object), Some(accuracy)) = (&renderer.objects[material], estimator.accuracy()) else {
         return Vec::new();
     };
     let summation = &object.summation;
-    let at = |(index, (position, normal)): (usize, &(DVec3, DVec3))| {
+    let at = |(index, point): (usize, &SurfacePoint)| {
         let mut context = ThreadContext::new(renderer.objects.len());
         let item = stream.item(1 + (material * POINTS + index) as u64);
+        let nearby = renderer.nearby_at(object, point, item, &mut context);
         let sum = |replicate: u64| {
-            let exit = Exit::new(*position, *normal, item.bits(round * REPLICATES + replicate));
+            let exit = Exit::new(point.position, point.normal, item.bits(round * REPLICATES + replicate));
+            let exit = exit.besides(nearby);
             let (half, shard) = (index % 2, index / 2 % summation.shards());
             summation.sum(estimator, half, shard, &exit, &mut context.scratch[material])
         };
         let sums: Vec<Sum> = (0..REPLICATES).map(sum).collect();
-        let (mean, variance) = moments(&sums);
+        let (mean, variance) = moments(&sums, nearby);
         let predicted = sums[0].predicted;
         let target = accuracy * f64::from(summation.correction.factor(predicted));
         Measured { mean, predicted, excess: variance / (mean * target).powi(2) }
@@ -127,9 +123,12 @@ fn measure(
     points.par_iter().enumerate().map(at).collect()
 }
 
-/// Length of the mean color, and the variance of one sum.
-fn moments(sums: &[Sum]) -> (f64, f64) {
+/// Length of the mean color with the light that leaves besides, and the variance of one sum.
+fn moments(sums: &[Sum], besides: DVec3) -> (f64, f64) {
     let n = sums.len() as f64;
     let mean = sums.iter().map(|s| s.radiance).sum::<DVec3>() / n;
-    (mean.length(), sums.iter().map(|s| s.radiance.distance_squared(mean)).sum::<f64>() / (n - 1.0))
+    (
+        (mean + besides.max(DVec3::ZERO)).length(),
+        sums.iter().map(|s| s.radiance.distance_squared(mean)).sum::<f64>() / (n - 1.0),
+    )
 }

@@ -53,6 +53,8 @@ pub struct Settings {
     pub filter: Filter,
     pub estimator: Estimator,
     pub model: Model,
+    /// Light that enters near an exitant point is sampled around it, if the samples are too far apart to carry it.
+    pub near_field: bool,
     /// Random walks take the place of the sum over the cloud.
     pub reference: bool,
     pub normals: NormalKind,

@@ -87,6 +87,8 @@ fn settings(request: &Request, viewpoint: &Viewpoint, model: Model) -> Result<Se
         filter: request.filter,
         estimator: request.estimator,
         model,
+        // The other estimators are the sum over the samples alone.
+        near_field: request.estimator.is_hierarchical() && !request.reference,
         reference: request.reference,
         normals: cli::normal_kind(request.scene.how.normals),
         max_depth: request.max_depth,

@@ -25,6 +25,7 @@
 //!     filter: Filter::Box,
 //!     estimator: Estimator::Exhaustive,
 //!     model: Model::DirectionalDipole,
+//!     near_field: true,
 //!     reference: false,
 //!     normals: NormalKind::Shading,
 //!     max_depth: 16,

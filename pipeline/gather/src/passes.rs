@@ -11,9 +11,11 @@ use crate::{
     reference::{Walks, meets_light},
     renderer::{Renderer, TranslucentObject},
 };
+use bssrdf::Partition;
 use calibration::Factors;
 use formats::cloud::shards;
 use glam::DVec2;
+use near_field::{NearField, Surroundings};
 use rayon::prelude::*;
 use scene::{
     DVec3,
@@ -42,6 +44,8 @@ pub struct Passes<'a> {
     paths: u32,
     counts: Counts,
     pixel_stream: Stream,
+    /// The first four numbers of near fields, and the rest.
+    near_streams: [Stream; 2],
     edge_stream: Stream,
 }
 
@@ -52,11 +56,16 @@ impl<'a> Passes<'a> {
     /// Prepares an image; the cut is as accurate as `settings.paths_per_pixel` paths need.
     pub fn new(input: &Input<'a>, settings: &Settings) -> Self {
         let objects = objects(input, settings);
+        let is_near = objects.iter().flatten().any(|object| object.near.is_some());
+        let translucent = |material: u16| objects[material as usize].is_some();
+        let surroundings = || Surroundings::new(input.scene, input.rays, settings.normals, translucent);
+        let surroundings = is_near.then(surroundings);
         let mut renderer = Renderer {
             input: *input,
             meets_light: meets_light(input, |material| objects[material as usize].is_none()),
             settings: settings.clone(),
             lights: LightTree::new(input.scene.lights()),
+            surroundings,
             objects,
             drawn: DrawnCounts::of(input.clouds),
             paths_per_pixel: settings.paths_per_pixel,
@@ -66,6 +75,7 @@ impl<'a> Passes<'a> {
             gathers: Stream::new(settings.seed, Purpose::Gather),
             shard_picks: Stream::new(settings.seed, Purpose::ShardPick),
             walk_starts: Stream::new(settings.seed, Purpose::WalkStart),
+            near_points: Stream::new(settings.seed, Purpose::NearPoint),
         };
         cut_correction::correct(&mut renderer);
         let mut passes = Passes {
@@ -76,6 +86,7 @@ impl<'a> Passes<'a> {
             paths: 0,
             counts: Counts::default(),
             pixel_stream: Stream::new(settings.seed, Purpose::Pixel),
+            near_streams: [Purpose::NearField, Purpose::NearLight].map(|purpose| Stream::new(settings.seed, purpose)),
             edge_stream: Stream::new(settings.seed, Purpose::Edge),
         };
         let walks = passes.renderer.objects.iter().flatten().filter_map(|object| object.walks.as_ref());
@@ -153,6 +164,7 @@ impl<'a> Passes<'a> {
             [0, 1, 2].map(|channel| Sequence::new(stream.item((2 * pixel + half) * 3 + channel), stream))
         };
         let walks = settings.reference.then(|| [0, 1].map(walks_by));
+        let near = self.renderer.surroundings.is_some().then(|| self.near_streams.map(spread_by));
         let mut edge = self.edges[index].clone().map(|edge| (edge, spread_by(self.edge_stream)));
         let alone = settings.paths_per_pixel == 1;
         let mut sum = self.sums[index];
@@ -166,7 +178,12 @@ impl<'a> Passes<'a> {
             };
             let (origin, direction) = self.ray(index, offset);
             let walks = walks.as_ref().map(|by_half| by_half[path as usize % 2].map(|s| s.point(path / 2)));
-            let light = self.renderer.trace(PathIndex { pixel, path, walks }, origin, direction, context);
+            let near = near.as_ref().map(|by_stream| {
+                let [[radius, azimuth, l1, l2], [axis, xi, ..]] =
+                    by_stream.each_ref().map(|by_half| by_half[path as usize % 2].point(path / 2));
+                [radius, azimuth, axis, xi, l1, l2]
+            });
+            let light = self.renderer.trace(PathIndex { pixel, path, walks, near }, origin, direction, context);
             sum.add(path, alone, &light);
             if let Some((edge, spread)) = &mut edge {
                 let half = path as usize % 2;
@@ -197,6 +214,7 @@ impl<'a> Passes<'a> {
             let add = |index: usize| (index, self.add_paths(index, range.clone(), &mut context));
             let sums: Vec<(usize, Sums)> = self.pixels_of(tile).map(add).collect();
             progress(sums.len() as u64);
+            context.counts.near_field(&context.near.work);
             (sums, context.counts)
         };
         let tiles: Vec<_> = (0..self.tiles()).into_par_iter().map(tile).collect();
@@ -251,7 +269,10 @@ pub fn render(input: &Input, settings: &Settings, progress: impl Fn(u64) + Sync)
 fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<TranslucentObject<'a>>> {
     let mut objects: Vec<Option<TranslucentObject>> = input.scene.materials.iter().map(|_| None).collect();
     for (slot, (sampled, medium)) in shards::materials(input.clouds).iter().zip(input.media).enumerate() {
-        let scatterer = Arc::new(Scatterer::new(settings.model, medium, sampled.area_m2.sqrt()));
+        let near = || NearField::of_clouds(settings.model, medium, input.clouds, slot);
+        let near = settings.near_field.then(near).flatten();
+        let partition = near.as_ref().map_or(Partition::NONE, NearField::partition);
+        let scatterer = Arc::new(Scatterer::new(settings.model, medium, sampled.area_m2.sqrt()).far(partition));
         let is_translucent = |material| shards::materials(input.clouds).iter().any(|m| m.index == material);
         let walks = settings.reference.then(|| Walks::new(input, sampled.index, medium, is_translucent));
         let extinction = || medium.map(|c| c.extinction());
@@ -261,6 +282,7 @@ fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<Translucent
             factors: input.calibration.map(|c| Factors::new(&c.materials[slot])),
             lobe: settings.model.exit_lobe(medium),
             summation: Summation::of_clouds(scatterer, input.clouds, slot),
+            near,
             medium: medium.clone(),
         });
     }

@@ -30,9 +30,11 @@ impl Renderer<'_> {
             half,
             shard_pick: self.pick_shard(index),
             walks: index.walks,
+            near: index.near,
             random: self.paths.item(item),
             dimension: 0,
             key: self.gathers.item(item),
+            near_points: self.near_points.item(item),
         };
         let mut trace = Trace::default();
         context.counts.paths += 1;
@@ -192,8 +194,13 @@ impl Renderer<'_> {
         }
         if splits {
             if transmittance < 1.0 {
-                let mut branch =
-                    PathState { dimension: state.dimension + BRANCH, events: state.events + 1, walks: None, ..*state };
+                let mut branch = PathState {
+                    dimension: state.dimension + BRANCH,
+                    events: state.events + 1,
+                    walks: None,
+                    near: None,
+                    ..*state
+                };
                 branch.throughput *= 1.0 - transmittance;
                 let follows = meeting.scatter(&mut branch, Lobe::Reflection, Layer::Specular, counts);
                 trace.mirrored = (follows && branch.events < self.settings.max_depth).then_some(branch);
@@ -205,7 +212,7 @@ impl Renderer<'_> {
         let emission = self.input.scene.materials[point.material as usize].emission;
         trace.light.add(state, Layer::Emission, emission);
         self.gather(state, object, point, &meeting.view, &mut trace.light, context);
-        state.walks = None;
+        (state.walks, state.near) = (None, None);
         state.inside = Some(point.material);
         // If only the interpolated normal lets light through, the path ends here.
         meeting.scatter(state, Lobe::Transmission, Layer::Transmission, &mut context.counts)

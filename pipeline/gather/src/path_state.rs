@@ -12,23 +12,26 @@ pub struct PathIndex {
     pub path: u32,
     /// The first numbers of the walks that it begins at its first interface, one for each channel, if it begins any.
     pub walks: Option<WalkStarts>,
+    /// The numbers of its points around the first exitant point, if it draws any.
+    pub near: Option<near_field::Numbers>,
 }
 
 /// The first numbers of the walks of three channels.
 pub type WalkStarts = [[f64; walks::FIRST]; 3];
 
 /// Counts and memory of one thread.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct ThreadContext {
     pub counts: Counts,
     /// The buffers of the cut, for each material.
     pub scratch: Vec<Scratch>,
+    pub near: near_field::Scratch,
 }
 
 impl ThreadContext {
     /// The context for a scene with this number of materials.
     pub fn new(materials: usize) -> ThreadContext {
-        ThreadContext { counts: Counts::default(), scratch: vec![Scratch::default(); materials] }
+        ThreadContext { scratch: vec![Scratch::default(); materials], ..ThreadContext::default() }
     }
 }
 
@@ -58,6 +61,10 @@ pub struct PathState {
     pub shard_pick: ShardPick,
     /// The first numbers of the walks at the path's first interface, until they are used.
     pub walks: Option<WalkStarts>,
+    /// The numbers of the points around the first exitant point, until they are used.
+    pub near: Option<near_field::Numbers>,
+    /// Random numbers of its other points around exitant points.
+    pub near_points: Item,
     /// Random numbers of the path, and the dimension of the next one.
     pub random: Item,
     pub dimension: u64,

@@ -7,6 +7,7 @@ use crate::{
 use bsdf::Surface;
 use bssrdf::Medium;
 use calibration::Factors;
+use near_field::{NearField, Surroundings};
 use scene::{DVec3, light::LightTree, random::Stream};
 use std::ops::Range;
 use sums::{Summation, drawn::DrawnCounts};
@@ -16,6 +17,8 @@ pub struct Renderer<'a> {
     pub input: Input<'a>,
     pub settings: Settings,
     pub lights: LightTree<'a>,
+    /// What lights near fields; none if there is no near field.
+    pub surroundings: Option<Surroundings<'a>>,
     /// The translucent object of each material; none for opaque materials.
     pub objects: Vec<Option<TranslucentObject<'a>>>,
     /// Samples of each cloud, the unlit ones included.
@@ -32,6 +35,7 @@ pub struct Renderer<'a> {
     pub gathers: Stream,
     pub shard_picks: Stream,
     pub walk_starts: Stream,
+    pub near_points: Stream,
 }
 
 /// A translucent material with its medium and its samples.
@@ -42,6 +46,8 @@ pub struct TranslucentObject<'a> {
     /// `a` and `b` of the light that leaves in proportion to `T21 (a + b μ)`, for each channel (docs/method.md 15.8).
     pub lobe: [[f64; 2]; 3],
     pub summation: Summation<'a>,
+    /// The near part, if the samples are too far apart for it; the summation then has the far part alone.
+    pub near: Option<NearField>,
     /// The factors of its surface, if it is calibrated.
     pub factors: Option<Factors>,
     /// Random walks, if they take the place of the summation.
@@ -61,6 +67,6 @@ impl TranslucentObject<'_> {
 
     /// True if no scattered light leaves it.
     pub fn is_dark(&self) -> bool {
-        self.medium.is_clear() || self.walks.is_none() && self.summation.is_empty()
+        self.medium.is_clear() || self.walks.is_none() && self.near.is_none() && self.summation.is_empty()
     }
 }

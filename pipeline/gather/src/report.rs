@@ -114,6 +114,8 @@ impl<'a> Facts<'a> {
             "pixels": rendered.pixels.len(),
             "paths": counts.paths,
             "gathers": counts.gathers,
+            "near_points": counts.near_points,
+            "near_rays": counts.near_rays,
             "bssrdf_evaluations": counts.evaluations,
             "nodes_visited": counts.nodes,
             "rays": counts.rays,

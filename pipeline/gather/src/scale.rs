@@ -40,7 +40,7 @@ pub fn show(request: &Request, inputs: &LitScene, model: Model) {
             rounding: 0.5 * f64::from(f32::EPSILON) * low.abs().max(high.abs()).max_element(),
         };
         lines(&object, medium, model.of(medium).transport()).iter().for_each(|line| common.say(line));
-        warnings(&object, medium, request.reference).iter().for_each(|warning| common.warn(warning));
+        warnings(&object, medium, request).iter().for_each(|warning| common.warn(warning));
         if let Some(errors) = model.poor_reflectance(medium).filter(|_| !request.reference) {
             let [r, g, b] = errors.map(|e| format!("{:+.0}", 100.0 * e));
             common.say(format_args!(
@@ -65,7 +65,7 @@ fn lines(object: &Object, medium: &Medium, transport: [f64; 3]) -> [String; 6] {
     ]
 }
 
-fn warnings(object: &Object, medium: &Medium, reference: bool) -> Vec<String> {
+fn warnings(object: &Object, medium: &Medium, request: &Request) -> Vec<String> {
     let Object { material, diagonal, spacing, drawn, rounding } = *object;
     let shortest = |lengths: [f64; 3]| lengths.into_iter().fold(f64::INFINITY, f64::min);
     let free_path = shortest(medium.mean_free_path());
@@ -82,11 +82,11 @@ fn warnings(object: &Object, medium: &Medium, reference: bool) -> Vec<String> {
             "`{material}`: light scatters within {depth} of an object of {size}: it will look opaque; are the medium's unit \
              and --metres-per-unit right?"
         ));
-    } else if reference {
+    } else if request.reference {
         // The samples do not count.
     } else if spacing == f64::INFINITY {
         warnings.push(format!("`{material}`: none of its samples carries light: it will show no scattered light"));
-    } else if spacing > SPARSE * reduced {
+    } else if spacing > SPARSE * reduced && !request.estimator.is_hierarchical() {
         warnings.push(format!(
             "`{material}`: samples lie {apart} apart, light scatters within {depth}: expect grain; a cloud of about {} \
              samples would do",

@@ -123,14 +123,15 @@ impl Task {
 }
 
 fn request(arguments: Arguments, scene: PathBuf, image: PathBuf) -> Result<Request, Failure> {
-    let paths = match (arguments.target_error.is_some(), arguments.reference) {
+    let default = match (arguments.target_error.is_some(), arguments.reference) {
         (false, false) => PATHS,
         (true, false) => MAX_PATHS,
         (false, true) => REFERENCE_PATHS,
         (true, true) => MAX_REFERENCE_PATHS,
     };
+    let paths = arguments.spp.unwrap_or(default);
     Ok(Request {
-        estimator: estimator(&arguments)?,
+        estimator: estimator(&arguments, paths)?,
         clouds: arguments.files,
         scene: SceneSettings { path: scene, how: arguments.scene_args },
         camera: arguments.view.map_or(CameraSource::Scene(arguments.camera), CameraSource::View),
@@ -141,7 +142,7 @@ fn request(arguments: Arguments, scene: PathBuf, image: PathBuf) -> Result<Reque
         model: arguments.bssrdf,
         calibration: calibration(arguments.calibration),
         reference: arguments.reference,
-        paths: arguments.spp.unwrap_or(paths),
+        paths,
         target_error: arguments.target_error,
         filter: arguments.filter,
         max_depth: arguments.max_depth,
@@ -165,12 +166,17 @@ fn calibration(argument: Option<PathBuf>) -> CalibrationSource {
     }
 }
 
-/// The estimator of this name with the parameters that were given.
-fn estimator(arguments: &Arguments) -> Result<Estimator, Failure> {
+/// The relative error of one gather that goes with the noise of paths: of bunny, sphere and dragon at 4 to 64 paths, the
+/// squared error times the time is then 1 to 2.5 times the least.
+const BALANCED: f64 = 0.02;
+
+/// The estimator of this name with the parameters that were given, for so many paths per pixel.
+fn estimator(arguments: &Arguments, paths: u32) -> Result<Estimator, Failure> {
     match arguments.estimator {
         Estimator::Cut { accuracy } => {
+            let balanced = accuracy.min(BALANCED / f64::from(paths).sqrt());
             // The cut may add half of the target error, which is a quarter of its square.
-            let default = arguments.target_error.map_or(accuracy, |target| 0.5 * target);
+            let default = arguments.target_error.map_or(balanced, |target| 0.5 * target);
             Ok(Estimator::Cut { accuracy: arguments.accuracy.unwrap_or(default) })
         }
         _ if arguments.accuracy.is_some() => {

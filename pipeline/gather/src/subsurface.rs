@@ -6,11 +6,16 @@ use crate::{
 };
 use bsdf::View;
 use calibration::Site;
-use scene::{DVec3, SurfacePoint};
+use near_field::{Numbers, Place};
+use scene::{DVec3, SurfacePoint, random::Item};
 use sums::{estimator::Estimator, samples::Exit};
 
 /// The largest relative error that is asked of one sum. Above it, the cut does not predict its own error.
 const MAX_ERROR: f64 = 0.5;
+
+/// Dimensions of a path's numbers from which those of its later exitant points are taken, each of so many.
+const LATER: u64 = 1 << 32;
+const NUMBERS: u64 = 8;
 
 impl TranslucentObject<'_> {
     /// The factor of the light that leaves at a point for the eye's `view`: the exit lobe or, if the object is calibrated, the
@@ -52,7 +57,12 @@ impl Renderer<'_> {
             return self.walk(state, walks, point, view.normal, light, context);
         }
         let position = object.evaluated_at(point, view);
-        let exit = |half: usize| Exit::new(position, view.normal, state.key.bits(2 * state.dimension + half as u64));
+        let place = Place { surface: *point, position, normal: view.normal };
+        let nearby = self.nearby(state, object, &place, context);
+        let besides = 0.5 * (nearby[0] + nearby[1]);
+        let exit = |half: usize| {
+            Exit::new(position, view.normal, state.key.bits(2 * state.dimension + half as u64)).besides(besides)
+        };
         let estimator = self.estimator_for(state.throughput.max_element());
         let scratch = &mut context.scratch[point.material as usize];
         let mut leaving = if self.gathers_by_shard() {
@@ -60,6 +70,8 @@ impl Renderer<'_> {
         } else {
             object.summation.whole(estimator, exit, scratch)
         };
+        leaving.radiance += besides;
+        leaving.halves.iter_mut().zip(nearby).for_each(|(half, nearby)| *half += nearby);
         let factor = object.factor(point, view);
         leaving.radiance *= factor;
         leaving.halves.iter_mut().for_each(|half| *half *= factor);
@@ -67,6 +79,53 @@ impl Renderer<'_> {
         context.counts.evaluations += leaving.evaluations;
         context.counts.nodes += leaving.nodes;
         light.add_halves(state, Layer::Subsurface, leaving.radiance, leaving.halves);
+    }
+
+    /// The light that enters near an exitant point and is not left to the samples (docs/method.md section 17): one
+    /// estimate for each half of the cloud, or the same for both if paths alternate between the halves.
+    fn nearby(
+        &self,
+        state: &PathState,
+        object: &TranslucentObject,
+        at: &Place,
+        context: &mut ThreadContext,
+    ) -> [DVec3; 2] {
+        let random =
+            |k: usize, half: u64| state.near_points.uniform(LATER + NUMBERS * (2 * state.dimension + half) + k as u64);
+        let first = state.near.unwrap_or_else(|| std::array::from_fn(|k| random(k, 0)));
+        let one = self.nearby_once(object, at, &first, state.near_points, context);
+        if self.gathers_by_shard() {
+            return [one; 2];
+        }
+        let second = std::array::from_fn(|k| random(k, 1));
+        [one, self.nearby_once(object, at, &second, state.key, context)]
+    }
+
+    /// The same at a point of the surface, with the random numbers of an item.
+    pub(crate) fn nearby_at(
+        &self,
+        object: &TranslucentObject,
+        point: &SurfacePoint,
+        item: Item,
+        context: &mut ThreadContext,
+    ) -> DVec3 {
+        let numbers = std::array::from_fn(|k| item.uniform(LATER + k as u64));
+        let at = Place { surface: *point, position: point.position, normal: point.normal };
+        self.nearby_once(object, &at, &numbers, item, context)
+    }
+
+    fn nearby_once(
+        &self,
+        object: &TranslucentObject,
+        at: &Place,
+        numbers: &Numbers,
+        random: Item,
+        context: &mut ThreadContext,
+    ) -> DVec3 {
+        let (Some(near), Some(surroundings)) = (&object.near, &self.surroundings) else {
+            return DVec3::ZERO;
+        };
+        near.light(surroundings, at, numbers, random, &mut context.near)
     }
 
     /// Whether each path of a pixel gathers from one half of one shard, round-robin, instead of from all samples.

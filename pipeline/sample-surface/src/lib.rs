@@ -37,7 +37,6 @@
 //! ```
 
 mod adaptive_count;
-mod bounce;
 mod choice;
 pub mod hierarchy;
 mod hilbert;
@@ -50,7 +49,6 @@ mod sample;
 mod trials;
 
 pub use adaptive_count::{Round, Search, SufficientCloud};
-pub use bounce::{Bounce, LitSurface};
 pub use choice::{Choice, Chosen, TriangleChoice};
 pub use pattern::{Numbers, Pattern, SamplePoint};
 pub use plan::{Plan, SampleError, Settings, Surfaces};

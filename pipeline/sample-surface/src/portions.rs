@@ -1,7 +1,6 @@
 //! Draws the samples in portions, in parallel, and joins them in their order.
 
 use crate::{
-    bounce::{Bounce, LitSurface},
     choice::TriangleChoice,
     hierarchy,
     pattern::{Numbers, Pattern, SamplePoint},
@@ -10,7 +9,10 @@ use crate::{
 };
 use formats::cloud::{Content, Group, Meta, Record, SampledMaterial};
 use rayon::prelude::*;
-use scene::{DVec3, Rays, Scene, light::LightTree};
+use scene::{
+    DVec3, Rays, Scene,
+    light::{Bounce, LightTree, LitSurface},
+};
 use std::collections::BTreeMap;
 
 /// Samples that one task draws.

@@ -1,13 +1,10 @@
 //! One sample: position, direction to the light, flux.
 
-use crate::{
-    bounce::{Bounce, LitSurface, SHARE},
-    pattern::SamplePoint,
-};
+use crate::pattern::SamplePoint;
 use formats::cloud::Sample;
 use scene::{
     SurfacePoint, Vec3,
-    light::{LightChoice, Lit, ReceiverBounds, light_at},
+    light::{Bounce, LightChoice, Lit, LitSurface, ReceiverBounds},
 };
 
 /// The outcome of one drawn sample.
@@ -29,7 +26,7 @@ pub enum SampleOutcome {
 /// The number of nodes in the list of lights that several samples share: a fixed number, and more for each sample.
 const SHARED_NODES: [usize; 2] = [32, 4];
 
-/// Lights sample points that lie close together, each given with its half, directly or by one reflection (`bounce`).
+/// Lights sample points that lie close together, each given with its half, directly or by one reflection.
 /// `shadow_rays` counts the rays traced.
 pub fn draw(
     surface: &LitSurface,
@@ -57,19 +54,13 @@ fn drawn(
     choice: &LightChoice,
     shadow_rays: &mut u64,
 ) -> SampleOutcome {
-    let [xi, l1, l2] = sample.light;
-    let share = if bounce.is_some() { SHARE } else { 0.0 };
-    let (direction, irradiance) = match bounce {
-        Some(bounce) if xi < share => match bounce.light_at(surface, point, [l1, l2], sample.bounce, shadow_rays) {
-            None => return SampleOutcome::NoBounce,
-            Some((direction, irradiance)) => (direction, irradiance / share),
-        },
-        _ => match light_at(choice, surface.rays, point, [(xi - share) / (1.0 - share), l1, l2], shadow_rays) {
+    let (direction, irradiance) =
+        match surface.light_at(bounce, choice, point, sample.light, sample.bounce, shadow_rays) {
+            Lit::NoBounce => return SampleOutcome::NoBounce,
             Lit::FacingAway => return SampleOutcome::FacingAway,
             Lit::Shadowed => return SampleOutcome::Shadowed,
-            Lit::Light { direction, irradiance } => (direction, irradiance / (1.0 - share)),
-        },
-    };
+            Lit::Light { direction, irradiance } => (direction, irradiance),
+        };
     // note: [flux] Φ = E/pdf(x); the estimator divides by K (docs/method.md 6.5).
     // A color of -0 would make a flux of -0: adding 0 removes the sign.
     let flux = (irradiance / sample.pdf_area).as_vec3() + Vec3::ZERO;

@@ -61,6 +61,7 @@ fn render(scene: &Scene, rays: &Rays, cloud: &Cloud, normals: NormalKind, estima
             estimator,
             normals,
             max_depth: 8,
+            near_field: true,
             ..pipeline::settings(Model::DirectionalDipole, SIDE, SIDE)
         };
         let input =

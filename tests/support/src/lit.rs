@@ -1,6 +1,6 @@
 //! Sums over a cloud at any point, by any model and estimator: phase two without a camera.
 
-use bssrdf::{Medium, Model};
+use bssrdf::{Medium, Model, Partition};
 use formats::cloud::Cloud;
 use gather::{
     Summation,
@@ -40,8 +40,13 @@ pub struct Lit<'a> {
 
 impl<'a> Lit<'a> {
     pub fn new(cloud: &'a Cloud, medium: &Medium, model: Model) -> Lit<'a> {
-        let clouds = std::slice::from_ref(cloud);
-        let summation = Summation::of_clouds(Arc::new(scatterer(model, medium)), clouds, 0);
+        Lit::far(cloud, medium, model, Partition::NONE)
+    }
+
+    /// The cloud with the far part of the model alone.
+    pub fn far(cloud: &'a Cloud, medium: &Medium, model: Model, partition: Partition) -> Lit<'a> {
+        let (clouds, scatterer) = (std::slice::from_ref(cloud), scatterer(model, medium).far(partition));
+        let summation = Summation::of_clouds(Arc::new(scatterer), clouds, 0);
         Lit { summation, origin: DVec3::from_array(cloud.meta().origin_m) }
     }
 

@@ -122,6 +122,7 @@ pub fn settings(model: Model, width: usize, height: usize) -> gather::Settings {
         filter: Filter::Point,
         estimator: Estimator::Exhaustive,
         model,
+        near_field: false,
         reference: false,
         normals: NormalKind::Geometric,
         max_depth: 16,

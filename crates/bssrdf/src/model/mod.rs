@@ -23,6 +23,7 @@ use crate::{
     evaluate::Bssrdf,
     lanes::block::{Block, Lane, LaneModel},
     medium::{Coefficients, Medium},
+    partition::{Far, Partition},
 };
 
 /// A model of the BSSRDF.
@@ -66,10 +67,10 @@ impl Model {
     /// The model of one medium, as an evaluator of sixteen samples at a time in float32.
     pub fn lanes(self, medium: &Medium) -> AnyLanes {
         match self {
-            Model::DirectionalDipole => AnyLanes::Directional(DirectionalLanes::new(medium)),
-            Model::HalfSpace => AnyLanes::HalfSpace(HalfSpaceLanes::new(medium)),
-            Model::BetterDipole => AnyLanes::Better(BetterLanes::new(medium)),
-            Model::StandardDipole => AnyLanes::Standard(StandardLanes::new(medium)),
+            Model::DirectionalDipole => AnyLanes::Directional(Far::new(medium)),
+            Model::HalfSpace => AnyLanes::HalfSpace(Far::new(medium)),
+            Model::BetterDipole => AnyLanes::Better(Far::new(medium)),
+            Model::StandardDipole => AnyLanes::Standard(Far::new(medium)),
         }
     }
 
@@ -118,10 +119,10 @@ impl Model {
 /// A model in float32 that is chosen when the program runs.
 #[derive(Clone, Debug)]
 pub enum AnyLanes {
-    Directional(DirectionalLanes),
-    HalfSpace(HalfSpaceLanes),
-    Better(BetterLanes),
-    Standard(StandardLanes),
+    Directional(Far<DirectionalLanes>),
+    HalfSpace(Far<HalfSpaceLanes>),
+    Better(Far<BetterLanes>),
+    Standard(Far<StandardLanes>),
 }
 
 /// Work that is compiled once for each model, so that the model's evaluation is inlined into its loops.
@@ -132,6 +133,17 @@ pub trait LaneWork {
 }
 
 impl AnyLanes {
+    /// The far part of the model.
+    pub fn far(mut self, partition: Partition) -> AnyLanes {
+        match &mut self {
+            AnyLanes::Directional(far) => far.partition = partition,
+            AnyLanes::HalfSpace(far) => far.partition = partition,
+            AnyLanes::Better(far) => far.partition = partition,
+            AnyLanes::Standard(far) => far.partition = partition,
+        }
+        self
+    }
+
     /// `S_bare` as of [`LaneModel::bare`], for one block; [`AnyLanes::run`] is for many.
     pub fn bare(&self, block: &Block, normal_out: [f32; 3]) -> [Lane; 3] {
         match self {

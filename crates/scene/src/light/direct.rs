@@ -18,6 +18,8 @@ pub enum Lit {
     FacingAway,
     /// The chosen light is hidden.
     Shadowed,
+    /// No lit opaque surface lies in the direction that was chosen.
+    NoBounce,
 }
 
 /// Picks one light by importance, then a direction, and tests whether it is visible (docs/method.md 6.4). Light must

@@ -1,6 +1,7 @@
 //! Lights: their contract, the choice of one among many, and the light that arrives at a point of the surface.
 
 mod area;
+mod bounce;
 mod bounds;
 mod choice;
 pub(crate) mod contract;
@@ -15,6 +16,7 @@ mod point;
 mod tree;
 
 pub use area::AreaLight;
+pub use bounce::{Bounce, LitSurface};
 pub use bounds::{LightBounds, ReceiverBounds};
 pub use choice::{LightChoice, Pick};
 pub use contract::{Delta, Illumination, Light};

@@ -26,7 +26,7 @@ pub use ray::Hit;
 use crate::{cutouts::Cutouts, mesh::Mesh, scene::Scene};
 use dispatch::run;
 use glam::{DVec3, Vec3};
-use query::{Closest, Occluded, Segment, Whole};
+use query::{All, Closest, Occluded, Segment, Whole};
 use ray::Ray;
 use scaled_mesh::{DIAGONAL, ROUNDING, ScaledMesh};
 
@@ -84,6 +84,24 @@ impl<'a> Rays<'a> {
         }?;
         let distance = (hit.distance.max(0.0) + ray.skipped) * self.metres;
         (distance <= limit).then_some(Hit { distance, ..hit })
+    }
+
+    /// Finds every triangle along the ray within `limit` (m), in the order of the mesh.
+    pub fn all_within(&self, origin: DVec3, direction: DVec3, limit: f64, found: &mut Vec<Hit>) {
+        found.clear();
+        let Some(ray) = &Ray::new(origin * self.scale, direction, None, self.bounds) else {
+            return;
+        };
+        let limit = limit * self.scale - ray.skipped;
+        if limit.is_nan() || limit < 0.0 {
+            return;
+        }
+        match &self.cutouts {
+            None => run(All(Segment { mesh: &self.mesh, solid: Whole, ray, limit }, found)),
+            Some(cutouts) => run(All(Segment { mesh: &self.mesh, solid: cutouts, ray, limit }, found)),
+        }
+        found.iter_mut().for_each(|hit| hit.distance = (hit.distance.max(0.0) + ray.skipped) * self.metres);
+        found.sort_unstable_by_key(|hit| hit.triangle);
     }
 
     /// True if nothing lies along the ray within `distance` (m, may be infinite), other than the triangle it starts

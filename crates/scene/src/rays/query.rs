@@ -1,4 +1,4 @@
-//! The two queries as walks through the tree.
+//! The queries as walks through the tree.
 
 use super::{
     ray::{Hit, Ray},
@@ -54,6 +54,9 @@ impl<S: Solid> Segment<'_, S> {
 /// from the ray's start, in scaled units.
 pub(super) struct Closest<'a, S>(pub Segment<'a, S>);
 
+/// Finds all hits within the limit, in no particular order.
+pub(super) struct All<'a, 'f, S>(pub Segment<'a, S>, pub &'f mut Vec<Hit>);
+
 /// Finds whether anything is hit before the limit.
 pub(super) struct Occluded<'a, S>(pub Segment<'a, S>);
 
@@ -93,6 +96,43 @@ impl<V: Vectors, S: Solid> Visitor for SearchClosest<'_, V, S> {
             if first && self.segment.is_hit(leaf, lane, &crossing) {
                 self.segment.limit = distance;
                 self.best = Some(Hit { distance, triangle, weights: crossing.weights() });
+            }
+        }
+        ControlFlow::Continue(self.segment.limit as f32)
+    }
+}
+
+impl<S: Solid> Query for All<'_, '_, S> {
+    type Found = ();
+
+    #[inline(always)]
+    fn run(self, vectors: impl Vectors) {
+        let Segment { mesh, ray, limit, .. } = self.0;
+        let test = TriangleTest::new(ray.origin, ray.direction);
+        let mut search = SearchAll { vectors, segment: self.0, test, found: self.1 };
+        let walk = mesh.tree.walk(vectors, &ray.for_boxes(), limit as f32, &mut search);
+        debug_assert!(walk.is_continue());
+    }
+}
+
+struct SearchAll<'a, 'f, V, S> {
+    vectors: V,
+    segment: Segment<'a, S>,
+    test: TriangleTest,
+    found: &'f mut Vec<Hit>,
+}
+
+impl<V: Vectors, S: Solid> Visitor for SearchAll<'_, '_, V, S> {
+    const ORDERED: bool = false;
+
+    #[inline(always)]
+    fn visit(&mut self, leaf: u32) -> ControlFlow<(), f32> {
+        let leaf = &self.segment.mesh.leaves[leaf as usize];
+        for lane in lanes(self.vectors.triangles(leaf, &self.test)) {
+            let crossing = self.test.crossing(leaf, lane);
+            if crossing.distance <= self.segment.limit && self.segment.is_hit(leaf, lane, &crossing) {
+                let (distance, triangle) = (crossing.distance, leaf.triangles[lane]);
+                self.found.push(Hit { distance, triangle, weights: crossing.weights() });
             }
         }
         ControlFlow::Continue(self.segment.limit as f32)

@@ -355,7 +355,7 @@ fn one_light_at_random_has_the_mean_of_all() {
         match light_at(&choice, &rays, &at, xi, &mut traced) {
             Lit::Light { irradiance, .. } => sum += irradiance.x,
             Lit::Shadowed => shadowed += 1,
-            Lit::FacingAway => panic!("no light is behind"),
+            Lit::FacingAway | Lit::NoBounce => panic!("no light is behind"),
         }
     }
     assert!((sum / f64::from(n) - expected).abs() < 1e-3 * expected, "{}", sum / f64::from(n));

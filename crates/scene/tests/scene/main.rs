@@ -1,5 +1,6 @@
 //! Import, rays and lights from outside the crate.
 
+mod along;
 mod copies;
 mod cutouts;
 mod environment;

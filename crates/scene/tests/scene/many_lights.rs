@@ -127,7 +127,7 @@ fn one_of_many_lights_has_the_mean_of_all() {
             };
             let one = match light_at(&choice, &rays, &at, [0, 1, 2].map(|d| item.uniform(d)), &mut 0) {
                 Lit::Light { irradiance, .. } => irradiance.x,
-                Lit::Shadowed => panic!("nothing is in the way"),
+                Lit::Shadowed | Lit::NoBounce => panic!("nothing is in the way"),
                 Lit::FacingAway => 0.0,
             };
             let mut traced = 0;

@@ -107,10 +107,11 @@ impl<M: LaneModel> Cut<'_, M> {
         let mut added = self.add_open(0, sum);
         let scale = self.samples.scale;
         let unit = 1.0 / f64::from(scale);
+        let besides = self.exit.besides * scale;
         let rough = self.scratch.closed.iter().fold(of_open(sum, scale), |sum, c| sum + c.max_value);
         let target = self.accuracy * self.correction.factor(f64::from(rough) * unit);
         // A threshold below 0 would open empty nodes. The sum is below 0 only if the file is changed while it is read.
-        let rough = if rough < 0.0 { 0.0 } else { rough };
+        let rough = besides + if rough < 0.0 { 0.0 } else { rough };
         let mut threshold = START * target * target.sqrt() * rough;
         let mut predicted = 0.0;
         for _ in 0..ROUNDS {
@@ -121,7 +122,7 @@ impl<M: LaneModel> Cut<'_, M> {
             let (total, variance) =
                 self.scratch.closed.iter().fold(start, |(t, v), c| (t + c.value, v + c.error * c.error));
             predicted = f64::from(total) * unit;
-            let excess = variance.sqrt() / (self.accuracy * self.correction.factor(predicted) * total);
+            let excess = variance.sqrt() / (self.accuracy * self.correction.factor(predicted) * (total + besides));
             // The excess is not a number if nothing contributes.
             if excess <= GOOD_ENOUGH || excess.is_nan() {
                 break;
@@ -302,7 +303,7 @@ fn predict(tables: &FalloffTables, exit: &Exit, nodes: &[Node], scale: f32, ids:
         let value = if far2 > disc2 { tables.value.at(far2) } else { tables.disc.at(disc2) };
         // The mean of an exponential over a node is close to the geometric mean of its values at the center and at the
         // near end.
-        let near_value = (value * tables.value.at(near2)).sqrt();
+        let near_value = (value * tables.peak.at(near2)).sqrt();
         let by_flux = value * flux_deviation[i];
         predicted.error[i] =
             flux[i] * (by_position * by_position + by_direction * by_direction + by_flux * by_flux).sqrt();

@@ -16,6 +16,8 @@ const ENTRIES: usize = 1 << (32 - 1 - SHIFT);
 pub struct FalloffTables {
     /// Mean of `S_bare`, 1/(m² sr).
     pub value: Table,
+    /// The largest `value` from this distance on.
+    pub peak: Table,
     /// Mean of `value` over a disc of this squared radius around the exitant point, 1/(m² sr).
     pub disc: Table,
     /// Standard deviation over samples, divided by the root mean square of their distances from their mean, 1/(m³ sr).
@@ -49,19 +51,20 @@ impl FalloffTables {
     /// one.
     pub fn new(medium: &Medium, model: &dyn Bssrdf, size: f64) -> FalloffTables {
         let table = || Table(Box::new([0.0; ENTRIES]));
-        let mut tables = FalloffTables { value: table(), disc: table(), slope: table(), scatter: table() };
+        let mut tables =
+            FalloffTables { value: table(), peak: table(), disc: table(), slope: table(), scatter: table() };
         let (nearest, farthest) = distances(medium, model);
         let variations = variations(model, &directions(medium.eta), nearest, farthest, size);
-        let mut slope = 0.0f64;
+        let (mut slope, mut peak) = (0.0f64, 0.0f64);
         for k in (0..ENTRIES).rev() {
             let distance = f64::from(middle(k)).sqrt();
             if distance > farthest || !distance.is_finite() {
                 continue;
             }
             let here = interpolate(&variations, (distance / nearest).ln() / STEP.ln());
-            slope = slope.max(here.slope);
+            (slope, peak) = (slope.max(here.slope), peak.max(here.value));
             (tables.value.0[k], tables.scatter.0[k]) = (here.value as f32, here.scatter as f32);
-            tables.slope.0[k] = slope as f32;
+            (tables.slope.0[k], tables.peak.0[k]) = (slope as f32, peak as f32);
         }
         tables.average();
         tables

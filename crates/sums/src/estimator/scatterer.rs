@@ -1,7 +1,7 @@
 //! A medium under one BSSRDF model, prepared for the estimators.
 
 use super::falloff_tables::FalloffTables;
-use bssrdf::{AnyLanes, Medium, Model, simd::Level};
+use bssrdf::{AnyLanes, Far, Medium, Model, Partition, simd::Level};
 use std::sync::OnceLock;
 
 /// A medium under one BSSRDF model, prepared for sums over samples.
@@ -10,6 +10,8 @@ pub struct Scatterer {
     medium: Medium,
     /// The size of the surface, m; see [`FalloffTables::new`].
     size: f64,
+    /// The part of the model that is summed.
+    partition: Partition,
     /// The model as the estimators evaluate it.
     pub(super) lanes: AnyLanes,
     /// `σ_tr` of the three channels, 1/m.
@@ -27,11 +29,17 @@ impl Scatterer {
             model,
             medium: medium.clone(),
             size,
+            partition: Partition::NONE,
             lanes: model.lanes(medium),
             transport: model.of(medium).transport(),
             tables: OnceLock::new(),
             level: Level::widest(),
         }
+    }
+
+    /// The same medium, of which the far part alone is summed.
+    pub fn far(self, partition: Partition) -> Scatterer {
+        Scatterer { partition, lanes: self.lanes.far(partition), tables: OnceLock::new(), ..self }
     }
 
     /// The relative refractive index of the medium.
@@ -41,6 +49,7 @@ impl Scatterer {
 
     /// The tables by which the cut opens nodes. Only the cut needs them, so the first that asks makes them.
     pub(super) fn tables(&self) -> &FalloffTables {
-        self.tables.get_or_init(|| FalloffTables::new(&self.medium, &*self.model.of(&self.medium), self.size))
+        let far = || Far { model: self.model.of(&self.medium), partition: self.partition };
+        self.tables.get_or_init(|| FalloffTables::new(&self.medium, &far(), self.size))
     }
 }

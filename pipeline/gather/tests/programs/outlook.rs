@@ -58,7 +58,7 @@ fn pixels_below_zero_are_counted() {
     let bench = Bench::new();
     let sphere = data("scenes/sphere.glb");
     sample(&bench, &sphere, "2k");
-    gather(&bench, &sphere, "160", &["--medium", "ketchup", "--spp", "2"]);
+    gather(&bench, &sphere, "160", &["--medium", "ketchup", "--spp", "2", "--estimator", "roulette"]);
     let image = bench.image("a.exr");
     let planes = ["R", "G", "B"].map(|name| image.channel(name).expect("beauty"));
     let below = (0..image.width * image.height).filter(|k| planes.iter().any(|plane| plane[*k] < 0.0)).count();
@@ -76,7 +76,7 @@ fn a_recommended_number_of_samples_is_enough() {
     bench.write("thin.json", medium);
     let said = |samples: &str| {
         sample(&bench, &slab, samples);
-        gather(&bench, &slab, "8", &["--medium", "thin.json", "--spp", "1"])
+        gather(&bench, &slab, "8", &["--medium", "thin.json", "--spp", "1", "--estimator", "exhaustive"])
     };
     let first = said("1k");
     let (before, _) = first.split_once(" samples would do").expect("too few samples");
@@ -123,7 +123,7 @@ fn a_surface_without_light_wants_no_samples() {
         root["extensions"]["KHR_lights_punctual"]["lights"][0] = json!({ "type": "point", "intensity": 1 });
     });
     sample(&bench, &scene, "100");
-    let said = gather(&bench, &scene, "8", &["--medium", "marble", "--spp", "1"]);
+    let said = gather(&bench, &scene, "8", &["--medium", "marble", "--spp", "1", "--estimator", "exhaustive"]);
     assert!(said.contains("`Slab`: samples lie") && !said.contains("`Below`: samples lie"), "{said}");
     assert!(said.contains("warning: `Below`: none of its samples carries light"), "{said}");
 }

@@ -1,15 +1,22 @@
 //! The surface that is sampled, and light that reaches it after one reflection by an opaque surface.
 
-use scene::{
-    DVec3, Mesh, NormalKind, Rays, Scene, SurfacePoint,
-    light::{LightTree, all_light_at},
+use super::{
+    choice::LightChoice,
+    direct::{Lit, all_light_at, light_at},
+    tree::LightTree,
+};
+use crate::{
+    mesh::{Mesh, NormalKind, SurfacePoint},
     random::Item,
+    rays::Rays,
+    scene::Scene,
     warp,
 };
+use glam::DVec3;
 
 /// The share of samples that are lit this way where there are opaque surfaces. For a head on an evenly lit floor, which
 /// gets a third as much light from the floor as from the lamps, the variance is least at 0.27.
-pub const SHARE: f64 = 0.25;
+const SHARE: f64 = 0.25;
 
 /// A surface and its light.
 pub struct LitSurface<'a> {
@@ -17,6 +24,31 @@ pub struct LitSurface<'a> {
     pub rays: &'a Rays<'a>,
     pub lights: LightTree<'a>,
     pub normals: NormalKind,
+}
+
+impl LitSurface<'_> {
+    /// Lights a point in one of the ways that samples are lit: directly or, for a share of the tries where there are
+    /// opaque surfaces, by one reflection. `xi` chooses, `random` lights the surface that reflects, and `rays` counts the
+    /// rays traced.
+    pub fn light_at(
+        &self,
+        bounce: Option<&Bounce>,
+        choice: &LightChoice,
+        at: &SurfacePoint,
+        [xi, l1, l2]: [f64; 3],
+        random: Item,
+        rays: &mut u64,
+    ) -> Lit {
+        let share = if bounce.is_some() { SHARE } else { 0.0 };
+        let (lit, share) = match bounce {
+            Some(bounce) if xi < share => (bounce.light_at(self, at, [l1, l2], random, rays), share),
+            _ => (light_at(choice, self.rays, at, [(xi - share) / (1.0 - share), l1, l2], rays), 1.0 - share),
+        };
+        match lit {
+            Lit::Light { direction, irradiance } => Lit::Light { direction, irradiance: irradiance / share },
+            none => none,
+        }
+    }
 }
 
 /// The opaque surfaces of a scene.
@@ -36,28 +68,23 @@ impl<'a> Bounce<'a> {
     }
 
     /// A cosine-distributed direction, and the irradiance `π L` that the opaque surface there gives, W/m². Its light is
-    /// `L = ρ E/π`, since both of its sides are Lambertian, as in phase two. None if there is no such light.
-    pub fn light_at(
-        &self,
-        surface: &LitSurface,
-        at: &SurfacePoint,
-        xi: [f64; 2],
-        random: Item,
-        rays: &mut u64,
-    ) -> Option<(DVec3, DVec3)> {
+    /// `L = ρ E/π`, since both of its sides are Lambertian, as in phase two.
+    fn light_at(&self, surface: &LitSurface, at: &SurfacePoint, xi: [f64; 2], random: Item, rays: &mut u64) -> Lit {
         // The frame is that of the triangle: a scene that is turned as a whole keeps its samples.
         let [a, b, _] = surface.mesh.corners(at.triangle as usize);
         let tangent = (b - a).reject_from_normalized(at.normal).try_normalize();
         let tangent = tangent.unwrap_or_else(|| at.normal.any_orthonormal_vector());
         let direction = warp::cosine_hemisphere_in([tangent, at.normal.cross(tangent), at.normal], xi);
         if direction.dot(at.geometric_normal) <= 0.0 {
-            return None;
+            return Lit::NoBounce;
         }
         *rays += 1;
-        let hit = surface.rays.closest(at.position, direction, Some(at.triangle))?;
+        let Some(hit) = surface.rays.closest(at.position, direction, Some(at.triangle)) else {
+            return Lit::NoBounce;
+        };
         let point = surface.mesh.point(hit.triangle, hit.weights, surface.normals).facing(-direction);
         if !self.opaque[point.material as usize] {
-            return None;
+            return Lit::NoBounce;
         }
         let albedo = self.scene.color(hit.triangle, hit.weights).truncate();
         let mut dimension = 0;
@@ -66,6 +93,6 @@ impl<'a> Bounce<'a> {
             [dimension - 2, dimension - 1].map(|d| random.uniform(d))
         };
         let irradiance = albedo * all_light_at(&surface.lights, surface.rays, &point, xi, rays);
-        (irradiance != DVec3::ZERO).then_some((direction, irradiance))
+        if irradiance == DVec3::ZERO { Lit::NoBounce } else { Lit::Light { direction, irradiance } }
     }
 }
