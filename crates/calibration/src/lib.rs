@@ -52,7 +52,7 @@ use formats::{
     cloud::{Cloud, shards},
 };
 use near_field::{NearField, Surroundings};
-use scene::{NormalKind, Rays, Scene};
+use scene::{DVec3, NormalKind, Rays, Scene};
 use std::sync::Arc;
 use sums::{Summation, estimator::Scatterer};
 use surface::{Lit, Surface};
@@ -132,6 +132,16 @@ impl Task<'_> {
         areas.iter().map(portion).collect()
     }
 
+    /// The model's light of the sampled material `slot`.
+    fn lit<'b>(&'b self, slot: usize, surroundings: &'b Surroundings<'b>) -> Lit<'b> {
+        let (sampled, medium) = (&shards::materials(self.clouds)[slot], &self.media[slot]);
+        let near = NearField::of_clouds(self.model, medium, self.clouds, slot);
+        let partition = near.as_ref().map_or(Partition::NONE, NearField::partition);
+        let scatterer = Arc::new(Scatterer::new(self.model, medium, sampled.area_m2.sqrt()).far(partition));
+        let summation = Summation::of_clouds(scatterer, self.clouds, slot);
+        Lit { summation, near: near.map(|near| (near, surroundings)) }
+    }
+
     /// Digest of everything that the calibration depends on. The cloud's identity covers the scene.
     fn identity(&self) -> [u8; 32] {
         let mut hasher = blake3::Hasher::new();
@@ -179,57 +189,90 @@ fn calibrate_material(
     let surface = Surface::new(mesh, sampled.index, task.normals, POINTS << depth, task.seed);
     let sites = surface.sites();
     let (patches, cell_of) = Patches::new(&sites, surface.area, depth);
-    let near = NearField::of_clouds(task.model, medium, task.clouds, slot);
-    let partition = near.as_ref().map_or(Partition::NONE, NearField::partition);
-    let scatterer = Arc::new(Scatterer::new(task.model, medium, sampled.area_m2.sqrt()).far(partition));
-    let summation = Summation::of_clouds(scatterer, task.clouds, slot);
-    let lit = Lit { summation, near: near.map(|near| (near, surroundings)) };
     let areas = surface.cell_areas(mesh, &patches, sampled.index, task.seed);
     let is_translucent = |m: u16| shards::materials(task.clouds).iter().any(|s| s.index == m);
     let solid = Solid::new(mesh, task.rays, sampled.index, is_translucent).ok_or_else(dark)?;
-    let sums = surface.light(&lit, &solid, task.seed, progress);
+    let sums = surface.light(&task.lit(slot, surroundings), &solid, task.seed, progress);
     let entries = Entries::new(task.clouds, slot, medium.eta);
     let light = Light::new(&sums, &cell_of, &areas, medium.eta, entries.white());
     let walking =
         Walking { mesh, solid: &solid, entries: &entries, patches: &patches, eta: medium.eta, seed: task.seed, slot };
     let smoothness = Smoothness::new(&patches, &sites, &cell_of);
+    let compared = Compared { medium, patches: &patches, smoothness, light, walking, walks };
     let mut log_factors = vec![[0.0f32; 3]; patches.count()];
     let mut gradients = vec![[[0.0f32; 3]; 3]; patches.count()];
     let mut lobe = task.model.exit_lobe(medium);
     let mut errors = [ChannelErrors::default(); 3];
     for channel in 0..3 {
-        let tally = walking.tally(channel, &medium.channels[channel], walks, progress);
-        let share = tally.holes as f64 / tally.walks.max(1) as f64;
-        if share > HOLES {
-            return Err(CalibrateError::Open { material: sampled.name.clone(), share: 100.0 * share });
-        }
-        let Some(counted) = tally.counted(entries.power(channel), &light.power[channel]) else {
+        let open = |share| CalibrateError::Open { material: sampled.name.clone(), share: 100.0 * share };
+        let Some(found) = compared.channel(channel, progress).map_err(open)? else {
             continue;
         };
-        let counts = counted.at_patches(&patches);
-        let fit = smoothness.fit(&counts);
-        let fitted = smoothness.at_patches(&fit.both);
-        let leaving: Vec<f64> = fitted.iter().zip(&counts.model).map(|(f, m)| f + m.ln()).collect();
-        let slopes = patches.gradient(&leaving);
-        let shift = shift(&medium.channels[channel], medium.eta);
-        let turn: Vec<f64> = slopes.iter().map(|slope| mean_square_turn(shift * slope.length())).collect();
-        lobe[channel] = exit_lobe(medium.eta, tally.cosines / tally.sum());
-        errors[channel] = channel_errors(&smoothness, &patches, &light, channel, &counted, &fit, &turn);
-        for (gradient, slope) in gradients.iter_mut().zip(&slopes) {
+        (lobe[channel], errors[channel]) = (found.lobe, found.errors);
+        for (gradient, slope) in gradients.iter_mut().zip(&found.slopes) {
             gradient[channel] = slope.as_vec3().to_array();
         }
-        for (factor, fitted) in log_factors.iter_mut().zip(&fit.both) {
+        for (factor, fitted) in log_factors.iter_mut().zip(&found.log_factors) {
             factor[channel] = *fitted as f32;
         }
     }
+    let surface = patches.facts(&log_factors, &gradients);
     Ok(CalibratedMaterial {
         name: sampled.name.clone(),
         index: sampled.index,
         medium: facts(medium),
         lobe,
         errors,
-        surface: patches.facts(&log_factors, &gradients),
+        surface,
     })
+}
+
+/// The model's light on one material, and the walks that it is compared with.
+struct Compared<'a> {
+    medium: &'a Medium,
+    patches: &'a Patches,
+    smoothness: Smoothness,
+    light: Light,
+    walking: Walking<'a>,
+    /// Walks of each channel.
+    walks: u64,
+}
+
+/// What is found for one channel.
+struct Found {
+    /// For each patch, the natural logarithm of the factor, and the gradient of that of the light, 1/m.
+    log_factors: Vec<f64>,
+    slopes: Vec<DVec3>,
+    lobe: [f64; 2],
+    errors: ChannelErrors,
+}
+
+impl Compared<'_> {
+    /// Compares one channel; none if no light leaves in it. The error is the share of the walks that left through holes.
+    fn channel(&self, channel: usize, progress: &(impl Fn(u64) + Sync)) -> Result<Option<Found>, f64> {
+        let Compared { medium, patches, smoothness, light, walking, .. } = self;
+        let tally = walking.tally(channel, &medium.channels[channel], self.walks, progress);
+        let share = tally.holes as f64 / tally.walks.max(1) as f64;
+        if share > HOLES {
+            return Err(share);
+        }
+        let Some(counted) = tally.counted(walking.entries.power(channel), &light.power[channel]) else {
+            return Ok(None);
+        };
+        let counts = counted.at_patches(patches);
+        let fit = smoothness.fit(&counts);
+        let fitted = smoothness.at_patches(&fit.both);
+        let leaving: Vec<f64> = fitted.iter().zip(&counts.model).map(|(f, m)| f + m.ln()).collect();
+        let slopes = patches.gradient(&leaving);
+        let shift = shift(&medium.channels[channel], medium.eta);
+        let turn: Vec<f64> = slopes.iter().map(|slope| mean_square_turn(shift * slope.length())).collect();
+        Ok(Some(Found {
+            lobe: exit_lobe(medium.eta, tally.cosines / tally.sum()),
+            errors: channel_errors(smoothness, patches, light, channel, &counted, &fit, &turn),
+            log_factors: fit.both,
+            slopes,
+        }))
+    }
 }
 
 fn facts(medium: &Medium) -> MediumFacts {

@@ -47,6 +47,7 @@ mod image;
 mod passes;
 mod path;
 pub mod path_state;
+mod pixel_numbers;
 pub mod preview;
 mod reference;
 pub mod renderer;

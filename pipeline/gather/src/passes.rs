@@ -8,6 +8,7 @@ use crate::{
     film::{Errors, Pixel, PixelSum},
     image::{Filter, Input, Rendered, Settings},
     path_state::{PathIndex, ThreadContext},
+    pixel_numbers::{PixelNumbers, halves},
     reference::{Walks, meets_light},
     renderer::{Renderer, TranslucentObject},
 };
@@ -21,7 +22,6 @@ use scene::{
     DVec3,
     light::LightTree,
     random::{Purpose, Stream},
-    sequence::Sequence,
 };
 use std::{ops::Range, sync::Arc};
 use sums::{Summation, drawn::DrawnCounts, estimator::Scatterer};
@@ -155,35 +155,20 @@ impl<'a> Passes<'a> {
         let [x, y] = self.part.pixel(index);
         let settings = &self.renderer.settings;
         let pixel = (y * settings.width + x) as u64;
-        // Even and odd paths are independent: each half is spread by a sequence of its own.
-        let spread_by = |stream: Stream| [0, 1].map(|half| Sequence::new(stream.item(2 * pixel + half), stream));
-        let spread = spread_by(self.pixel_stream);
-        // So is each channel's walk.
-        let walks_by = |half: u64| {
-            let stream = self.renderer.walk_starts;
-            [0, 1, 2].map(|channel| Sequence::new(stream.item((2 * pixel + half) * 3 + channel), stream))
-        };
-        let walks = settings.reference.then(|| [0, 1].map(walks_by));
-        let near = self.renderer.surroundings.is_some().then(|| self.near_streams.map(spread_by));
-        let mut edge = self.edges[index].clone().map(|edge| (edge, spread_by(self.edge_stream)));
+        let walk_starts = settings.reference.then_some(self.renderer.walk_starts);
+        let near_streams = self.renderer.surroundings.is_some().then_some(self.near_streams);
+        let numbers = PixelNumbers::new(pixel, self.pixel_stream, walk_starts, near_streams);
+        let mut edge = self.edges[index].clone().map(|edge| (edge, halves(self.edge_stream, pixel)));
         let alone = settings.paths_per_pixel == 1;
         let mut sum = self.sums[index];
         for path in paths {
             let offset = match settings.filter {
                 Filter::Point => DVec2::splat(0.5),
-                Filter::Box => {
-                    let [x, y, ..] = spread[path as usize % 2].point(path / 2);
-                    DVec2::new(x, y)
-                }
+                Filter::Box => DVec2::from_array(numbers.place(path)),
             };
             let (origin, direction) = self.ray(index, offset);
-            let walks = walks.as_ref().map(|by_half| by_half[path as usize % 2].map(|s| s.point(path / 2)));
-            let near = near.as_ref().map(|by_stream| {
-                let [[radius, azimuth, l1, l2], [axis, xi, ..]] =
-                    by_stream.each_ref().map(|by_half| by_half[path as usize % 2].point(path / 2));
-                [radius, azimuth, axis, xi, l1, l2]
-            });
-            let light = self.renderer.trace(PathIndex { pixel, path, walks, near }, origin, direction, context);
+            let path_index = PathIndex { pixel, path, walks: numbers.walks(path), near: numbers.near(path) };
+            let light = self.renderer.trace(path_index, origin, direction, context);
             sum.add(path, alone, &light);
             if let Some((edge, spread)) = &mut edge {
                 let half = path as usize % 2;
