@@ -2,11 +2,12 @@
 
 use crate::patches::{Patches, Site};
 use glam::DVec3;
-use near_field::{NearField, Place, Surroundings};
+use near_field::{NearField, Numbers, Place, Surroundings};
 use rayon::prelude::*;
 use scene::{
     Mesh, NormalKind, SurfacePoint,
     random::{Item, Purpose, Stream},
+    sequence::Sequence,
     warp,
 };
 use sums::{
@@ -30,17 +31,43 @@ pub struct Lit<'a> {
     pub near: Option<(NearField, &'a Surroundings<'a>)>,
 }
 
-/// Dimensions of a point's numbers that are those of its near field.
-const NEAR: u64 = 1 << 32;
+/// Estimates of the near field at each point.
+const ESTIMATES: u32 = 4;
+
+/// The numbers of all estimates of near fields. Points with consecutive indices lie close together, so that the light of a
+/// patch is spread evenly: drawn independently under a sky, it left a colored stain on a calibrated bowl of milk.
+struct NearNumbers([Sequence; 2]);
+
+impl NearNumbers {
+    fn new(seed: u64) -> NearNumbers {
+        let sequence = |purpose| {
+            let stream = Stream::new(seed, purpose);
+            Sequence::new(stream.item(0), stream)
+        };
+        NearNumbers([Purpose::NearField, Purpose::NearLight].map(sequence))
+    }
+
+    fn at(&self, index: u32) -> Numbers {
+        let [[radius, azimuth, l1, l2], [axis, light, ..]] = self.0.each_ref().map(|sequence| sequence.point(index));
+        [radius, azimuth, axis, light, l1, l2]
+    }
+}
 
 impl Lit<'_> {
-    fn nearby(&self, point: &SurfacePoint, item: Item, scratch: &mut near_field::Scratch) -> DVec3 {
+    /// The light that enters near a point, as the mean of some estimates with these numbers.
+    fn nearby(
+        &self,
+        point: &SurfacePoint,
+        numbers: impl Fn(u32) -> Numbers,
+        item: Item,
+        scratch: &mut near_field::Scratch,
+    ) -> DVec3 {
         let Some((near, surroundings)) = &self.near else {
             return DVec3::ZERO;
         };
-        let numbers = std::array::from_fn(|k| item.uniform(NEAR + k as u64));
         let at = Place { surface: *point, position: point.position, normal: point.normal };
-        near.light(surroundings, &at, &numbers, item, scratch)
+        let one = |k: u32| near.light(surroundings, &at, &numbers(k), item, scratch);
+        (0..ESTIMATES).map(one).sum::<DVec3>() / f64::from(ESTIMATES)
     }
 }
 
@@ -96,9 +123,11 @@ impl Surface {
         self.points.iter().map(|p| Site { position: p.position, normal: p.geometric_normal }).collect()
     }
 
-    /// The radiance without `T21` that leaves each point by the model, W/(m² sr). No light leaves from points inside another part of the solid.
+    /// The radiance without `T21` that leaves each point by the model, W/(m² sr). No light leaves from points inside
+    /// another part of the solid.
     pub fn light(&self, lit: &Lit, solid: &Solid, seed: u64, progress: impl Fn(u64) + Sync) -> Vec<DVec3> {
         let stream = Stream::new(seed, Purpose::CalibrationSum);
+        let numbers = NearNumbers::new(seed);
         let estimator = Estimator::Cut { accuracy: ACCURACY };
         let light = |(scratch, near): &mut (Scratch, near_field::Scratch), (index, point): (usize, &SurfacePoint)| {
             progress(1);
@@ -106,7 +135,7 @@ impl Surface {
                 return DVec3::ZERO;
             }
             let item = stream.item(index as u64);
-            let nearby = lit.nearby(point, item, near);
+            let nearby = lit.nearby(point, |k| numbers.at(ESTIMATES * index as u32 + k), item, near);
             let exit = |half: usize| Exit::new(point.position, point.normal, item.bits(half as u64)).besides(nearby);
             let leaving = lit.summation.whole(estimator, exit, scratch);
             leaving.radiance + nearby
