@@ -27,10 +27,6 @@ impl Partition {
         Partition { start: from * from, inverse: 1.0 / (to * to - from * from) }
     }
 
-    pub fn is_none(&self) -> bool {
-        *self == Partition::NONE
-    }
-
     /// `w` at a squared distance, m².
     #[inline(always)]
     pub fn far(&self, r2: f64) -> f64 {

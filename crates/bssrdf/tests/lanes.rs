@@ -1,11 +1,14 @@
 //! The models in float32 against those in float64, for random media and configurations that float32 represents exactly;
 //! and all vector widths against each other, bit for bit.
 
+mod block;
+
+use block::Evaluate;
 use bssrdf::{
     Bssrdf, Coefficients, DVec3, Interface, Medium, Model, Separation, fresnel,
     lanes::{
-        BetterLanes, Block, DirectionalLanes, Directions, Entered, EntryRefraction, HalfSpaceLanes, LANES, Lane,
-        LaneModel, StandardLanes,
+        BetterLanes, DirectionalLanes, Directions, Entered, EntryRefraction, HalfSpaceLanes, LANES, Lane, LaneModel,
+        StandardLanes,
     },
     simd::{self, Kernel, Level},
 };
@@ -72,31 +75,6 @@ fn separations(
         let distance = random.log_between(range[0], range[1]) / medium.channels[channel].reduced_extinction();
         separation(random, medium.eta, [normal_in, normal_out], distance, plane)
     })
-}
-
-/// One evaluation of a block.
-struct Evaluate<'a, M> {
-    model: &'a M,
-    block: Block,
-    normal_out: [f32; 3],
-}
-
-impl<'a, M> Evaluate<'a, M> {
-    fn new(model: &'a M, separations: &[Separation; LANES]) -> Self {
-        let lanes = |f: fn(&Separation) -> DVec3| [0, 1, 2].map(|c| separations.map(|s| f(&s)[c] as f32));
-        let block =
-            Block { offset: lanes(|s| s.offset), normal_in: lanes(|s| s.normal_in), refracted: lanes(|s| s.refracted) };
-        Evaluate { model, block, normal_out: separations[0].normal_out.as_vec3().to_array() }
-    }
-}
-
-impl<M: LaneModel> Kernel for Evaluate<'_, M> {
-    type Output = [Lane; 3];
-
-    #[inline(always)]
-    fn run(self) -> [Lane; 3] {
-        self.model.bare(&self.block, self.normal_out)
-    }
 }
 
 /// The float64 value; none where rounding of `n_o` and `ω12` decides the depth of the source, which jumps at `μ₀ = 0`,

@@ -1,9 +1,12 @@
 //! The two parts of a BSSRDF: the step itself, and the far part of each model in lanes and in float64.
 
+mod block;
+
+use block::Evaluate;
 use bssrdf::{
     Bssrdf, Coefficients, DVec3, Far, Interface, Medium, Model, Partition, Separation, fresnel,
-    lanes::{BetterLanes, Block, DirectionalLanes, HalfSpaceLanes, LANES, Lane, LaneModel, StandardLanes},
-    simd::{self, Kernel, Level},
+    lanes::{BetterLanes, DirectionalLanes, HalfSpaceLanes, LANES, Lane, LaneModel, StandardLanes},
+    simd::{self, Level},
 };
 use test_support::Random;
 
@@ -18,7 +21,7 @@ fn without_a_near_part_all_is_far() {
     for distance in tiny.into_iter().chain(others).chain([1e150, f64::MAX.sqrt(), f64::INFINITY]) {
         assert_eq!(Partition::NONE.far(distance * distance), 1.0, "{distance}");
     }
-    assert!(Partition::NONE.is_none() && STEPS.iter().all(|[from, to]| !Partition::new(*from, *to).is_none()));
+    assert!(STEPS.iter().all(|[from, to]| Partition::new(*from, *to).far(0.5 * to * to) < 1.0));
 }
 
 /// Nothing inside, all beyond, one half where the squared distance is that of neither, and smooth and monotone between.
@@ -76,31 +79,6 @@ fn separations(random: &mut Random, medium: &Medium) -> [Separation; LANES] {
     });
     all[5].offset = DVec3::ZERO;
     all
-}
-
-/// One evaluation of a block.
-struct Evaluate<'a, M> {
-    model: &'a M,
-    block: Block,
-    normal_out: [f32; 3],
-}
-
-impl<'a, M> Evaluate<'a, M> {
-    fn new(model: &'a M, separations: &[Separation; LANES]) -> Self {
-        let lanes = |f: fn(&Separation) -> DVec3| [0, 1, 2].map(|c| separations.map(|s| f(&s)[c] as f32));
-        let block =
-            Block { offset: lanes(|s| s.offset), normal_in: lanes(|s| s.normal_in), refracted: lanes(|s| s.refracted) };
-        Evaluate { model, block, normal_out: separations[0].normal_out.as_vec3().to_array() }
-    }
-}
-
-impl<M: LaneModel> Kernel for Evaluate<'_, M> {
-    type Output = [Lane; 3];
-
-    #[inline(always)]
-    fn run(self) -> [Lane; 3] {
-        self.model.bare(&self.block, self.normal_out)
-    }
 }
 
 fn bits(values: [Lane; 3]) -> [[u32; LANES]; 3] {

@@ -43,7 +43,7 @@ impl Radii {
         let ring = self.cumulative.partition_point(|sum| *sum <= xi).min(self.ends.len() - 1);
         let (inner, below) = if ring == 0 { (0.0, 0.0) } else { (self.ends[ring - 1], self.cumulative[ring - 1]) };
         let share = (xi - below) / (self.cumulative[ring] - below);
-        (inner * inner + share * (self.ends[ring] * self.ends[ring] - inner * inner)).sqrt()
+        (inner * inner + share * (self.ends[ring] * self.ends[ring] - inner * inner)).sqrt().min(self.ends[ring])
     }
 }
 
@@ -144,5 +144,4 @@ impl Profile<'_> {
 }
 
 #[cfg(test)]
-#[path = "profile_tests.rs"]
 mod tests;
