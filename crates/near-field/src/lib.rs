@@ -74,7 +74,7 @@ const STEP: [f64; 2] = [1.0, 3.0];
 
 /// Samples that are closer than this many reduced mean free paths resolve any model: none varies within less than 0.07
 /// (docs/method.md 15.12).
-const RESOLVED: f64 = 0.03;
+const RESOLVED: f64 = 0.05;
 
 /// Lines along the normal, and along each of two directions across it on average.
 const LINES: [f64; 3] = [1.0, 0.5, 0.5];
