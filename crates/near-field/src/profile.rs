@@ -2,6 +2,7 @@
 
 use bssrdf::{Bssrdf, Partition, Separation};
 use glam::DVec3;
+use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// Rings of equal ratio between the shortest distance and the end of the near part, beside the disc inside them.
@@ -94,16 +95,16 @@ impl Profile<'_> {
         let ratio = (self.reach / first).powf(1.0 / RINGS as f64);
         let ends: Vec<f64> = (0..=RINGS).map(|k| first * ratio.powi(k as i32)).collect();
         let lowest = (1.0 - 1.0 / (self.eta * self.eta)).max(GRAZING * GRAZING).sqrt();
+        let cosine = |k: usize| lowest + (1.0 - lowest) * k as f64 / (COSINES - 1) as f64;
+        let by_cosine: Vec<Vec<DVec3>> = (0..COSINES).into_par_iter().map(|k| self.rings(&ends, cosine(k))).collect();
         let mut values = [[0.0; COSINES]; 3];
         let mut rings = vec![0.0; ends.len()];
-        for k in 0..COSINES {
-            let cosine = lowest + (1.0 - lowest) * k as f64 / (COSINES - 1) as f64;
-            let shares = self.rings(&ends, cosine);
+        for (k, shares) in by_cosine.iter().enumerate() {
             for channel in 0..3 {
                 let sum: f64 = shares.iter().map(|ring| ring[channel]).sum();
                 values[channel][k] = sum;
                 if sum > 0.0 {
-                    rings.iter_mut().zip(&shares).for_each(|(all, ring)| *all += ring[channel] / sum);
+                    rings.iter_mut().zip(shares).for_each(|(all, ring)| *all += ring[channel] / sum);
                 }
             }
         }

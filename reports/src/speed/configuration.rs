@@ -59,8 +59,13 @@ pub const CONFIGURATIONS: [Configuration; 7] = [
     row(FINE_NAME, STRATIFIED_AREA, FINE),
 ];
 
-/// The exhaustive sum over a cloud of the default kind.
-pub const EXHAUSTIVE: Configuration = row("exhaustive", STRATIFIED_AREA, Summing::Exhaustive);
+/// The programs as they are without options, but for the calibration.
+pub const DEFAULTS: Configuration =
+    Configuration { model: Model::HalfSpace, ..row("defaults", STRATIFIED_AREA, Summing::Cut(None)) };
+
+/// `--samples` and `--spp` of the programs without options.
+pub const DEFAULT_SAMPLES: u64 = 1_000_000;
+pub const DEFAULT_PATHS: u64 = 16;
 
 const fn row(name: &'static str, cloud: CloudKind, summing: Summing) -> Configuration {
     Configuration { name, cloud, summing, model: MODEL }

@@ -61,17 +61,14 @@ fn method(harness: &Harness, remarks: &[String]) -> String {
 /// Explanations of the figures above.
 const WHY: &str = "\
 Lines of the plots of races are a model's, fitted to few paths a pixel; dots are runs. With ten paths and \
-more the cut's own share (`--accuracy`, one per cent of a pixel whatever the paths) remains, so runs err more than the \
-model says: the tables of runs are the measure. The **dragon** takes long to 1 % because the directional dipole has \
-poles at grazing light in creases: a few pixels hold most of the error. Its frame's time goes, by a sampling profiler, \
-to the kernel (70 %), the rays (10 %) and the lists of the cut (5 %). A hundred million **samples** are 3.8 GB, which \
-`gather` reads once to check them, beside its work: at 256 x 256 that takes longer than the picture; at 512 x 512 it \
-takes 2.1 to 2.3 times as long as from one million.
+more the cut's own share (`--accuracy`) remains, so runs err more than the model says: the tables of runs are the \
+measure. With the cut comes the near field, points drawn around the exitant point where samples lie too far apart. A \
+hundred million **samples** are 2.7 GB, which `gather` reads once to check them before it renders.
 ";
 
 const METHOD: &str = "\
-* **Model**: sums are compared by those of the directional dipole, without a calibration. Only the sections on the \
-truth and on what the model and its calibration cost have other models.
+* **Model**: races and clouds compare sums of the directional dipole, the note's, without a calibration. Sections on \
+the truth, sizes, other renderers, the frame, the growth and the accuracy have the half-space model, the programs' own.
 * **References** are means of four or more images of independent clouds and paths, seeds from 1000, which nothing else \
 uses. Their own squared error, from their spread, is subtracted.
 * **Errors of clouds**: a few clouds (seeds from 1), each gathered under the seeds 1 and 2. Differences of two clouds \

@@ -4,7 +4,7 @@ use crate::{
     error::Error,
     markdown::{count, percent, table, three, time},
     speed::{
-        configuration::{MARBLE, Subject},
+        configuration::{DEFAULTS, MARBLE, Subject},
         findings::{Findings, Target},
         harness::{Harness, Taken},
         shot::Shot,
@@ -13,6 +13,9 @@ use crate::{
 
 /// The target error, as `gather` estimates it.
 const ERROR: f64 = 0.01;
+
+/// The most seconds that the frame should take.
+const SECONDS: f64 = 60.0;
 
 /// Estimates for a cloud before the frame is rendered.
 struct Trial {
@@ -40,12 +43,13 @@ impl Trial {
 /// Renders the frame, or predicts it where it would take too long.
 pub fn frame(harness: &mut Harness, subject: &Subject) -> Result<Findings, Error> {
     let size = harness.effort.of([96, 54], [1920, 1080], [1920, 1080]);
-    let shot = Shot { size, ..harness.shot(subject, MARBLE, harness.all()) };
+    let shot = Shot { size, ..harness.shot(subject, MARBLE, DEFAULTS) };
     let mut findings = Findings::default();
     let title = format!("A frame of {} x {}", size[0], size[1]);
     let what = format!("{}, marble, {} x {}: seconds to 1 % estimated error", subject.name, size[0], size[1]);
     let Some(trial) = choose(harness, &shot)? else {
-        findings.targets.push(stated(what, None, "out of reach: no cloud that was tried is good enough"));
+        let why = "out of reach: no cloud that was tried is good enough";
+        findings.targets.push(Target::at_most(what, SECONDS, None, why));
         return Ok(findings);
     };
     let (taken, spp) = render(harness, &shot, trial)?;
@@ -61,14 +65,8 @@ pub fn frame(harness: &mut Harness, subject: &Subject) -> Result<Findings, Error
         }
     };
     harness.forget_clouds();
-    findings.targets.push(stated(what, Some(seconds), &basis));
+    findings.targets.push(Target::at_most(what, SECONDS, Some(seconds), basis));
     Ok(findings)
-}
-
-/// A figure without a target.
-fn stated(what: String, seconds: Option<f64>, basis: &str) -> Target {
-    let found = seconds.map_or("–".into(), time);
-    Target { what, wanted: "stated".into(), found, met: seconds.map(|_| true), basis: basis.into() }
 }
 
 /// Finds the smallest cloud whose estimated error takes less than half of the squared target error.

@@ -25,6 +25,7 @@ mod record;
 mod reference;
 mod scaling;
 mod shot;
+mod sizes;
 
 pub use effort::Effort;
 
@@ -75,6 +76,7 @@ fn measure_all(harness: &mut Harness, subjects: &Subjects, truths: &Exact) -> Re
             findings.add(race::race(harness, subject, *medium)?);
         }
     }
+    findings.add(sizes::sizes(harness, &main[0])?);
     findings.add(peers::peers(harness, subjects)?);
     findings.add(everywhere::everywhere(harness, main)?);
     findings.add(frame::frame(harness, &main[main.len() - 1])?);

@@ -2,7 +2,7 @@
 
 use crate::{
     error::Error,
-    speed::{harness::Harness, measure::Reference, picture::Picture, shot::Shot},
+    speed::{configuration::Configuration, harness::Harness, measure::Reference, picture::Picture, shot::Shot},
 };
 
 /// The effort of a reference.
@@ -17,14 +17,14 @@ pub struct Quality {
 /// First seed of references, whose seeds are used for nothing else.
 const FIRST_SEED: u64 = 1000;
 
-/// The converged image of a shot, with the best configuration there is.
+/// The converged image of a shot and its model, with the best configuration there is.
 pub fn reference(harness: &mut Harness, shot: &Shot, quality: Quality) -> Result<Reference, Error> {
     harness
         .say(&format!("reference of {} {} {} x {}", shot.subject.name, shot.medium.name, shot.size[0], shot.size[1]));
     let mut pictures: Vec<Picture> = Vec::new();
     for seed in FIRST_SEED..FIRST_SEED + quality.clouds {
         let one = Shot {
-            configuration: harness.all(),
+            configuration: Configuration { model: shot.configuration.model, ..harness.all() },
             samples: quality.samples,
             spp: quality.spp,
             cloud_seed: seed,
