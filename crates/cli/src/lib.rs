@@ -26,6 +26,7 @@
 //! ```
 
 mod allocator;
+mod asked;
 mod assign_media;
 mod cloud_files;
 mod common;
@@ -41,12 +42,14 @@ mod progress;
 mod scene_args;
 mod scene_settings;
 mod seconds;
+mod shell;
 mod tables;
 mod terminal;
 mod threads;
 mod truncated;
 mod values;
 
+pub use asked::Asked;
 pub use assign_media::{AssignError, assign_media};
 pub use cloud_files::CloudFiles;
 pub use common::{Common, print};
@@ -62,6 +65,7 @@ pub use progress::Progress;
 pub use scene_args::SceneArgs;
 pub use scene_settings::{SceneSettings, normal_kind};
 pub use seconds::Seconds;
+pub use shell::quoted;
 pub use tables::{camera_names, camera_table, material_names, material_table};
 pub use terminal::printable;
-pub use values::{one_of, parse_relative_error, parse_rgb};
+pub use values::{one_of, parse_duration, parse_relative_error, parse_rgb};
