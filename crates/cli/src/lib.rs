@@ -1,6 +1,6 @@
 //! The parts that the programs share: arguments, files that are read and written, exit codes, progress, signals.
 //!
-//! A program parses its arguments, of which [`Common`] and [`SceneArgs`] are parts, and calls [`run`] with its work.
+//! A program parses its arguments ([`parse`]), of which [`Common`] and [`SceneArgs`] are parts, and calls [`run`] with its work.
 //! [`Files`] declares what is read and written before the work; [`Common::in_pool`] does it on as many threads as asked
 //! for; [`Progress`] and [`Seconds`] report on it. A [`Failure`] ends the program with a message and an exit code.
 //!
@@ -35,6 +35,7 @@ mod environment;
 mod failure;
 mod files;
 mod lit_scene;
+mod manual;
 mod medium;
 mod memory;
 mod named;
@@ -58,6 +59,7 @@ pub use environment::EnvironmentSource;
 pub use failure::{Failure, run};
 pub use files::{Files, file_name, is_same_file};
 pub use lit_scene::{LitScene, Media, declare_inputs};
+pub use manual::parse;
 pub use medium::{ReadMediumError, is_file, read_medium, scene_medium};
 pub use memory::{Need, available_memory_bytes, peak_memory_bytes, require_memory};
 pub use named::{Candidate, Unclear, the_one, word_for};

@@ -5,13 +5,12 @@ mod report;
 
 use arguments::Arguments;
 use calibration::{Task, WALKS, calibrate};
-use clap::Parser;
 use cli::{Common, Failure, LitScene, Media, Progress, Seconds, declare_inputs};
 use formats::{atomic::Group, calibration::Calibration};
 use std::path::PathBuf;
 
 fn main() {
-    let arguments = Arguments::parse();
+    let arguments: Arguments = cli::parse();
     cli::run("calibrate", || {
         run(arguments)?;
         Ok(0)

@@ -22,7 +22,6 @@ mod sums_file;
 use adaptive::{End, Work};
 use arguments::Arguments;
 use bssrdf::Model;
-use clap::Parser;
 use cli::{Asked, Failure, LitScene, Seconds, count};
 use display::Display;
 use formats::{atomic::Output, calibration::Calibration};
@@ -35,7 +34,7 @@ use std::time::Instant;
 use steps::{Clock, Live};
 
 fn main() {
-    let arguments = Arguments::parse();
+    let arguments: Arguments = cli::parse();
     cli::run("gather", || {
         match Task::of(arguments)? {
             Task::ListMedia => lists::media()?,
