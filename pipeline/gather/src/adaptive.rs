@@ -89,13 +89,13 @@ impl Work<'_> {
         Ok((passes, end))
     }
 
-    /// An image that can be rendered, as far as a few of its paths tell.
+    /// An image that can be rendered, as far as a few of its paths tell, or that is continued.
     fn begin(&self, settings: &Settings) -> Result<Passes<'_>, Failure> {
         let mut passes = Passes::new(&self.input, settings);
-        if let Some(before) = &self.before {
-            passes.resume(before);
+        match &self.before {
+            Some(before) => passes.resume(before),
+            None => holes::probe(&passes, self.job)?,
         }
-        holes::probe(&passes, self.job)?;
         Ok(passes)
     }
 

@@ -52,7 +52,14 @@ impl Display {
 
     /// Shows a tile, unless too many wait.
     pub fn show(&self, tile: &Tile) {
-        self.tiles.try_send(Patch { place: tile.place(), light: tile.light() }).ok();
+        if self.is_open() {
+            self.tiles.try_send(Patch { place: tile.place(), light: tile.light() }).ok();
+        }
+    }
+
+    /// Whether the viewer may still take tiles.
+    fn is_open(&self) -> bool {
+        self.sender.as_ref().is_some_and(|sender| !sender.is_finished())
     }
 
     /// Shows the whole picture, row by row, as far as the viewer takes it in a moment.

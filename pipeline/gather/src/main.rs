@@ -82,13 +82,13 @@ fn prepare(request: &Request) -> Result<Prepared, Failure> {
     let model = calibrated::model(request, kept.as_ref())?;
     let inputs = inputs::read(request, kept.as_ref(), &mut files)?;
     let mut jobs = image_jobs(request, &inputs, model)?;
+    scale::show(request, &inputs, model);
+    inputs::declare_continued(&mut files, request, &jobs)?;
+    outputs::declare(&mut files, &request.outputs, &jobs)?;
     for job in &mut jobs {
         let prepared = continuation::prepare(request, &inputs, kept.as_ref(), job);
         prepared.map_err(|failure| job.failure(failure))?;
     }
-    scale::show(request, &inputs, model);
-    inputs::declare_continued(&mut files, request, &jobs)?;
-    outputs::declare(&mut files, &request.outputs, &jobs)?;
     inputs.cloud_files.verify(request.common.thread_count())?;
     Ok(Prepared { inputs, model, kept, jobs })
 }
