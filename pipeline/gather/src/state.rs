@@ -21,7 +21,7 @@ impl State {
     pub const PLANES: usize = OF_PIXEL + OF_EDGE;
 
     pub(crate) fn of(paths: u32, sums: &[PixelSum], edges: &[Option<Box<Edge>>]) -> State {
-        let mut planes = vec![Vec::with_capacity(sums.len()); State::PLANES];
+        let mut planes: Vec<Vec<f64>> = (0..State::PLANES).map(|_| Vec::with_capacity(sums.len())).collect();
         for (sum, edge) in sums.iter().zip(edges) {
             let of_edge = edge.as_ref().map_or([0.0; OF_EDGE], |edge| edge.numbers());
             planes.iter_mut().zip(sum.numbers().into_iter().chain(of_edge)).for_each(|(plane, x)| plane.push(x));

@@ -134,7 +134,7 @@ mod tests {
         let all = |state: &State| state.planes.concat().into_iter().map(f64::to_bits).collect::<Vec<_>>();
         assert_eq!((all(&back), back.paths, of), (all(&state), 7, about));
         fs::write(&image, b"other").expect("writes");
-        let message = read(&image, NonZeroUsize::MIN).err().expect("refused").message;
+        let message = read(&image, NonZeroUsize::MIN).expect_err("refused").message;
         assert!(message.contains("another image"), "{message}");
     }
 }
