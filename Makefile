@@ -5,7 +5,7 @@
 #   calibrations.mk  whether pictures are calibrated  reports.mk  the documents that programs write
 #   gallery.mk   the scenes of data/                  table.mk    the table of the half-space model
 #   own.mk       your own scene: make SCENE=...       clean.mk    removal of what was made
-#   truth.mk     your own scene beside the truth
+#   truth.mk     your own scene beside the truth      install.mk  the programs, their manual pages and completions
 #
 # Every recipe that renders is $(SUBMIT) PROGRAM --threads $(THREADS) ... -o $@: it reads files, writes one and never
 # asks, so that SUBMIT may hand it to a queue of machines (docs/farm.md).
@@ -61,6 +61,7 @@ include $(MAKE_FILES)/tests.mk
 include $(MAKE_FILES)/check.mk
 include $(MAKE_FILES)/reports.mk
 include $(MAKE_FILES)/table.mk
+include $(MAKE_FILES)/install.mk
 include $(MAKE_FILES)/clean.mk
 
 .PHONY: .FORCE build scenes help

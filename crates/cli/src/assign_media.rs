@@ -1,6 +1,6 @@
 //! Assigns a medium to each sampled material.
 
-use crate::{Candidate, ReadMediumError, Unclear, read_medium, scene_medium, the_one, word_for};
+use crate::{Candidate, ReadMediumError, Unclear, quoted, read_medium, scene_medium, the_one, word_for};
 use bssrdf::Medium;
 use formats::cloud::SampledMaterial;
 use scene::Material;
@@ -10,7 +10,7 @@ use scene::Material;
 pub enum AssignError {
     #[error("--medium: SCENE gives no medium; give a name (`gather --list-media` prints them) or a FILE.json")]
     Missing,
-    #[error("--medium: material `{0}` of the cloud has no medium; add --medium {0}=NAME")]
+    #[error("--medium: material `{0}` of the cloud has no medium; add --medium {argument}", argument = quoted(&format!("{}=NAME", .0)))]
     MissingFor(String),
     #[error("{0}")]
     UnclearMaterial(String),

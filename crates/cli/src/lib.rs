@@ -1,6 +1,6 @@
 //! The parts that the programs share: arguments, files that are read and written, exit codes, progress, signals.
 //!
-//! A program parses its arguments, of which [`Common`] and [`SceneArgs`] are parts, and calls [`run`] with its work.
+//! A program parses its arguments ([`parse`]), of which [`Common`] and [`SceneArgs`] are parts, and calls [`run`] with its work.
 //! [`Files`] declares what is read and written before the work; [`Common::in_pool`] does it on as many threads as asked
 //! for; [`Progress`] and [`Seconds`] report on it. A [`Failure`] ends the program with a message and an exit code.
 //!
@@ -26,6 +26,7 @@
 //! ```
 
 mod allocator;
+mod asked;
 mod assign_media;
 mod cloud_files;
 mod common;
@@ -34,6 +35,7 @@ mod environment;
 mod failure;
 mod files;
 mod lit_scene;
+mod manual;
 mod medium;
 mod memory;
 mod named;
@@ -41,12 +43,14 @@ mod progress;
 mod scene_args;
 mod scene_settings;
 mod seconds;
+mod shell;
 mod tables;
 mod terminal;
 mod threads;
 mod truncated;
 mod values;
 
+pub use asked::Asked;
 pub use assign_media::{AssignError, assign_media};
 pub use cloud_files::CloudFiles;
 pub use common::{Common, print};
@@ -55,6 +59,7 @@ pub use environment::EnvironmentSource;
 pub use failure::{Failure, run};
 pub use files::{Files, file_name, is_same_file};
 pub use lit_scene::{LitScene, Media, declare_inputs};
+pub use manual::parse;
 pub use medium::{ReadMediumError, is_file, read_medium, scene_medium};
 pub use memory::{Need, available_memory_bytes, peak_memory_bytes, require_memory};
 pub use named::{Candidate, Unclear, the_one, word_for};
@@ -62,6 +67,7 @@ pub use progress::Progress;
 pub use scene_args::SceneArgs;
 pub use scene_settings::{SceneSettings, normal_kind};
 pub use seconds::Seconds;
+pub use shell::quoted;
 pub use tables::{camera_names, camera_table, material_names, material_table};
 pub use terminal::printable;
-pub use values::{one_of, parse_relative_error, parse_rgb};
+pub use values::{one_of, parse_duration, parse_relative_error, parse_rgb};

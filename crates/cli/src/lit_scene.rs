@@ -26,21 +26,24 @@ pub enum Media<'a> {
 
 impl LitScene {
     /// Reads clouds and their scene, but no samples, and the media; refuses inputs that do
-    /// not fit each other. The files that the scene's file names are declared as they become known.
+    /// not fit each other. The files that the scene's file names are declared as they become known. What the file and its
+    /// mesh are warned of was said when the clouds were sampled, and is said again only if this `repeats` it.
     pub fn read(
         clouds: &[PathBuf],
         settings: &SceneSettings,
         media: Media,
         common: &Common,
         files: &mut Files,
+        repeats: bool,
     ) -> Result<LitScene, Failure> {
         let cloud_files = CloudFiles::open(clouds)?;
-        let mut scene = import(settings, common)?;
+        let about_scene = Common { quiet: common.quiet || !repeats, ..common.clone() };
+        let mut scene = import(settings, &about_scene)?;
         scene.files.iter().try_for_each(|path| files.reads("a file that SCENE names", path))?;
         cloud_files.check_fit(&scene, settings, common)?;
         let (sampled, defects) = (shards::materials(&cloud_files.clouds), cloud_files.defects());
         let is_sampled = |material| sampled.iter().any(|m| m.index == material);
-        settings.check_mesh(&mut scene, is_sampled, defects, common)?;
+        settings.check_mesh(&mut scene, is_sampled, defects, &about_scene)?;
         let media = match media {
             Media::Named(arguments) => assign_media(arguments, sampled, &scene.materials)?,
             Media::Known(media) => media,

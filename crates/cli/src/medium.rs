@@ -1,5 +1,6 @@
 //! Media as a command line names them, or as a scene's file describes them.
 
+use crate::quoted;
 use bssrdf::{Medium, MediumError, MediumFile, Optics, Unit, built_in, single_scattering_albedo};
 use scene::{Material, ScatterExtension};
 use std::{fs, io};
@@ -13,7 +14,7 @@ pub enum ReadMediumError {
     File { path: String, source: MediumError },
     #[error("{path}: cannot read: {source}")]
     Read { path: String, source: std::io::Error },
-    #[error("material `{material}` of SCENE (eta is its KHR_materials_ior): {source}; give --medium {material}=NAME")]
+    #[error("material `{material}` of SCENE (eta is its KHR_materials_ior): {source}; give --medium {}", quoted(&format!("{material}=NAME")))]
     Scene { material: String, source: MediumError },
 }
 

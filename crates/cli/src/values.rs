@@ -1,6 +1,7 @@
 //! The values that options take: numbers, colors, and the names of a library's values.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use std::time::Duration;
 
 /// Parses a finite number.
 pub fn parse_finite(text: &str) -> Result<f64, String> {
@@ -46,15 +47,36 @@ pub fn one_of<T: Copy + Send + Sync + 'static>(
     names.try_map(move |word| all.iter().copied().find(|value| name(*value) == word).ok_or("expected one of the names"))
 }
 
+/// Parses a duration: `60s`, `2m`, `1h`, `1.5h`.
+pub fn parse_duration(text: &str) -> Result<Duration, String> {
+    let units = [('s', 1.0), ('m', 60.0), ('h', 3600.0)];
+    let parse = |(unit, seconds): (char, f64)| Some(text.strip_suffix(unit)?.parse::<f64>().ok()? * seconds);
+    let seconds = units.into_iter().find_map(parse).filter(|seconds| *seconds > 0.0 && *seconds <= LONGEST_S);
+    seconds.map(Duration::from_secs_f64).ok_or_else(|| "expected a duration as 60s, 2m or 1h, of at most 10000h".into())
+}
+
+/// The longest duration that is read, s.
+const LONGEST_S: f64 = 3.6e7;
+
 #[cfg(test)]
 mod tests {
-    use super::parse_rgb;
+    use super::{parse_duration, parse_rgb};
+    use std::time::Duration;
 
     #[test]
     fn colors_are_three_numbers() {
         assert_eq!(parse_rgb("1,0.5, 2"), Ok([1.0, 0.5, 2.0]));
         for text in ["1,2", "1,2,3,4", "a,b,c", "-1,0,0", "nan,0,0", "map.exr"] {
             assert!(parse_rgb(text).is_err(), "{text}");
+        }
+    }
+    #[test]
+    fn durations_have_a_unit() {
+        let seconds = |text: &str| parse_duration(text).map(|d| d.as_secs_f64()).ok();
+        assert_eq!(parse_duration("60s"), Ok(Duration::from_secs(60)));
+        assert_eq!([seconds("2m"), seconds("1h"), seconds("0.5s")], [Some(120.0), Some(3600.0), Some(0.5)]);
+        for text in ["60", "s", "-1s", "0s", "nans", "infs", "1e30h", "1d", ""] {
+            assert!(parse_duration(text).is_err(), "{text}");
         }
     }
 }

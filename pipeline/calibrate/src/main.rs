@@ -5,13 +5,12 @@ mod report;
 
 use arguments::Arguments;
 use calibration::{Task, WALKS, calibrate};
-use clap::Parser;
 use cli::{Common, Failure, LitScene, Media, Progress, Seconds, declare_inputs};
 use formats::{atomic::Group, calibration::Calibration};
 use std::path::PathBuf;
 
 fn main() {
-    let arguments = Arguments::parse();
+    let arguments: Arguments = cli::parse();
     cli::run("calibrate", || {
         run(arguments)?;
         Ok(0)
@@ -104,7 +103,7 @@ impl Request {
     fn read(&self) -> Result<LitScene, Failure> {
         let Arguments { files: clouds, medium, common, output, stats, .. } = &self.arguments;
         let mut files = declare_inputs(clouds, &self.scene, medium)?;
-        let lit = LitScene::read(clouds, &self.scene, Media::Named(medium), common, &mut files)?;
+        let lit = LitScene::read(clouds, &self.scene, Media::Named(medium), common, &mut files, false)?;
         let outputs: [(&str, Option<&PathBuf>); 2] = [("--output", Some(output)), ("--stats", stats.as_ref())];
         for (option, path) in outputs {
             path.map_or(Ok(()), |path| files.writes(option, path))?;

@@ -1,7 +1,6 @@
 //! `compare REFERENCE TEST` prints metrics and a verdict, and exits with 0, 1 or 2.
 
 use arguments::Arguments;
-use clap::Parser;
 use cli::Failure;
 use compare::{Mismatch, compare};
 use index_command::IndexArguments;
@@ -19,7 +18,7 @@ fn main() {
     cli::run("compare", || match IndexArguments::asked_for() {
         Some(arguments) => arguments.run(),
         None => {
-            let arguments = Arguments::parse();
+            let arguments: Arguments = cli::parse();
             noise_mode::asked_for(&arguments).unwrap_or_else(|| judge(&arguments))
         }
     })

@@ -1,211 +1,153 @@
 //! Renders with a given number of paths, or with as many paths as a target error needs.
 
-use crate::{holes, image_jobs::ImageJob};
-use cli::{Common, Failure, Progress, count, count_up};
-use formats::cloud::{Cloud, Pattern, shards};
-use gather::{Input, Passes, Rendered, Settings, estimator::Estimator, film::Errors};
-use sums::confidence::Estimate;
+use crate::{
+    holes,
+    image_jobs::ImageJob,
+    judge::{Round, Verdict},
+    steps::{Live, Steps},
+};
+use cli::{Common, Failure, Progress, count};
+use gather::{Input, Passes, Rendered, Settings, State};
 
-/// Renders the job's paths for each pixel.
-pub fn render_all(input: &Input, job: &ImageJob, common: &Common) -> Result<Rendered, Failure> {
-    let settings = &job.settings;
-    let mut passes = begin(input, settings, job)?;
-    let progress = Progress::start(common, "gathering", settings.part().pixels() as u64, "pixels");
-    passes.pass(settings.paths_per_pixel, |n| progress.add(n));
-    progress.finish();
-    Ok(passes.finish())
+/// A rendered image, and why it has no more paths.
+pub struct Outcome {
+    pub rendered: Rendered,
+    pub end: End,
+    /// The sums of the image, if they are kept.
+    pub state: Option<State>,
 }
 
-/// An image that can be rendered, as far as a few of its paths tell.
-fn begin<'a>(input: &Input<'a>, settings: &Settings, job: &ImageJob) -> Result<Passes<'a>, Failure> {
-    let passes = Passes::new(input, settings);
-    holes::probe(&passes, job)?;
-    Ok(passes)
+/// Why an image has no more paths.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// It has all that were asked for.
+    Paths,
+    TargetError,
+    /// More would not bring it to the target error.
+    OutOfReach,
+    TimeLimit,
+    /// It is not finished: it was asked for while it was rendered.
+    Asked,
 }
 
-/// Doubles the paths until the error meets the target, or the cloud's own error exceeds it, or
-/// the most paths of the job are reached.
-pub fn render_to(target: f64, input: &Input, job: &ImageJob, common: &Common) -> Result<Rendered, Failure> {
-    let settings = &job.settings;
-    let max_paths = settings.paths_per_pixel;
-    let mut paths = FIRST_PATHS.min(max_paths);
-    let mut passes = begin(input, &Settings { paths_per_pixel: paths, ..settings.clone() }, job)?;
-    let pixels = settings.part().pixels() as u64;
-    let (mut done, mut before) = (0, f64::INFINITY);
-    loop {
-        let progress = Progress::start(common, "gathering", pixels, &steps(done + 1, paths));
-        passes.pass(paths - done, |n| progress.add(n));
-        progress.finish();
-        let errors = passes.errors();
-        let round = Round { target, input, paths, done, before };
-        match round.judge(errors.as_ref(), settings) {
-            Verdict::Met => break,
-            Verdict::OutOfReach(why) => {
-                common.warn(why);
-                break;
+impl End {
+    /// The word in the statistics.
+    pub fn name(self) -> &'static str {
+        match self {
+            End::Paths => "paths",
+            End::TargetError => "target error",
+            End::OutOfReach => "target error out of reach",
+            End::TimeLimit => "time limit",
+            End::Asked => "not finished",
+        }
+    }
+}
+
+/// An image to render: its inputs, the sums that it goes on from, and what goes on beside.
+pub struct Work<'a> {
+    pub input: Input<'a>,
+    pub job: &'a ImageJob,
+    pub common: &'a Common,
+    pub before: Option<State>,
+    pub live: &'a Live<'a>,
+    pub keeps_sums: bool,
+}
+
+impl Work<'_> {
+    /// Renders the job's paths for each pixel, or until the target error is met.
+    pub fn render(&self, target: Option<f64>) -> Result<Outcome, Failure> {
+        let (passes, end) = match target {
+            None => self.render_all(),
+            Some(target) => self.render_to(target),
+        }?;
+        if end == End::TimeLimit {
+            let [done, all] = [passes.paths(), self.job.settings.paths_per_pixel].map(|n| count(u64::from(n)));
+            let line = format!("--time-limit: stopped with {done} of {all} paths per pixel");
+            self.common.say(self.job.line(&line));
+        }
+        Ok(outcome(&passes, end, self.keeps_sums))
+    }
+
+    fn render_all(&self) -> Result<(Passes<'_>, End), Failure> {
+        let (mut passes, all) = (self.begin(&self.job.settings)?, self.job.settings.paths_per_pixel);
+        let pixels = self.job.settings.part().pixels() as u64;
+        let mut steps = Steps::new(self.live, self.input.clouds.len());
+        let left = u64::from(all - passes.paths());
+        let progress = Progress::start(self.common, "gathering", pixels * left, "paths");
+        let mut end = End::Paths;
+        while passes.paths() < all && end == End::Paths {
+            let (done, left) = (passes.paths(), all - passes.paths());
+            // The paths of several clouds are added together, or in rounds of which each is whole.
+            let rounds = self.input.clouds.len() > 1 && self.live.deadline.is_some();
+            let round = if rounds { left.min(done.max(FIRST_PATHS)) } else { left };
+            passes.plan(round);
+            if !steps.add(&mut passes, round, &progress) {
+                end = End::TimeLimit;
             }
-            Verdict::More => {}
         }
-        if paths >= max_paths {
-            common.warn(format_args!(
-                "--target-error is not met with {} paths per pixel; a larger --spp allows more",
-                count(u64::from(max_paths))
-            ));
-            break;
-        }
-        before = errors.map_or(f64::INFINITY, |errors| errors.total);
-        done = paths;
-        paths = (2 * paths).min(max_paths);
+        progress.finish();
+        Ok((passes, end))
     }
-    Ok(passes.finish())
-}
 
-/// The unit of a pass's progress: pixels, each with this range of paths.
-fn steps(first: u32, last: u32) -> String {
-    format!("pixels, paths {} to {}", count(u64::from(first)), count(u64::from(last)))
-}
+    /// An image that can be rendered, as far as a few of its paths tell, or that is continued.
+    fn begin(&self, settings: &Settings) -> Result<Passes<'_>, Failure> {
+        let mut passes = Passes::new(&self.input, settings);
+        match &self.before {
+            Some(before) => passes.resume(before),
+            None => holes::probe(&passes, self.job)?,
+        }
+        Ok(passes)
+    }
 
-/// The state after a pass.
-struct Round<'a> {
-    target: f64,
-    input: &'a Input<'a>,
-    /// Paths per pixel after this pass and before it.
-    paths: u32,
-    done: u32,
-    /// The error before this pass.
-    before: f64,
-}
-
-/// The decision after a pass.
-enum Verdict {
-    /// The target is met.
-    Met,
-    /// More paths are needed.
-    More,
-    /// More paths would not help, for this reason.
-    OutOfReach(String),
-}
-
-impl Round<'_> {
-    fn judge(&self, errors: Option<&Errors>, settings: &Settings) -> Verdict {
-        let estimate = errors.and_then(Errors::estimate);
-        let (Some(errors), Some(estimate)) = (errors, estimate) else {
-            let paths = self.paths;
-            return if paths < UNKNOWN_PATHS {
-                Verdict::More
-            } else {
-                Verdict::OutOfReach(format!(
-                    "no two of {paths} paths per pixel differ, so their error is unknown: either it is 0, or the objects are \
-                     too small for these paths to meet; --spp without --target-error renders more"
-                ))
-            };
+    /// Doubles the paths until the error meets the target, or the cloud's own error exceeds it, or the most paths of the
+    /// job are reached.
+    fn render_to(&self, target: f64) -> Result<(Passes<'_>, End), Failure> {
+        let (settings, input) = (&self.job.settings, &self.input);
+        let max_paths = settings.paths_per_pixel;
+        let mut paths = FIRST_PATHS.max(self.before.as_ref().map_or(0, |before| before.paths)).min(max_paths);
+        let mut passes = self.begin(&Settings { paths_per_pixel: paths, ..settings.clone() })?;
+        let mut steps = Steps::new(self.live, input.clouds.len());
+        let pixels = settings.part().pixels() as u64;
+        let (mut done, mut before) = (0, f64::INFINITY);
+        let end = loop {
+            let added = paths - passes.paths();
+            let unit = format!("paths, {} to {} of each pixel", passes.paths() + 1, paths);
+            let progress = Progress::start(self.common, "gathering", pixels * u64::from(added), &unit);
+            passes.plan(added);
+            let in_time = steps.add(&mut passes, added, &progress);
+            progress.finish();
+            if !in_time {
+                break End::TimeLimit;
+            }
+            let errors = passes.errors();
+            let round = Round { target, input, paths, done, before };
+            match round.judge(errors.as_ref(), settings) {
+                Verdict::Met => break End::TargetError,
+                Verdict::OutOfReach(why) => {
+                    self.common.warn(why);
+                    break End::OutOfReach;
+                }
+                Verdict::More => {}
+            }
+            if paths >= max_paths {
+                self.common.warn(format_args!(
+                    "--target-error is not met with {} paths per pixel; a larger --spp allows more",
+                    count(u64::from(max_paths))
+                ));
+                break End::Paths;
+            }
+            before = errors.map_or(f64::INFINITY, |errors| errors.total);
+            done = paths;
+            paths = (2 * paths).min(max_paths);
         };
-        if settings.reference {
-            // No cloud limits the error.
-            return if estimate.safe() <= self.target { Verdict::Met } else { Verdict::More };
-        }
-        let lit_error = errors.scattered * self.lit_count_error();
-        if estimate.safe().max(lit_error) <= self.target {
-            return Verdict::Met;
-        }
-        if lit_error > CLOUD_LIMITS * self.target {
-            let (lit, percent) = (self.lit(), 100.0 * lit_error);
-            let why =
-                format!("the cloud alone may have an error of {percent:.2} %, as only {lit} of its samples are lit");
-            return Verdict::OutOfReach(format!("{why}: {}", self.advice(lit_error)));
-        }
-        self.judge_cloud(errors, &estimate, settings)
-    }
-
-    /// Whether the cloud's own error exceeds its share of the target.
-    fn judge_cloud(&self, errors: &Errors, estimate: &Estimate, settings: &Settings) -> Verdict {
-        let clouds = self.input.clouds.len();
-        // Until the paths of a pixel have used all shards, part of the difference between its halves comes from the
-        // choice of shards, and vanishes with more paths.
-        if clouds > 1 && (self.done as usize) < 2 * clouds {
-            return Verdict::More;
-        }
-        // In an image of few pixels the two errors may differ by chance; the cloud's must exceed three standard
-        // deviations.
-        let [paths, total] = [errors.paths, errors.total].map(|error| error * error);
-        let significant = total > variance_quantile(errors.paths_freedom) * paths;
-        let irreducible = irreducible_error(errors.total, self.before, estimate.freedom, settings.estimator);
-        let error = if significant { errors.cloud.max(irreducible) } else { irreducible };
-        if error > CLOUD_LIMITS * self.target {
-            let percent = 100.0 * error;
-            return Verdict::OutOfReach(format!(
-                "the cloud alone has an error of {percent:.2} %: {}",
-                self.advice(error)
-            ));
-        }
-        // Where the error of the paths is small, the cloud's error is known from its two halves alone.
-        let cloud = Estimate { error: errors.cloud, freedom: errors.cloud_freedom };
-        if errors.paths < 0.5 * cloud.error && cloud.safe() > self.target {
-            let (percent, within) = (100.0 * cloud.error, 100.0 * cloud.within());
-            return Verdict::OutOfReach(format!(
-                "the cloud alone has an error of about {percent:.2} %, but in so few pixels the difference of its halves is \
-                 hardly more than one value: the error is below {within:.2} % with 95 % confidence; {}",
-                self.advice(cloud.safe())
-            ));
-        }
-        Verdict::More
-    }
-
-    /// The number of lit samples.
-    fn lit(&self) -> u64 {
-        (0..shards::materials(self.input.clouds).len()).map(|slot| shards::count(self.input.clouds, slot)).sum()
-    }
-
-    /// The relative error of the light as estimated from the number of lit samples alone. They are as well spread as
-    /// all samples, so the error falls faster for stratified ones. It matters where few are lit, and the halves of the
-    /// cloud may agree by chance. It is 0 for a cloud without lit samples.
-    fn lit_count_error(&self) -> f64 {
-        let stratified = |cloud: &Cloud| cloud.meta().options.pattern == Pattern::Stratified;
-        let lit = self.lit().max(1) as f64;
-        let independent = lit.powf(-0.5);
-        match self.lit() {
-            0 => 0.0,
-            _ if self.input.clouds.iter().all(stratified) => independent.min(2.0 * lit.powf(-0.75)),
-            _ => independent,
-        }
-    }
-
-    /// Advice on a cloud of this error.
-    fn advice(&self, error: f64) -> String {
-        // The error of well-spread samples falls at least as fast as their number to the power −3/4.
-        let drawn = shards::drawn(self.input.clouds) as f64;
-        let needed = drawn * (error / (CLOUD_LIMITS * self.target)).powf(4.0 / 3.0);
-        if self.input.clouds.len() == 1 {
-            format!("sample it again with --samples {}", count_up(needed))
-        } else {
-            format!("add shards until there are about {} samples in all", count_up(needed))
-        }
+        Ok((passes, end))
     }
 }
 
-/// The part of the error that more paths do not reduce, given that the error was `before` with half the paths and is
-/// `now`. The variance of paths falls as their number (that of well-spread paths falls faster); the error that the cut
-/// adds stays, because the cut's target is per pixel, whatever the number of paths. If nothing stays, the variance of
-/// `before` is twice that of `now`, and their difference has a relative standard deviation of four over the root of the
-/// degrees of freedom. Up to three standard deviations are attributed to chance.
-fn irreducible_error(now: f64, before: f64, freedom: f64, estimator: Estimator) -> f64 {
-    let added = estimator.accuracy().unwrap_or(0.0);
-    let chance = 3.0 * 4.0 / freedom.sqrt();
-    ((2.0 - chance) * now * now - before * before - added * added).max(0.0).sqrt()
-}
-
-/// The multiple of the true variance that an estimate with so many degrees of freedom exceeds in 1 of 1000 cases
-/// (Wilson and Hilferty 1931).
-fn variance_quantile(freedom: f64) -> f64 {
-    let a = 2.0 / (9.0 * freedom);
-    (1.0 - a + 3.09 * a.sqrt()).powi(3)
+/// The image of these passes, with its sums if they are kept.
+pub fn outcome(passes: &Passes, end: End, keeps_sums: bool) -> Outcome {
+    Outcome { rendered: passes.image(), end, state: keeps_sums.then(|| passes.state()) }
 }
 
 /// Paths of the first pass: two for each half of the cloud.
 const FIRST_PATHS: u32 = 4;
-
-/// The cloud's own error may be at most this share of the target, so that its square is about half of the target's.
-const CLOUD_LIMITS: f64 = 0.7;
-
-/// Paths of each pixel after which rendering ends if no two paths of the image differ.
-const UNKNOWN_PATHS: u32 = 64;

@@ -2,12 +2,12 @@
 
 use bssrdf::Model;
 use clap::Parser;
-use cli::{Common, SceneArgs, file_name, one_of, parse_relative_error};
+use cli::{Common, SceneArgs, file_name, one_of, parse_duration, parse_relative_error};
 use gather::{
     Crop, Filter,
     estimator::{Estimator, Rule},
 };
-use std::path::PathBuf;
+use std::{path::PathBuf, time::Duration};
 
 /// Renders a scene's translucent surfaces from a point cloud.
 ///
@@ -82,6 +82,17 @@ pub struct Arguments {
     /// error of less than twice this
     #[arg(long, value_name = "X", value_parser = parse_relative_error)]
     pub target_error: Option<f64>,
+    /// Stop after this time with the paths that there are, two of each pixel at least: 60s, 2m, 1h. Several images share
+    /// what is left
+    #[arg(long, value_name = "TIME", value_parser = parse_duration)]
+    pub time_limit: Option<Duration>,
+    /// Add the paths of --spp to those of this image, which was rendered with --keep-sums and the same settings: 16 and 48
+    /// paths are the image of 64
+    #[arg(long = "continue", value_name = "IMAGE.exr", value_parser = file_name())]
+    pub continued: Option<PathBuf>,
+    /// Also write IMAGE.sums, which --continue needs; --continue does so too
+    #[arg(long)]
+    pub keep_sums: bool,
     /// Spread the paths over the pixel (box), or send all through its center (point)
     #[arg(long, value_name = "FILTER", default_value = "box", value_parser = one_of(&Filter::ALL, Filter::name))]
     pub filter: Filter,
@@ -90,6 +101,12 @@ pub struct Arguments {
     pub max_depth: u32,
     #[command(flatten)]
     pub scene_args: SceneArgs,
+    /// Layers to add to the image: albedo (color of the first surface), id (number of its material); separated by commas
+    #[arg(long, value_name = "LAYERS", value_delimiter = ',', value_parser = one_of(&ExtraLayer::ALL, ExtraLayer::name))]
+    pub layers: Vec<ExtraLayer>,
+    /// Show the image in the viewer tev while it is rendered
+    #[arg(long, value_name = "HOST:PORT", value_parser = parse_address)]
+    pub display: Option<String>,
     /// Also write a tone-mapped picture
     #[arg(long, value_name = "FILE.png", value_parser = file_name())]
     pub preview: Option<PathBuf>,
@@ -117,8 +134,35 @@ pub struct Arguments {
     /// Print the paths of the images that --output becomes with this --view or --orbit
     #[arg(long)]
     pub list_images: bool,
+    /// Print all lengths of media and objects, and warnings that sample-surface has printed
+    #[arg(long)]
+    pub verbose: bool,
     #[command(flatten)]
     pub common: Common,
+}
+
+/// A layer that an image has if it is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExtraLayer {
+    Albedo,
+    Id,
+}
+
+impl ExtraLayer {
+    const ALL: [ExtraLayer; 2] = [ExtraLayer::Albedo, ExtraLayer::Id];
+
+    fn name(self) -> &'static str {
+        match self {
+            ExtraLayer::Albedo => "albedo",
+            ExtraLayer::Id => "id",
+        }
+    }
+}
+
+/// Checks `HOST:PORT`; the host is looked up later.
+fn parse_address(text: &str) -> Result<String, String> {
+    let parts = text.rsplit_once(':').filter(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok());
+    parts.map(|_| text.to_owned()).ok_or_else(|| "expected HOST:PORT; tev listens at 127.0.0.1:14158".into())
 }
 
 fn parse_crop(text: &str) -> Result<Crop, String> {

@@ -3,7 +3,7 @@
 use crate::settings::{CalibrationSource, Request};
 use bssrdf::{Medium, MediumFile, Model, Optics, Unit};
 use calibration::{CalibrateError, Task, WALKS, calibrate};
-use cli::{Failure, LitScene, Progress};
+use cli::{Failure, LitScene, Progress, quoted};
 use formats::{
     calibration::{CalibratedMaterial, Calibration},
     cloud::shards,
@@ -114,10 +114,4 @@ fn command(request: &Request) -> String {
     }
     words.extend(["-o".into(), request.clouds[0].with_extension("calibration").display().to_string()]);
     words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")
-}
-
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_alphanumeric() || "-_./=,:+".contains(c);
-    if word.chars().all(is_plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', "'\\''")) }
 }

@@ -51,6 +51,36 @@ impl Edge {
         self.0[half].through_rays += through;
     }
 
+    /// How many numbers the sums consist of, without those that follow from the number of paths.
+    pub const NUMBERS: usize = 18;
+
+    /// The sums as numbers, one half after the other.
+    pub fn numbers(&self) -> [f64; Edge::NUMBERS] {
+        let mut numbers = self.0.iter().flat_map(|half| {
+            let [scattered, products] = [half.scattered, half.products].map(|v| v.to_array());
+            scattered.into_iter().chain(products).chain([half.through, half.squares, half.through_rays])
+        });
+        std::array::from_fn(|_| numbers.next().unwrap_or_default())
+    }
+
+    /// The sums of so many paths of a pixel from their numbers.
+    pub fn from_numbers(paths: u32, numbers: [f64; Edge::NUMBERS]) -> Edge {
+        let half = |half: usize| {
+            let x = &numbers[half * Edge::NUMBERS / 2..];
+            let own = if half == 0 { paths.div_ceil(2) } else { paths / 2 };
+            Half {
+                paths: f64::from(own),
+                scattered: DVec3::new(x[0], x[1], x[2]),
+                products: DVec3::new(x[3], x[4], x[5]),
+                through: x[6],
+                squares: x[7],
+                rays: f64::from(own) * f64::from(RAYS),
+                through_rays: x[8],
+            }
+        };
+        Edge([half(0), half(1)])
+    }
+
     /// `c` of one half: `Σf/Σg` of the other.
     fn factor(&self, half: usize) -> DVec3 {
         let other = &self.0[1 - half];

@@ -4,78 +4,12 @@ use crate::{
     crop::Crop,
     edge::Edge,
     freedom::{self, Cells},
-    path_state::{Guide, LAYERS, Layer, Layers, PathLight},
+    path_state::{Guide, LAYERS, Layer, Layers},
+    pixel_sum::PixelSum,
 };
 use formats::{Channel, Image, Window};
 use scene::DVec3;
 use sums::confidence::Estimate;
-
-/// Sums over the paths of one pixel.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct PixelSum {
-    layers: Layers,
-    count: f64,
-    /// Sums over the even and over the odd paths; each path counts as its own half of the cloud estimates it.
-    halves: [DVec3; 2],
-    /// Sums of the squares of the same values.
-    squares: [DVec3; 2],
-    counts: [f64; 2],
-}
-
-impl PixelSum {
-    /// Adds a path. The only path of a pixel counts for both halves.
-    pub fn add(&mut self, index: u32, alone: bool, path: &PathLight) {
-        self.layers.iter_mut().zip(&path.layers).for_each(|(sum, x)| *sum += x);
-        self.count += 1.0;
-        for half in 0..2 {
-            if alone || index as usize % 2 == half {
-                self.halves[half] += path.halves[half];
-                self.squares[half] += path.halves[half] * path.halves[half];
-                self.counts[half] += 1.0;
-            }
-        }
-    }
-
-    /// The difference of the means of the two halves.
-    fn difference(&self, edge: Option<&Edge>) -> DVec3 {
-        let mean = |half: usize| self.halves[half] / self.counts[half];
-        let [even, odd] = [0, 1].map(|half| mean(half) + edge.map_or(DVec3::ZERO, |e| e.correction(half)));
-        even - odd
-    }
-
-    /// Two estimates of the pixel's variance: from the difference of the halves, which includes the error of the cloud,
-    /// and from the variance of the paths within each half. The second expects the paths' part of the first if paths
-    /// are independent, and more than that if they are stratified.
-    fn variances(&self, edge: Option<&Edge>) -> [DVec3; 2] {
-        let mean = |half: usize| self.halves[half] / self.counts[half];
-        let difference = self.difference(edge);
-        let within = [0, 1].map(|half| {
-            let n = self.counts[half];
-            let (of_mean, of_square) = edge.map_or((DVec3::ZERO, DVec3::ZERO), |e| e.removed(half));
-            let rest = mean(half) - of_mean;
-            (self.squares[half] / n - of_square - rest * rest).max(DVec3::ZERO) / (n - 1.0).max(1.0)
-        });
-        // Each half of an edge takes its factor from the other, which correlates the two.
-        let together = edge.map_or(DVec3::ZERO, |e| e.correction(0) * e.correction(1));
-        [difference * difference / 4.0 + together, (within[0] + within[1]) / 4.0]
-    }
-
-    /// Mean light of each layer.
-    fn layers(&self, edge: Option<&Edge>) -> Layers {
-        let mut layers = self.layers.map(|sum| sum / self.count);
-        if let Some(edge) = edge {
-            let corrections = [0, 1].map(|half| edge.correction(half) * self.counts[half] / self.count);
-            layers[Layer::Subsurface as usize] += corrections[0] + corrections[1];
-        }
-        layers
-    }
-
-    /// The finished pixel. The halves have the same expectation, so a quarter of the squared difference estimates the
-    /// variance of their mean if they are independent; at edges their covariance is that of their corrections.
-    pub fn pixel(&self, edge: Option<&Edge>, guide: Guide) -> Pixel {
-        Pixel { layers: self.layers(edge), variance: self.variances(edge)[0], guide }
-    }
-}
 
 /// Relative standard errors of an image: the root mean square of the pixels' errors over that of their values.
 #[derive(Clone, Copy, Debug, Default)]
@@ -151,6 +85,10 @@ pub struct Pixel {
 }
 
 impl Pixel {
+    pub(crate) fn new(layers: Layers, variance: DVec3, guide: Guide) -> Pixel {
+        Pixel { layers, variance, guide }
+    }
+
     /// `L_o`, W/(m² sr).
     pub fn beauty(&self) -> DVec3 {
         self.layers.iter().sum()
@@ -191,6 +129,24 @@ fn channel_names() -> Vec<String> {
     }
     names.push("Z".into());
     names
+}
+
+/// The channels of the layer `albedo`, those of `id`, or both, of what the ray through each pixel's center meets.
+pub fn guides(pixels: &[Pixel], albedo: bool, id: bool) -> Vec<Channel> {
+    let channel = |name: &str, of: &dyn Fn(&Guide) -> f64| {
+        let samples = pixels.iter().map(|pixel| of(&pixel.guide) as f32).collect();
+        Channel { name: name.to_owned(), samples }
+    };
+    let mut channels = Vec::new();
+    if albedo {
+        channels.push(channel("albedo.R", &|guide| guide.albedo.x));
+        channels.push(channel("albedo.G", &|guide| guide.albedo.y));
+        channels.push(channel("albedo.B", &|guide| guide.albedo.z));
+    }
+    if id {
+        channels.push(channel("id", &|guide| f64::from(guide.id)));
+    }
+    channels
 }
 
 /// The pixels of a part of an image of this size as a data window within the whole, without attributes. Positions are
@@ -256,33 +212,13 @@ mod tests {
     /// Positions are relative to the origin, and 0 where no surface is met.
     #[test]
     fn positions_relative_to_an_origin() {
-        let met = Guide { normal: DVec3::Y, position: DVec3::new(1e6 + 0.25, 2.0, 3.0), depth: 1.0 };
+        let position = DVec3::new(1e6 + 0.25, 2.0, 3.0);
+        let met = Guide { normal: DVec3::Y, position, depth: 1.0, ..Guide::default() };
         let pixels = [met, Guide::default()].map(|guide| PixelSum::default().pixel(None, guide));
         let crop = Crop { x: 0, y: 0, width: 2, height: 1 };
         let image = part(&pixels, crop, [2, 1], DVec3::new(1e6, 0.0, 1.0));
         let plane = |name: &str| &image.channels.iter().find(|c| c.name == name).expect("a channel").samples;
         assert_eq!(["P.X", "P.Y", "P.Z"].map(plane), [&[0.25, 0.0], &[2.0, 0.0], &[2.0, 0.0]]);
-    }
-
-    #[test]
-    fn mean_and_variance_of_four_paths() {
-        let mut sum = PixelSum::default();
-        for (index, x) in [1.0, 2.0, 3.0, 6.0].into_iter().enumerate() {
-            let mut path = PathLight { halves: [DVec3::splat(x), DVec3::splat(-x)], ..PathLight::default() };
-            path.layers[Layer::Subsurface as usize] = DVec3::splat(x);
-            sum.add(index as u32, false, &path);
-        }
-        let pixel = sum.pixel(None, Guide::default());
-        assert_eq!(pixel.beauty(), DVec3::splat(3.0));
-        // Even paths have the mean 2, odd ones, by their half, −4.
-        assert_eq!(pixel.variance(), DVec3::splat(9.0));
-    }
-
-    #[test]
-    fn one_path_estimates_the_error_of_the_cloud() {
-        let mut sum = PixelSum::default();
-        sum.add(0, true, &PathLight { halves: [DVec3::splat(2.0), DVec3::splat(3.0)], ..PathLight::default() });
-        assert_eq!(sum.pixel(None, Guide::default()).variance(), DVec3::splat(0.25));
     }
 
     #[test]

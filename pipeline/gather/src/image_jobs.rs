@@ -20,7 +20,13 @@ const MAX_PIXELS: u64 = 1 << 28;
 
 /// Memory that a pixel takes, bytes: sums, their copies while a pass is joined, the pixel and its channels, if all
 /// pixels are edges.
-const BYTES_PER_PIXEL: u64 = 1280;
+const BYTES_PER_PIXEL: u64 = 1344;
+
+/// The same of the sums that are kept, as numbers and as channels.
+const BYTES_OF_SUMS: u64 = 1152;
+
+/// Pixels whose sums a file can keep.
+const MAX_KEPT_PIXELS: u64 = 1 << 24;
 
 /// One image.
 pub struct ImageJob {
@@ -41,7 +47,8 @@ pub fn image_jobs(request: &Request, inputs: &LitScene, model: Model) -> Result<
         jobs.extend(turntable(request, &viewpoint, model)?);
     }
     warn_of_aspects(&jobs, &request.common);
-    jobs.iter().try_for_each(|job| check_memory(&job.settings).map_err(|e| job.failure(e)))?;
+    let kept = request.outputs.keeps_sums;
+    jobs.iter().try_for_each(|job| check_memory(&job.settings, kept).map_err(|e| job.failure(e)))?;
     Ok(jobs)
 }
 
@@ -127,8 +134,12 @@ fn inside(crop: Crop, width: usize, height: usize) -> Result<Crop, Failure> {
 }
 
 /// Refuses an image that cannot fit into memory. The cloud is mapped.
-fn check_memory(settings: &Settings) -> Result<(), Failure> {
-    let held = (settings.part().pixels() as u64).saturating_mul(BYTES_PER_PIXEL);
+fn check_memory(settings: &Settings, keeps_sums: bool) -> Result<(), Failure> {
+    let pixels = settings.part().pixels() as u64;
+    if keeps_sums && pixels > MAX_KEPT_PIXELS {
+        return Err(Failure::usage(format!("--keep-sums: the sums of at most {MAX_KEPT_PIXELS} pixels can be kept")));
+    }
+    let held = pixels.saturating_mul(BYTES_PER_PIXEL + if keeps_sums { BYTES_OF_SUMS } else { 0 });
     cli::require_memory("this image", Need { held, mapped: 0 }, "make it smaller")
 }
 

@@ -4,29 +4,37 @@ mod adaptive;
 mod arguments;
 mod calibrated;
 mod cameras;
+mod continuation;
+mod display;
 mod holes;
 mod image_jobs;
 mod inputs;
+mod judge;
 mod lists;
 mod outputs;
 mod report;
 mod scale;
 mod settings;
+mod steps;
 mod summary;
+mod sums_file;
 
+use adaptive::{End, Work};
 use arguments::Arguments;
 use bssrdf::Model;
-use clap::Parser;
-use cli::{Failure, LitScene, Seconds};
+use cli::{Asked, Failure, LitScene, Seconds, count};
+use display::Display;
 use formats::{atomic::Output, calibration::Calibration};
-use gather::Input;
+use gather::{Input, Passes};
 use image_jobs::{ImageJob, image_jobs, image_paths};
 use report::Facts;
 use scene::{Rays, Scene};
 use settings::{Request, Task};
+use std::time::Instant;
+use steps::{Clock, Live};
 
 fn main() {
-    let arguments = Arguments::parse();
+    let arguments: Arguments = cli::parse();
     cli::run("gather", || {
         match Task::of(arguments)? {
             Task::ListMedia => lists::media()?,
@@ -40,7 +48,7 @@ fn main() {
 }
 
 /// Everything that the images of a request need.
-struct Prepared {
+pub struct Prepared {
     inputs: LitScene,
     model: Model,
     /// The calibration that a file keeps.
@@ -50,15 +58,18 @@ struct Prepared {
 
 /// Renders all images of a request.
 fn render(request: &Request) -> Result<(), Failure> {
-    let mut seconds = Seconds::start();
-    let Prepared { inputs, model, kept, jobs } = seconds.time("open", || prepare(request))?;
-    let rays = seconds.time("ray_tree", || request.common.in_pool(|| inputs.rays()))?;
-    let calibration = match kept {
-        Some(kept) => Some(kept),
-        None => seconds.time("calibrate", || calibrated::make(request, &inputs, &rays, model))?,
+    let (asked, mut seconds, clock) = (Asked::listen(), Seconds::start(), Clock::start(request.time_limit));
+    let prepared = seconds.time("open", || prepare(request))?;
+    let rays = seconds.time("ray_tree", || request.common.in_pool(|| prepared.inputs.rays()))?;
+    let made = match prepared.kept {
+        Some(_) => None,
+        None => seconds.time("calibrate", || calibrated::make(request, &prepared.inputs, &rays, prepared.model))?,
     };
-    for job in &jobs {
-        render_image(request, &inputs, &rays, calibration.as_ref(), job, seconds)?;
+    let calibration = prepared.kept.as_ref().or(made.as_ref());
+    for (index, job) in prepared.jobs.iter().enumerate() {
+        let deadline = clock.deadline(job, prepared.jobs.len() - index, request.common.thread_count());
+        let image = ImageToRender { request, prepared: &prepared, rays: &rays, calibration, job };
+        image.render(&asked, deadline, seconds)?;
         seconds = Seconds::start();
     }
     Ok(())
@@ -70,35 +81,77 @@ fn prepare(request: &Request) -> Result<Prepared, Failure> {
     let kept = calibrated::read(request)?;
     let model = calibrated::model(request, kept.as_ref())?;
     let inputs = inputs::read(request, kept.as_ref(), &mut files)?;
-    let jobs = image_jobs(request, &inputs, model)?;
+    let mut jobs = image_jobs(request, &inputs, model)?;
     scale::show(request, &inputs, model);
+    inputs::declare_continued(&mut files, request, &jobs)?;
     outputs::declare(&mut files, &request.outputs, &jobs)?;
+    for job in &mut jobs {
+        let prepared = continuation::prepare(request, &inputs, kept.as_ref(), job);
+        prepared.map_err(|failure| job.failure(failure))?;
+    }
     inputs.cloud_files.verify(request.common.thread_count())?;
     Ok(Prepared { inputs, model, kept, jobs })
 }
 
-/// Renders one image and writes its files, all or none; `seconds` are those of the steps before it.
-fn render_image(
-    request: &Request,
-    inputs: &LitScene,
-    rays: &Rays,
-    calibration: Option<&Calibration>,
-    job: &ImageJob,
-    mut seconds: Seconds,
-) -> Result<(), Failure> {
-    let common = &request.common;
-    let output = Output::create(&job.file(&request.outputs.image))?;
-    let (scene, clouds, media, camera) = (&inputs.scene, inputs.clouds(), &inputs.media, &job.camera);
-    let input = Input { scene, rays, clouds, media, calibration, camera };
-    let rendered = seconds.time("render", || {
-        common.in_pool(|| match request.target_error {
-            None => adaptive::render_all(&input, job, common),
-            Some(target) => adaptive::render_to(target, &input, job, common),
-        })
-    })??;
-    inputs.cloud_files.check_unchanged()?;
-    let facts = Facts::new(request, inputs, calibration, job, &rendered);
-    holes::check(&rendered.counts, job)?;
-    outputs::write(&facts, output, seconds)?;
-    summary::show(&facts)
+/// One image with all that it is made from.
+struct ImageToRender<'a> {
+    request: &'a Request,
+    prepared: &'a Prepared,
+    rays: &'a Rays<'a>,
+    calibration: Option<&'a Calibration>,
+    job: &'a ImageJob,
+}
+
+impl ImageToRender<'_> {
+    /// Renders the image and writes its files, all or none; `seconds` are those of the steps before it.
+    fn render(&self, asked: &Asked, deadline: Option<Instant>, mut seconds: Seconds) -> Result<(), Failure> {
+        let ImageToRender { request, prepared, rays, calibration, job } = *self;
+        let (common, inputs) = (&request.common, &prepared.inputs);
+        let path = job.file(&request.outputs.image);
+        let output = Output::create(&path)?;
+        let (scene, clouds, media, camera) = (&inputs.scene, inputs.clouds(), &inputs.media, &job.camera);
+        let part = job.settings.part();
+        let start = |address: &String| {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            Display::start(address, &name, [part.width, part.height], common)
+        };
+        let display = request.display.as_ref().map(start);
+        let live = Live { deadline, asked, write: &|passes| self.write_so_far(passes), display };
+        let work = Work {
+            input: Input { scene, rays, clouds, media, calibration, camera },
+            job,
+            common,
+            before: continuation::read(request, job)?,
+            live: &live,
+            keeps_sums: request.outputs.keeps_sums,
+        };
+        let outcome = seconds.time("render", || common.in_pool(|| work.render(request.target_error)))??;
+        inputs.cloud_files.check_unchanged()?;
+        let facts = Facts::new((request, prepared), calibration, job, &outcome);
+        holes::check(&outcome.rendered.counts, job)?;
+        outputs::write(&facts, output, seconds)?;
+        if let Some(display) = live.display {
+            display.finish(part, &outcome.rendered.pixels);
+        }
+        summary::show(&facts)
+    }
+
+    /// Writes the files of the image with the paths that it has, as the user asked by a signal. A failure is said, and
+    /// rendering goes on.
+    fn write_so_far(&self, passes: &Passes) {
+        let ImageToRender { request, prepared, calibration, job, .. } = *self;
+        let outcome = adaptive::outcome(passes, End::Asked, request.outputs.keeps_sums);
+        let facts = Facts::new((request, prepared), calibration, job, &outcome);
+        let path = job.file(&request.outputs.image);
+        let written = holes::check(&outcome.rendered.counts, job)
+            .and_then(|()| Ok(prepared.inputs.cloud_files.check_unchanged()?))
+            .and_then(|()| outputs::write(&facts, Output::create(&path)?, Seconds::start()));
+        let paths = count(u64::from(passes.paths()));
+        match written {
+            Ok(()) => {
+                request.common.say(format_args!("SIGUSR1: wrote {} with {paths} paths per pixel", path.display()))
+            }
+            Err(failure) => request.common.warn(format_args!("SIGUSR1: {}", failure.message)),
+        }
+    }
 }

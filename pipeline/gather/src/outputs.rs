@@ -1,6 +1,6 @@
 //! The files of an image: the image, its preview, and its statistics.
 
-use crate::{image_jobs::ImageJob, report::Facts, settings::Outputs};
+use crate::{arguments::ExtraLayer, continuation, image_jobs::ImageJob, report::Facts, settings::Outputs, sums_file};
 use cli::{Failure, Files, Seconds};
 use formats::atomic::{Group, Output};
 use gather::{film, preview};
@@ -14,6 +14,10 @@ pub fn declare(files: &mut Files, outputs: &Outputs, jobs: &[ImageJob]) -> Resul
     let stats = outputs.stats.iter().map(|path| ("--stats", path));
     for (option, path) in image.chain(preview).chain(stats) {
         jobs.iter().try_for_each(|job| files.writes(option, &job.file(path)))?;
+    }
+    if outputs.keeps_sums {
+        let sums = |job: &ImageJob| sums_file::path_of(&job.file(&outputs.image));
+        jobs.iter().try_for_each(|job| files.writes("--keep-sums", &sums(job)))?;
     }
     Ok(())
 }
@@ -35,11 +39,20 @@ fn write_image(facts: &Facts, mut output: Output, group: &mut Group) -> Result<(
     let (outputs, settings, part) = (&facts.request.outputs, &facts.settings, facts.settings.part());
     let origin = facts.inputs.clouds()[0].meta().exchange_origin_m().map(f64::from).into();
     let mut image = film::part(&facts.rendered.pixels, part, [settings.width, settings.height], origin);
+    let has = |layer: ExtraLayer| outputs.layers.contains(&layer);
+    image.channels.extend(film::guides(&facts.rendered.pixels, has(ExtraLayer::Albedo), has(ExtraLayer::Id)));
     image.attributes = facts.attributes();
-    let bytes = image.encode_with(facts.request.common.thread_count())?;
+    let threads = facts.request.common.thread_count();
+    let bytes = image.encode_with(threads)?;
     let path = facts.job.file(&outputs.image);
     output.write_all(&bytes).map_err(|source| formats::Error::write(&path, source))?;
     group.add(output);
+    if let Some(state) = facts.state {
+        let Facts { request, inputs, kept, job, .. } = facts;
+        let about = continuation::about(request, inputs, *kept, job, state.paths);
+        let sums = sums_file::encode(state, &about, part, &bytes, threads)?;
+        group.write(&sums_file::path_of(&path), &sums)?;
+    }
     if let Some(path) = &outputs.preview {
         let png = preview::png(&facts.rendered.pixels, part.width, part.height, outputs.exposure)?;
         group.write(&facts.job.file(path), &png)?;

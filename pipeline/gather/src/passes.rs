@@ -5,29 +5,30 @@ use crate::{
     crop::Crop,
     cut_correction,
     edge::{self, Edge},
-    film::{Errors, Pixel, PixelSum},
+    film::{Errors, Pixel},
     image::{Filter, Input, Rendered, Settings},
+    objects::objects,
     path_state::{PathIndex, ThreadContext},
     pixel_numbers::{PixelNumbers, halves},
+    pixel_sum::PixelSum,
     reference::{Walks, meets_light},
-    renderer::{Renderer, TranslucentObject},
+    renderer::Renderer,
+    state::State,
+    watch::{Tile, Watch},
 };
-use bssrdf::Partition;
-use calibration::Factors;
-use formats::cloud::shards;
 use glam::DVec2;
-use near_field::{NearField, Surroundings};
+use near_field::Surroundings;
 use rayon::prelude::*;
 use scene::{
     DVec3,
     light::LightTree,
     random::{Purpose, Stream},
 };
-use std::{ops::Range, sync::Arc};
-use sums::{Summation, drawn::DrawnCounts, estimator::Scatterer};
+use std::ops::Range;
+use sums::drawn::DrawnCounts;
 
 /// Side of the square tile that a task renders, pixels.
-const TILE: usize = 8;
+pub(crate) const TILE: usize = 8;
 
 /// A ray that crosses a surface undeflected continues at this distance beyond it, as a share of the scene's diagonal.
 const CLEARANCE: f64 = 1e-9;
@@ -50,7 +51,7 @@ pub struct Passes<'a> {
 }
 
 /// The sums of one pixel, and those of an edge pixel.
-type Sums = (PixelSum, Option<Box<Edge>>);
+pub(crate) type Sums = (PixelSum, Option<Box<Edge>>);
 
 impl<'a> Passes<'a> {
     /// Prepares an image; the cut is as accurate as `settings.paths_per_pixel` paths need.
@@ -188,26 +189,57 @@ impl<'a> Passes<'a> {
         self.sums[index].pixel(self.edges[index].as_deref(), self.renderer.guide(origin, direction))
     }
 
-    /// Adds `paths` to each pixel; `progress` is called with the number of pixels that were completed since its last
-    /// call.
-    pub fn pass(&mut self, paths: u32, progress: impl Fn(u64) + Sync) {
+    /// Paths that each pixel has.
+    pub fn paths(&self) -> u32 {
+        self.paths
+    }
+
+    /// Says that the next `paths` of each pixel are planned together: shards are picked for all of them, and the cut is
+    /// as accurate as they need. Before the first plan, all paths of the settings are.
+    pub fn plan(&mut self, paths: u32) {
+        self.renderer.pass = self.paths..self.paths.saturating_add(paths);
+        let paths = self.renderer.settings.paths_per_pixel.max(self.renderer.pass.end);
+        self.renderer.paths_per_pixel = paths;
+    }
+
+    /// Adds `paths` to each pixel; the watch is told of the tiles. False if it stopped the pass: nothing is added then.
+    pub fn pass(&mut self, paths: u32, watch: &impl Watch) -> bool {
         let range = self.paths..self.paths.saturating_add(paths);
-        self.renderer.paths_per_pixel = self.renderer.settings.paths_per_pixel.max(range.end);
-        self.renderer.pass = range.clone();
+        if range.end > self.renderer.pass.end {
+            self.plan(paths);
+        }
         let tile = |tile: usize| {
+            if watch.stops() {
+                return None;
+            }
             let mut context = ThreadContext::new(self.renderer.objects.len());
             let add = |index: usize| (index, self.add_paths(index, range.clone(), &mut context));
             let sums: Vec<(usize, Sums)> = self.pixels_of(tile).map(add).collect();
-            progress(sums.len() as u64);
+            watch.done(&Tile { part: self.part, sums: &sums });
             context.counts.near_field(&context.near.work);
-            (sums, context.counts)
+            Some((sums, context.counts))
         };
-        let tiles: Vec<_> = (0..self.tiles()).into_par_iter().map(tile).collect();
+        let tiles: Option<Vec<_>> = (0..self.tiles()).into_par_iter().map(tile).collect();
+        let Some(tiles) = tiles else { return false };
         for (sums, counts) in tiles {
             self.counts.add(&counts);
             sums.into_iter().for_each(|(index, sum)| (self.sums[index], self.edges[index]) = sum);
         }
         self.paths = range.end;
+        true
+    }
+
+    /// The sums so far, from which [`Passes::resume`] goes on.
+    pub fn state(&self) -> State {
+        State::of(self.paths, &self.sums, &self.edges)
+    }
+
+    /// Goes on from the sums of an image of the same settings and part, as if its paths were those of this one. All paths
+    /// of the settings that are left are planned together.
+    pub fn resume(&mut self, state: &State) {
+        state.restore(&mut self.sums, &mut self.edges);
+        self.paths = state.paths;
+        self.plan(self.renderer.settings.paths_per_pixel.saturating_sub(self.paths));
     }
 
     /// The counts of some of the first paths, which are added to no sum. Paths that are numbered one after another are
@@ -234,7 +266,8 @@ impl<'a> Passes<'a> {
         Errors::of([self.part.width, self.part.height], self.sums.iter().zip(self.edges.iter().map(Option::as_deref)))
     }
 
-    pub fn finish(self) -> Rendered {
+    /// The image so far.
+    pub fn image(&self) -> Rendered {
         let pixels: Vec<Pixel> = (0..self.sums.len()).into_par_iter().map(|index| self.pixel(index)).collect();
         let bad = || pixels.iter().enumerate().filter(|(_, p)| !p.is_finite()).map(|(k, _)| k);
         let (non_finite, non_finite_count) = (bad().take(8).collect(), bad().count() as u64);
@@ -246,30 +279,6 @@ impl<'a> Passes<'a> {
 /// of pixels that were completed since its last call.
 pub fn render(input: &Input, settings: &Settings, progress: impl Fn(u64) + Sync) -> Rendered {
     let mut passes = Passes::new(input, settings);
-    passes.pass(settings.paths_per_pixel, progress);
-    passes.finish()
-}
-
-/// The translucent objects by the materials of the scene; none for opaque ones.
-fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<TranslucentObject<'a>>> {
-    let mut objects: Vec<Option<TranslucentObject>> = input.scene.materials.iter().map(|_| None).collect();
-    for (slot, (sampled, medium)) in shards::materials(input.clouds).iter().zip(input.media).enumerate() {
-        let near = || NearField::of_clouds(settings.model, medium, input.clouds, slot);
-        let near = settings.near_field.then(near).flatten();
-        let partition = near.as_ref().map_or(Partition::NONE, NearField::partition);
-        let scatterer = Arc::new(Scatterer::new(settings.model, medium, sampled.area_m2.sqrt()).far(partition));
-        let is_translucent = |material| shards::materials(input.clouds).iter().any(|m| m.index == material);
-        let walks = settings.reference.then(|| Walks::new(input, sampled.index, medium, is_translucent));
-        let extinction = || medium.map(|c| c.extinction());
-        objects[sampled.index as usize] = Some(TranslucentObject {
-            unscattered: if settings.reference { extinction() } else { settings.model.unscattered_extinction(medium) },
-            walks: walks.flatten(),
-            factors: input.calibration.map(|c| Factors::new(&c.materials[slot])),
-            lobe: settings.model.exit_lobe(medium),
-            summation: Summation::of_clouds(scatterer, input.clouds, slot),
-            near,
-            medium: medium.clone(),
-        });
-    }
-    objects
+    passes.pass(settings.paths_per_pixel, &progress);
+    passes.image()
 }

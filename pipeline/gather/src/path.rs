@@ -256,16 +256,22 @@ impl Renderer<'_> {
         }
     }
 
-    /// Normal, position and depth of what the ray meets first.
+    /// Normal, position, depth and material of what the ray meets first.
     pub fn guide(&self, origin: DVec3, direction: DVec3) -> Guide {
         let Some(hit) = self.input.rays.closest(origin, direction, None) else {
             return Guide::default();
         };
         let point = self.input.scene.mesh.point(hit.triangle, hit.weights, self.settings.normals);
+        let albedo = match &self.objects[point.material as usize] {
+            Some(object) => object.color,
+            None => self.input.scene.color(hit.triangle, hit.weights).truncate(),
+        };
         Guide {
             normal: point.normal,
             position: point.position + self.input.scene.origin,
             depth: hit.distance * direction.dot(self.input.camera.forward),
+            albedo,
+            id: u32::from(point.material) + 1,
         }
     }
 }

@@ -129,6 +129,10 @@ pub struct Guide {
     pub position: DVec3,
     /// Distance along the view direction, m.
     pub depth: f64,
+    /// Color of an opaque surface, or of the medium below a translucent one.
+    pub albedo: DVec3,
+    /// The number of its material, from 1.
+    pub id: u32,
 }
 
 impl PathLight {

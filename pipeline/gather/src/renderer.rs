@@ -41,6 +41,8 @@ pub struct Renderer<'a> {
 /// A translucent material with its medium and its samples.
 pub struct TranslucentObject<'a> {
     pub medium: Medium,
+    /// Color for compositors: what a half-space of the medium scatters back.
+    pub color: DVec3,
     /// Extinction `σ̃_t` of unscattered light, 1/m (docs/method.md 5.11).
     pub unscattered: [f64; 3],
     /// `a` and `b` of the light that leaves in proportion to `T21 (a + b μ)`, for each channel (docs/method.md 15.8).

@@ -1,6 +1,13 @@
 //! The metadata of an image: the attributes of its header, and its statistics.
 
-use crate::{image_jobs::ImageJob, settings::Request};
+use crate::{
+    Prepared,
+    adaptive::{End, Outcome},
+    arguments::ExtraLayer,
+    continuation,
+    image_jobs::ImageJob,
+    settings::Request,
+};
 use bssrdf::Medium;
 use cli::{LitScene, Seconds};
 use formats::{
@@ -8,7 +15,7 @@ use formats::{
     calibration::{CalibratedMaterial, Calibration},
     cloud::{hex, shards},
 };
-use gather::{Rendered, Settings, film};
+use gather::{Rendered, Settings, State, film};
 use std::collections::BTreeMap;
 use sums::drawn::DrawnCounts;
 
@@ -17,22 +24,34 @@ pub struct Facts<'a> {
     pub request: &'a Request,
     pub inputs: &'a LitScene,
     pub calibration: Option<&'a Calibration>,
+    /// The calibration of a file.
+    pub kept: Option<&'a Calibration>,
     pub job: &'a ImageJob,
     /// The settings of the job, with the number of paths that were rendered.
     pub settings: Settings,
     pub rendered: &'a Rendered,
+    pub end: End,
+    /// The sums of the image, if they are kept.
+    pub state: Option<&'a State>,
 }
 
 impl<'a> Facts<'a> {
     pub fn new(
-        request: &'a Request,
-        inputs: &'a LitScene,
+        (request, prepared): (&'a Request, &'a Prepared),
         calibration: Option<&'a Calibration>,
         job: &'a ImageJob,
-        rendered: &'a Rendered,
+        outcome: &'a Outcome,
     ) -> Facts<'a> {
-        let settings = Settings { paths_per_pixel: rendered.paths_per_pixel, ..job.settings.clone() };
-        Facts { request, inputs, calibration, job, settings, rendered }
+        let Outcome { rendered, end, state } = outcome;
+        let (planned, paths) = (job.settings.paths_per_pixel, rendered.paths_per_pixel);
+        let mut settings = Settings { paths_per_pixel: paths, ..job.settings.clone() };
+        if request.target_error.is_none() && paths != planned {
+            // What the cut may add to a gather is that of the planned paths.
+            let accuracy = continuation::of_gather(&job.settings, planned).map(|x| x / f64::from(paths).sqrt());
+            settings.estimator = settings.estimator.map_accuracy(|own| accuracy.unwrap_or(own));
+        }
+        let (inputs, kept, state) = (&prepared.inputs, prepared.kept.as_ref(), state.as_ref());
+        Facts { request, inputs, calibration, kept, job, settings, rendered, end: *end, state }
     }
 
     /// Attributes of the image's header. None depends on the machine or the threads, and only `capDate` on the time, by
@@ -79,6 +98,13 @@ impl<'a> Facts<'a> {
         put("pcsss/varianceCovers", text(self.covers()));
         let media = shards::materials(clouds).iter().zip(&self.inputs.media);
         put("pcsss/media", Attribute::Texts(media.map(|(m, medium)| describe(&m.name, medium)).collect()));
+        if self.request.outputs.layers.contains(&ExtraLayer::Id) {
+            let names = self.inputs.scene.materials.iter().enumerate();
+            put(
+                "pcsss/ids",
+                Attribute::Texts(names.map(|(k, material)| format!("{} {}", k + 1, material.name)).collect()),
+            );
+        }
         if !self.inputs.scene.warnings.is_empty() {
             put("pcsss/warnings", Attribute::Texts(self.inputs.scene.warnings.clone()));
         }
@@ -113,6 +139,8 @@ impl<'a> Facts<'a> {
             "threads": self.request.common.thread_count(),
             "pixels": rendered.pixels.len(),
             "paths": counts.paths,
+            "paths_per_pixel": rendered.paths_per_pixel,
+            "ended_by": self.end.name(),
             "gathers": counts.gathers,
             "near_points": counts.near_points,
             "near_rays": counts.near_rays,
@@ -189,7 +217,7 @@ fn model_error(material: &CalibratedMaterial) -> String {
 }
 
 /// A medium and its material in one line.
-fn describe(material: &str, medium: &Medium) -> String {
+pub fn describe(material: &str, medium: &Medium) -> String {
     let three = |[r, g, b]: [f64; 3]| format!("{r},{g},{b}");
     let [absorption, scattering, g] =
         [medium.map(|c| c.sigma_a), medium.map(|c| c.sigma_s), medium.map(|c| c.asymmetry)].map(three);

@@ -3,7 +3,7 @@
 use crate::settings::Request;
 use bssrdf::{Medium, Model};
 use cli::{LitScene, count_up};
-use formats::cloud::shards;
+use formats::cloud::{Cloud, shards};
 
 /// Samples that are farther apart than this many reduced mean free paths show as grain.
 const SPARSE: f64 = 3.0;
@@ -21,13 +21,16 @@ struct Object<'a> {
     diagonal: f64,
     /// Mean distance of its samples that carry light; infinite if none does.
     spacing: f64,
+    /// Whether no sample of any material carries light, of which `sample-surface` warned.
+    is_known_dark: bool,
     /// Samples drawn for the clouds, over all surfaces and with the unlit ones.
     drawn: u64,
     /// Largest rounding of its positions in float32.
     rounding: f64,
 }
 
-/// Prints the lengths of each medium and its object, and warns where they do not fit each other.
+/// Prints the lengths of each medium and its object, and warns where they do not fit each other: in three lines a
+/// material, unless all are asked for.
 pub fn show(request: &Request, inputs: &LitScene, model: Model) {
     let (common, clouds) = (&request.common, inputs.clouds());
     for (slot, (material, medium)) in shards::materials(clouds).iter().zip(&inputs.media).enumerate() {
@@ -36,25 +39,48 @@ pub fn show(request: &Request, inputs: &LitScene, model: Model) {
             material: &material.name,
             diagonal: (high - low).length(),
             spacing: (material.area_m2 / shards::count(clouds, slot) as f64).sqrt(),
+            is_known_dark: clouds.iter().all(Cloud::is_empty) && !request.verbose,
             drawn: shards::drawn(clouds),
             rounding: 0.5 * f64::from(f32::EPSILON) * low.abs().max(high.abs()).max_element(),
         };
-        lines(&object, medium, model.of(medium).transport()).iter().for_each(|line| common.say(line));
-        warnings(&object, medium, request).iter().for_each(|warning| common.warn(warning));
-        if let Some(errors) = model.poor_reflectance(medium).filter(|_| !request.reference) {
+        let reflects = model.poor_reflectance(medium).filter(|_| !request.reference).map(|errors| {
             let [r, g, b] = errors.map(|e| format!("{:+.0}", 100.0 * e));
-            common.say(format_args!(
-                "  {} reflects {r} {g} {b} % more than {} does (red, green, blue; docs/reports/accuracy.md)",
-                model.name(),
-                medium.name
-            ));
+            let (model, medium) = (model.name(), &medium.name);
+            format!(
+                "  {model} reflects {r} {g} {b} % more than {medium} does (red, green, blue; docs/reports/accuracy.md)"
+            )
+        });
+        let warnings = warnings(&object, medium, request);
+        if request.verbose {
+            lines(&object, medium, model.of(medium).transport()).iter().for_each(|line| common.say(line));
+        } else {
+            common.say(line(&object, medium));
+        }
+        warnings.iter().for_each(|warning| common.warn(warning));
+        if let Some(reflects) = reflects.filter(|_| request.verbose || warnings.len() < LINES - 1) {
+            common.say(reflects);
         }
     }
 }
 
+/// Lines that a material has at most, its warnings included, unless all of them are asked for.
+const LINES: usize = 3;
+
+/// The medium and the lengths that matter most, in one line.
+fn line(object: &Object, medium: &Medium) -> String {
+    let [path, size, apart] = [three(medium.mean_free_path()), length(object.diagonal), length(object.spacing)];
+    format!(
+        "material `{}`: {} (eta {}), mean free path {path}; object {size}, samples {apart} apart",
+        object.material, medium.name, medium.eta
+    )
+}
+
+fn three(lengths: [f64; 3]) -> String {
+    lengths.map(length).join(" ")
+}
+
 /// The medium and its lengths; `transport` is `σ_tr`, 1/m.
 fn lines(object: &Object, medium: &Medium, transport: [f64; 3]) -> [String; 6] {
-    let three = |v: [f64; 3]| v.map(length).join(" ");
     [
         format!("material `{}`: {} (eta {})", object.material, medium.name, medium.eta),
         format!("  sigma_a, 1/m     {}", coefficients(medium.map(|c| c.sigma_a))),
@@ -66,7 +92,7 @@ fn lines(object: &Object, medium: &Medium, transport: [f64; 3]) -> [String; 6] {
 }
 
 fn warnings(object: &Object, medium: &Medium, request: &Request) -> Vec<String> {
-    let Object { material, diagonal, spacing, drawn, rounding } = *object;
+    let Object { material, diagonal, spacing, drawn, rounding, is_known_dark } = *object;
     let shortest = |lengths: [f64; 3]| lengths.into_iter().fold(f64::INFINITY, f64::min);
     let free_path = shortest(medium.mean_free_path());
     let reduced = shortest(medium.map(|c| 1.0 / c.reduced_extinction()));
@@ -84,6 +110,8 @@ fn warnings(object: &Object, medium: &Medium, request: &Request) -> Vec<String> 
         ));
     } else if request.reference {
         // The samples do not count.
+    } else if spacing == f64::INFINITY && is_known_dark {
+        // It was said.
     } else if spacing == f64::INFINITY {
         warnings.push(format!("`{material}`: none of its samples carries light: it will show no scattered light"));
     } else if spacing > SPARSE * reduced && !request.estimator.is_hierarchical() {

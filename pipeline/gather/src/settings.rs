@@ -1,10 +1,13 @@
 //! The task of the program: the arguments, checked, before any file is read.
 
-use crate::arguments::Arguments;
+use crate::arguments::{Arguments, ExtraLayer};
 use bssrdf::Model;
 use cli::{Common, Failure, SceneSettings};
 use gather::{Crop, Filter, estimator::Estimator};
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    time::Duration,
+};
 
 /// The task of the program.
 pub enum Task {
@@ -46,14 +49,22 @@ pub struct Request {
     pub model: Option<Model>,
     pub calibration: CalibrationSource,
     pub estimator: Estimator,
+    /// The accuracy that was given.
+    pub accuracy: Option<f64>,
     /// Random walks instead of model and estimator.
     pub reference: bool,
-    /// Paths per pixel; with a target error, the largest number.
+    /// Paths per pixel, without those of an image that is continued; with a target error, the largest number.
     pub paths: u32,
     pub target_error: Option<f64>,
+    pub time_limit: Option<Duration>,
+    /// The image to which paths are added.
+    pub continued: Option<PathBuf>,
     pub filter: Filter,
     pub max_depth: u32,
     pub outputs: Outputs,
+    /// Where a viewer listens.
+    pub display: Option<String>,
+    pub verbose: bool,
     pub common: Common,
 }
 
@@ -80,6 +91,9 @@ pub struct Outputs {
     /// Exposure of the preview, in powers of two.
     pub exposure: f64,
     pub stats: Option<PathBuf>,
+    /// Whether the sums are kept beside the image, so that it can be continued.
+    pub keeps_sums: bool,
+    pub layers: Vec<ExtraLayer>,
     /// Whether the files may hold times, which differ from run to run.
     pub timings: bool,
 }
@@ -130,7 +144,11 @@ fn request(arguments: Arguments, scene: PathBuf, image: PathBuf) -> Result<Reque
         (true, true) => MAX_REFERENCE_PATHS,
     };
     let paths = arguments.spp.unwrap_or(default);
+    if paths == 1 && (arguments.keep_sums || arguments.continued.is_some()) {
+        return Err(Failure::usage("--spp: one path has no second half to go on with; give 2 or more"));
+    }
     Ok(Request {
+        accuracy: arguments.accuracy,
         estimator: estimator(&arguments, paths)?,
         clouds: arguments.files,
         scene: SceneSettings { path: scene, how: arguments.scene_args },
@@ -144,6 +162,7 @@ fn request(arguments: Arguments, scene: PathBuf, image: PathBuf) -> Result<Reque
         reference: arguments.reference,
         paths,
         target_error: arguments.target_error,
+        time_limit: arguments.time_limit,
         filter: arguments.filter,
         max_depth: arguments.max_depth,
         outputs: Outputs {
@@ -151,8 +170,13 @@ fn request(arguments: Arguments, scene: PathBuf, image: PathBuf) -> Result<Reque
             preview: arguments.preview,
             exposure: arguments.exposure,
             stats: arguments.stats,
+            keeps_sums: arguments.keep_sums || arguments.continued.is_some(),
+            layers: arguments.layers,
             timings: !arguments.no_timings,
         },
+        continued: arguments.continued,
+        display: arguments.display,
+        verbose: arguments.verbose,
         common: arguments.common,
     })
 }
@@ -170,13 +194,18 @@ fn calibration(argument: Option<PathBuf>) -> CalibrationSource {
 /// squared error times the time is then 1 to 2.5 times the least.
 const BALANCED: f64 = 0.02;
 
+/// The accuracy of the cut that goes with the noise of so many paths.
+pub fn balanced(paths: u32) -> f64 {
+    let least = Estimator::ALL.iter().find_map(|estimator| estimator.accuracy()).unwrap_or(1.0);
+    least.min(BALANCED / f64::from(paths).sqrt())
+}
+
 /// The estimator of this name with the parameters that were given, for so many paths per pixel.
 fn estimator(arguments: &Arguments, paths: u32) -> Result<Estimator, Failure> {
     match arguments.estimator {
-        Estimator::Cut { accuracy } => {
-            let balanced = accuracy.min(BALANCED / f64::from(paths).sqrt());
+        Estimator::Cut { .. } => {
             // The cut may add half of the target error, which is a quarter of its square.
-            let default = arguments.target_error.map_or(balanced, |target| 0.5 * target);
+            let default = arguments.target_error.map_or_else(|| balanced(paths), |target| 0.5 * target);
             Ok(Estimator::Cut { accuracy: arguments.accuracy.unwrap_or(default) })
         }
         _ if arguments.accuracy.is_some() => {

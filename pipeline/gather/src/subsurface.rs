@@ -138,6 +138,14 @@ impl Renderer<'_> {
     pub fn estimator_for(&self, share: f64) -> Estimator {
         let sums =
             if self.gathers_by_shard() { f64::from(self.paths_per_pixel) } else { 2.0 * self.drawn.shards() as f64 };
-        self.settings.estimator.map_accuracy(|accuracy| (accuracy * sums.sqrt() / share.max(1e-3)).min(MAX_ERROR))
+        let of_sum = |accuracy: f64| rounded(accuracy * sums.sqrt());
+        self.settings.estimator.map_accuracy(|accuracy| (of_sum(accuracy) / share.max(1e-3)).min(MAX_ERROR))
     }
+}
+
+/// An accuracy without its last digits, so that it is the same for any number of paths whose pixels were given the
+/// accuracy that goes with their number: an image that is continued takes the same nodes.
+fn rounded(accuracy: f64) -> f64 {
+    const UNIT: f64 = (1u64 << 40) as f64;
+    (accuracy * UNIT).round().max(1.0) / UNIT
 }

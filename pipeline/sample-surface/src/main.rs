@@ -9,14 +9,13 @@ mod settings;
 mod surfaces;
 
 use arguments::Arguments;
-use clap::Parser;
 use cli::{Failure, Seconds, material_table};
 use formats::{atomic::Group, write_ply};
 use inputs::Inputs;
 use settings::{Request, Task};
 
 fn main() {
-    let arguments = Arguments::parse();
+    let arguments: Arguments = cli::parse();
     cli::run("sample-surface", || {
         match Task::of(arguments)? {
             Task::ListMaterials { scene, common } => cli::print(&material_table(&scene.import(&common)?)?)?,

@@ -1,7 +1,10 @@
 //! The programs as users start them.
 
+mod at_hand;
 mod bad_input;
+mod continued;
 mod crops;
+mod display;
 mod environment;
 mod faults;
 mod guide;

@@ -100,7 +100,7 @@ fn counts_are_printed_as_they_are_written() {
         let (before, _) = text.split_once(unit).unwrap_or_else(|| panic!("{unit}: {text}"));
         before.rsplit([' ', '\n']).next().expect("a word").to_owned()
     };
-    let words = [before(&said, " gathers"), before(&said, " BSSRDF evaluations"), before(&said, " pixels")];
+    let words = [before(&said, " gathers"), before(&said, " BSSRDF evaluations"), before(&said, " paths")];
     let needed = said.split_once("with --samples ").expect("the cloud is too small").1;
     for word in words.into_iter().chain(needed.lines().next().map(str::to_owned)) {
         assert!(parse_count(&word).is_ok_and(|n| n > 0) && !word.contains('e'), "{word}: {said}");

@@ -20,7 +20,7 @@ fn subsurface_parameters() {
     let bench = Bench::new();
     let scene = bench.slab("medium.gltf", with_medium);
     sample(&bench, &scene, &[]);
-    let said = gather(&bench, &scene, &[]);
+    let said = gather(&bench, &scene, &["--verbose"]);
     // ln 2 / 2 mm, of which the albedo 0.9117 scatters; the index 1.3 is the file's.
     for words in
         ["KHR_materials_volume_scatter (eta 1.3)", "sigma_a, 1/m     3.0599e1", "sigma_s, 1/m     3.1597e2", "g 0.25"]

@@ -2,6 +2,7 @@
 
 mod calibrations;
 mod clean;
+mod install;
 mod pictures;
 mod truth;
 

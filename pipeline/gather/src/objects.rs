@@ -1,0 +1,49 @@
+//! The translucent objects of an image, prepared for its paths.
+
+use crate::{
+    image::{Input, Settings},
+    reference::Walks,
+    renderer::TranslucentObject,
+};
+use bssrdf::{Medium, Partition};
+use calibration::Factors;
+use formats::cloud::shards;
+use near_field::NearField;
+use scene::DVec3;
+use std::sync::Arc;
+use sums::{Summation, estimator::Scatterer};
+
+/// The translucent objects by the materials of the scene; none for opaque ones.
+pub fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<TranslucentObject<'a>>> {
+    let mut objects: Vec<Option<TranslucentObject>> = input.scene.materials.iter().map(|_| None).collect();
+    for (slot, (sampled, medium)) in shards::materials(input.clouds).iter().zip(input.media).enumerate() {
+        let near = || NearField::of_clouds(settings.model, medium, input.clouds, slot);
+        let near = settings.near_field.then(near).flatten();
+        let partition = near.as_ref().map_or(Partition::NONE, NearField::partition);
+        let scatterer = Arc::new(Scatterer::new(settings.model, medium, sampled.area_m2.sqrt()).far(partition));
+        let is_translucent = |material| shards::materials(input.clouds).iter().any(|m| m.index == material);
+        let walks = settings.reference.then(|| Walks::new(input, sampled.index, medium, is_translucent));
+        let extinction = || medium.map(|c| c.extinction());
+        objects[sampled.index as usize] = Some(TranslucentObject {
+            unscattered: if settings.reference { extinction() } else { settings.model.unscattered_extinction(medium) },
+            walks: walks.flatten(),
+            factors: input.calibration.map(|c| Factors::new(&c.materials[slot])),
+            lobe: settings.model.exit_lobe(medium),
+            summation: Summation::of_clouds(scatterer, input.clouds, slot),
+            near,
+            color: color_of(medium),
+            medium: medium.clone(),
+        });
+    }
+    objects
+}
+
+/// The share of light that a half-space of the medium would scatter back, without its interface: Kulla and Conty, 2017,
+/// by the reduced albedo.
+fn color_of(medium: &Medium) -> DVec3 {
+    let color = |albedo: f64| {
+        let s = (1.0 - albedo).max(0.0).sqrt();
+        (1.0 - s) * (1.0 - 0.139 * s) / (1.0 + 1.17 * s)
+    };
+    DVec3::from_array(medium.map(|c| color(c.reduced_albedo())))
+}

@@ -1,0 +1,127 @@
+//! The sums over the paths of one pixel, with its mean and variance.
+
+use crate::{
+    edge::Edge,
+    film::Pixel,
+    path_state::{Guide, Layer, Layers, PathLight},
+};
+use scene::DVec3;
+
+/// Sums over the paths of one pixel.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PixelSum {
+    layers: Layers,
+    count: f64,
+    /// Sums over the even and over the odd paths; each path counts as its own half of the cloud estimates it.
+    halves: [DVec3; 2],
+    /// Sums of the squares of the same values.
+    squares: [DVec3; 2],
+    pub(crate) counts: [f64; 2],
+}
+
+impl PixelSum {
+    /// Adds a path. The only path of a pixel counts for both halves.
+    pub fn add(&mut self, index: u32, alone: bool, path: &PathLight) {
+        self.layers.iter_mut().zip(&path.layers).for_each(|(sum, x)| *sum += x);
+        self.count += 1.0;
+        for half in 0..2 {
+            if alone || index as usize % 2 == half {
+                self.halves[half] += path.halves[half];
+                self.squares[half] += path.halves[half] * path.halves[half];
+                self.counts[half] += 1.0;
+            }
+        }
+    }
+
+    /// How many numbers the sums consist of, without those that follow from the number of paths.
+    pub(crate) const NUMBERS: usize = 27;
+
+    /// The sums as numbers.
+    pub(crate) fn numbers(&self) -> [f64; PixelSum::NUMBERS] {
+        let mut vectors = self.layers.iter().chain(&self.halves).chain(&self.squares).flat_map(|v| v.to_array());
+        std::array::from_fn(|_| vectors.next().unwrap_or_default())
+    }
+
+    /// The sums of so many paths, at least two, from their numbers.
+    pub(crate) fn from_numbers(paths: u32, numbers: [f64; PixelSum::NUMBERS]) -> PixelSum {
+        let vector = |k: usize| DVec3::new(numbers[3 * k], numbers[3 * k + 1], numbers[3 * k + 2]);
+        PixelSum {
+            layers: std::array::from_fn(vector),
+            count: f64::from(paths),
+            halves: [5, 6].map(vector),
+            squares: [7, 8].map(vector),
+            counts: [paths.div_ceil(2), paths / 2].map(f64::from),
+        }
+    }
+
+    /// The light of the pixel, W/(m² sr).
+    pub(crate) fn light(&self, edge: Option<&Edge>) -> DVec3 {
+        self.layers(edge).iter().sum()
+    }
+
+    /// The difference of the means of the two halves.
+    pub(crate) fn difference(&self, edge: Option<&Edge>) -> DVec3 {
+        let mean = |half: usize| self.halves[half] / self.counts[half];
+        let [even, odd] = [0, 1].map(|half| mean(half) + edge.map_or(DVec3::ZERO, |e| e.correction(half)));
+        even - odd
+    }
+
+    /// Two estimates of the pixel's variance: from the difference of the halves, which includes the error of the cloud,
+    /// and from the variance of the paths within each half. The second expects the paths' part of the first if paths
+    /// are independent, and more than that if they are stratified.
+    pub(crate) fn variances(&self, edge: Option<&Edge>) -> [DVec3; 2] {
+        let mean = |half: usize| self.halves[half] / self.counts[half];
+        let difference = self.difference(edge);
+        let within = [0, 1].map(|half| {
+            let n = self.counts[half];
+            let (of_mean, of_square) = edge.map_or((DVec3::ZERO, DVec3::ZERO), |e| e.removed(half));
+            let rest = mean(half) - of_mean;
+            (self.squares[half] / n - of_square - rest * rest).max(DVec3::ZERO) / (n - 1.0).max(1.0)
+        });
+        // Each half of an edge takes its factor from the other, which correlates the two.
+        let together = edge.map_or(DVec3::ZERO, |e| e.correction(0) * e.correction(1));
+        [difference * difference / 4.0 + together, (within[0] + within[1]) / 4.0]
+    }
+
+    /// Mean light of each layer.
+    pub(crate) fn layers(&self, edge: Option<&Edge>) -> Layers {
+        let mut layers = self.layers.map(|sum| sum / self.count);
+        if let Some(edge) = edge {
+            let corrections = [0, 1].map(|half| edge.correction(half) * self.counts[half] / self.count);
+            layers[Layer::Subsurface as usize] += corrections[0] + corrections[1];
+        }
+        layers
+    }
+
+    /// The finished pixel. The halves have the same expectation, so a quarter of the squared difference estimates the
+    /// variance of their mean if they are independent; at edges their covariance is that of their corrections.
+    pub fn pixel(&self, edge: Option<&Edge>, guide: Guide) -> Pixel {
+        Pixel::new(self.layers(edge), self.variances(edge)[0], guide)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mean_and_variance_of_four_paths() {
+        let mut sum = PixelSum::default();
+        for (index, x) in [1.0, 2.0, 3.0, 6.0].into_iter().enumerate() {
+            let mut path = PathLight { halves: [DVec3::splat(x), DVec3::splat(-x)], ..PathLight::default() };
+            path.layers[Layer::Subsurface as usize] = DVec3::splat(x);
+            sum.add(index as u32, false, &path);
+        }
+        let pixel = sum.pixel(None, Guide::default());
+        assert_eq!(pixel.beauty(), DVec3::splat(3.0));
+        // Even paths have the mean 2, odd ones, by their half, −4.
+        assert_eq!(pixel.variance(), DVec3::splat(9.0));
+    }
+
+    #[test]
+    fn one_path_estimates_the_error_of_the_cloud() {
+        let mut sum = PixelSum::default();
+        sum.add(0, true, &PathLight { halves: [DVec3::splat(2.0), DVec3::splat(3.0)], ..PathLight::default() });
+        assert_eq!(sum.pixel(None, Guide::default()).variance(), DVec3::splat(0.25));
+    }
+}
