@@ -2,13 +2,15 @@
 
 use super::{
     fault::{Result, get},
+    features,
     files::{self, Files},
+    foreign,
     survey::Survey,
+    text::{Animation, Text},
     transform::NodeTransform,
 };
 use crate::error::SceneError;
 use gltf::json::{self, Index, buffer::View};
-use serde::Deserialize;
 use std::{cell::RefCell, collections::BTreeMap, ops::Range, path::Path, rc::Rc};
 
 /// A parsed file with its buffers. Its content is not checked yet.
@@ -16,12 +18,13 @@ pub(super) struct Document {
     /// The file itself and the files that it names.
     pub files: RefCell<Files>,
     pub root: json::Root,
+    pub animations: Vec<Animation>,
     /// The transform of each node.
     pub transforms: Vec<NodeTransform>,
-    /// Length of the file or of its longest buffer, bytes.
-    pub longest: usize,
     /// Properties of the file that are not honoured.
     pub survey: Survey,
+    /// Length of the file or of its longest buffer, bytes.
+    pub longest: usize,
     bytes: Vec<u8>,
     buffers: Vec<Buffer>,
 }
@@ -43,12 +46,6 @@ impl Buffer {
     }
 }
 
-#[derive(Deserialize)]
-struct Transforms {
-    #[serde(default)]
-    nodes: Vec<NodeTransform>,
-}
-
 impl Document {
     pub fn read(path: &Path) -> Result<Document, SceneError> {
         let bytes = files::read(path).map_err(|source| SceneError::Read { path: path.to_owned(), source })?;
@@ -56,23 +53,26 @@ impl Document {
     }
 
     fn parse(bytes: Vec<u8>, path: &Path) -> Result<Document> {
+        if let Some(what) = foreign::name(&bytes, path) {
+            return Err(what);
+        }
         let whole = 0..bytes.len();
         let (text, chunk) = if bytes.starts_with(b"glTF") { split_glb(&bytes)? } else { (whole, None) };
         let text = &bytes[text];
         let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text); // Some editors write a byte order mark.
-        let not_gltf = |e: json::Error| format!("not a glTF file (.glb or .gltf): {e}");
-        let root: json::Root = json::deserialize::from_slice(text).map_err(not_gltf)?;
-        let transforms: Transforms = json::deserialize::from_slice(text).map_err(not_gltf)?;
-        let survey: Survey = json::deserialize::from_slice(text).map_err(not_gltf)?;
-        check_version(&root.asset)?;
+        let text = Text::parse(text)?;
+        check_version(&text.root.asset)?;
+        // What the file needs is said before what is missing without it.
+        features::check(&text)?;
         let mut files = Files::new(path);
-        let mut buffers = Vec::with_capacity(root.buffers.len());
-        for (k, buffer) in root.buffers.iter().enumerate() {
+        let mut buffers = Vec::with_capacity(text.root.buffers.len());
+        for (k, buffer) in text.root.buffers.iter().enumerate() {
             buffers.push(locate(k, buffer, chunk.clone(), &mut files)?);
         }
         let longest = buffers.iter().map(Buffer::len).fold(bytes.len(), usize::max);
         let files = RefCell::new(files);
-        Ok(Document { files, root, transforms: transforms.nodes, survey, longest, bytes, buffers })
+        let Text { root, animations, transforms, survey } = text;
+        Ok(Document { files, root, animations, transforms, survey, longest, bytes, buffers })
     }
 
     /// The first `byteLength` bytes of a buffer.
@@ -157,7 +157,9 @@ fn split_glb(bytes: &[u8]) -> Result<(Range<usize>, Option<Range<usize>>)> {
     if &kind != b"JSON" {
         return Err(format!("the first chunk of the .glb is `{}`, not `JSON`", kind.escape_ascii()));
     }
-    let second = text.end.next_multiple_of(4);
+    // Some writers leave the padding out.
+    let unpadded = chunk_at(bytes, text.end).is_ok_and(|(kind, _)| &kind == b"BIN\0");
+    let second = if unpadded { text.end } else { text.end.next_multiple_of(4) };
     if second >= length {
         return Ok((text, None));
     }

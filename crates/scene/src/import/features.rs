@@ -1,6 +1,6 @@
 //! Features that are not supported: an error where the image would be wrong, else a warning.
 
-use super::{container::Document, fault::Result, honoured, nodes::SceneNode};
+use super::{container::Document, fault::Result, honoured, nodes::SceneNode, text::Text};
 use crate::unhonoured::{Holder, Unhonoured, first_of, quoted};
 use gltf::json;
 use std::collections::BTreeSet;
@@ -29,8 +29,8 @@ const GEOMETRY: &[(&str, &str)] = &[
 ];
 
 /// Refuses required extensions that are unknown, and used ones that change the geometry, declared or not.
-pub(super) fn check(document: &Document) -> Result<()> {
-    let root = &document.root;
+pub(super) fn check(text: &Text) -> Result<()> {
+    let root = &text.root;
     for name in &root.extensions_required {
         if !SUPPORTED.contains(&name.as_str()) {
             let hint = GEOMETRY.iter().find(|(n, _)| n == name).map_or("export again without it", |(_, hint)| hint);
@@ -38,7 +38,7 @@ pub(super) fn check(document: &Document) -> Result<()> {
         }
     }
     for (name, hint) in GEOMETRY {
-        if root.extensions_used.iter().chain(&document.survey.extensions).any(|n| n == name) {
+        if root.extensions_used.iter().chain(&text.survey.extensions).any(|n| n == name) {
             return Err(format!("extensionsUsed: {name} is not supported; {hint}"));
         }
     }
@@ -66,7 +66,8 @@ pub(super) fn undeclared_effects(document: &Document) -> Vec<Unhonoured> {
 const NAMED: usize = 3;
 
 /// Refuses poses that are not baked into the mesh: skins, morph targets, and animations of a mesh or its ancestors.
-pub(super) fn check_nodes(root: &json::Root, nodes: &[SceneNode], warnings: &mut Vec<String>) -> Result<()> {
+pub(super) fn check_nodes(document: &Document, nodes: &[SceneNode], warnings: &mut Vec<String>) -> Result<()> {
+    let root = &document.root;
     const BAKE: &str = "apply the pose to the mesh and export again";
     // Once for each mesh, for any number of nodes.
     let morphs = |p: &json::mesh::Primitive| p.targets.as_ref().is_some_and(|t| !t.is_empty());
@@ -84,9 +85,9 @@ pub(super) fn check_nodes(root: &json::Root, nodes: &[SceneNode], warnings: &mut
     }
     let moves_a_mesh = above_meshes(root);
     let mut unused = Vec::new();
-    for (k, animation) in root.animations.iter().enumerate() {
+    for (k, animation) in document.animations.iter().enumerate() {
         let name = animation.name.clone().unwrap_or_else(|| format!("animation{k}"));
-        let targets = animation.channels.iter().map(|c| c.target.node.value());
+        let targets = animation.channels.iter().filter_map(|c| Some(c.target.node.as_ref()?.value()));
         if let Some(node) = targets.into_iter().find(|n| moves_a_mesh.get(*n) == Some(&true)) {
             return Err(format!("animation `{name}` moves a mesh (node {node}), which is not supported; {BAKE}"));
         }

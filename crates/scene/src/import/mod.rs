@@ -12,6 +12,7 @@ mod duplicates;
 mod fault;
 mod features;
 pub(crate) mod files;
+mod foreign;
 mod geometry;
 mod honoured;
 mod jpeg;
@@ -21,6 +22,7 @@ mod nodes;
 mod options;
 mod primitive;
 mod survey;
+mod text;
 mod textures;
 mod transform;
 mod unhonoured;
@@ -74,9 +76,8 @@ impl Scene {
 fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal> {
     let root = &document.root;
     let mut warnings = Vec::new();
-    features::check(document)?;
-    let nodes = nodes::in_world(document, options.metres_per_unit)?;
-    features::check_nodes(root, &nodes, &mut warnings)?;
+    let nodes = nodes::in_world(document, options.metres_per_unit, &mut warnings)?;
+    features::check_nodes(document, &nodes, &mut warnings)?;
     let mut materials = materials::read(document, options, &mut warnings)?;
     let Geometry { mut mesh, origin, degenerate, rounded } = geometry(document, &nodes, &mut warnings)?;
     if mesh.triangles.iter().any(|t| usize::from(t.material) == materials.len()) {

@@ -9,6 +9,7 @@ mod identity;
 mod import;
 mod import_faults;
 mod import_files;
+mod import_formats;
 mod import_lights;
 mod import_quantized;
 mod import_textures;
