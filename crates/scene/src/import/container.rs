@@ -4,14 +4,20 @@ use super::{
     fault::{Result, get},
     features,
     files::{self, Files},
-    foreign,
+    foreign, meshopt,
     survey::Survey,
     text::{Animation, Text},
     transform::NodeTransform,
 };
 use crate::error::SceneError;
 use gltf::json::{self, Index, buffer::View};
-use std::{cell::RefCell, collections::BTreeMap, ops::Range, path::Path, rc::Rc};
+use std::{
+    cell::{Cell, OnceCell, RefCell},
+    collections::BTreeMap,
+    ops::Range,
+    path::Path,
+    rc::Rc,
+};
 
 /// A parsed file with its buffers. Its content is not checked yet.
 pub(super) struct Document {
@@ -27,7 +33,17 @@ pub(super) struct Document {
     pub longest: usize,
     bytes: Vec<u8>,
     buffers: Vec<Buffer>,
+    /// The bytes of compressed buffer views, once they were needed.
+    decoded: Vec<OnceCell<Vec<u8>>>,
+    /// Bytes that may still be decoded.
+    room: Cell<u64>,
 }
+
+/// The most memory that compressed geometry may need for each byte of the file's buffers. Without this limit, a short
+/// file could need any memory. Streams of meshopt reach 64, those of Draco rarely 40.
+const EXPANSION: u64 = 64;
+/// The most memory that compressed geometry of any file may need, bytes.
+const FREE: u64 = 16 << 20;
 
 /// The bytes of a buffer.
 enum Buffer {
@@ -35,6 +51,8 @@ enum Buffer {
     Chunk(Range<usize>),
     /// A file or a data URI, and the length of the buffer. Buffers that name the same file share it.
     Loaded(Rc<Vec<u8>>, usize),
+    /// Stands for what is compressed elsewhere.
+    Absent,
 }
 
 impl Buffer {
@@ -42,6 +60,7 @@ impl Buffer {
         match self {
             Buffer::Chunk(range) => range.len(),
             Buffer::Loaded(_, length) => *length,
+            Buffer::Absent => 0,
         }
     }
 }
@@ -67,12 +86,31 @@ impl Document {
         let mut files = Files::new(path);
         let mut buffers = Vec::with_capacity(text.root.buffers.len());
         for (k, buffer) in text.root.buffers.iter().enumerate() {
-            buffers.push(locate(k, buffer, chunk.clone(), &mut files)?);
+            // Buffers that stand for what is compressed need not be there.
+            let is_needless = buffer.uri.is_none() && (k > 0 || chunk.is_none()) && is_compressed(&text);
+            let chunk = chunk.clone();
+            buffers.push(if is_needless { Buffer::Absent } else { locate(k, buffer, chunk, &mut files)? });
         }
         let longest = buffers.iter().map(Buffer::len).fold(bytes.len(), usize::max);
         let files = RefCell::new(files);
         let Text { root, animations, transforms, survey } = text;
-        Ok(Document { files, root, animations, transforms, survey, longest, bytes, buffers })
+        let decoded = vec![OnceCell::new(); root.buffer_views.len()];
+        let room = Cell::new(0);
+        let document = Document { files, root, animations, transforms, survey, longest, bytes, buffers, decoded, room };
+        document.room.set(document.buffer_bytes().saturating_mul(EXPANSION).saturating_add(FREE));
+        Ok(document)
+    }
+
+    /// Bytes of compressed geometry that may still be decoded.
+    pub fn room(&self) -> u64 {
+        self.room.get()
+    }
+
+    /// Takes decoded bytes off that limit.
+    pub fn spend(&self, bytes: u64) -> Result<()> {
+        let left = self.room.get().checked_sub(bytes);
+        self.room.set(left.ok_or("the compressed geometry is too large for the length of the file")?);
+        Ok(())
     }
 
     /// The first `byteLength` bytes of a buffer.
@@ -80,6 +118,7 @@ impl Document {
         match self.buffers.get(index)? {
             Buffer::Chunk(range) => self.bytes.get(range.clone()),
             Buffer::Loaded(data, length) => data.get(..*length),
+            Buffer::Absent => None,
         }
     }
 
@@ -93,12 +132,29 @@ impl Document {
         longest_at.values().map(|length| *length as u64).sum()
     }
 
-    /// The bytes of a buffer view.
+    /// The bytes of a buffer view, decoded if they are compressed.
     pub fn view(&self, index: &Index<View>) -> Result<&[u8]> {
         let view = get(&self.root.buffer_views, index, "bufferView")?;
-        let buffer = view.buffer.value();
+        let Some(compressed) = meshopt::Compressed::of(view)? else {
+            let (start, length) = (view.byte_offset.map_or(0, |o| o.0), view.byte_length.0);
+            return self.range(view.buffer.value(), start, length);
+        };
+        let cell = self.decoded.get(index.value()).ok_or("bufferView: out of range")?;
+        if cell.get().is_none() {
+            self.spend(compressed.decoded_bytes())?;
+            let stream = self.range(compressed.buffer, compressed.byte_offset, compressed.byte_length)?;
+            // It was empty.
+            _ = cell.set(compressed.decode(stream).map_err(|e| format!("bufferViews[{}]: {e}", index.value()))?);
+        }
+        Ok(cell.get().map_or(&[], Vec::as_slice))
+    }
+
+    /// Bytes of a buffer.
+    fn range(&self, buffer: usize, start: u64, length: u64) -> Result<&[u8]> {
+        if matches!(self.buffers.get(buffer), Some(Buffer::Absent)) {
+            return Err(format!("buffers[{buffer}] has no uri and the file no binary chunk for it"));
+        }
         let data = self.buffer(buffer).ok_or_else(|| format!("bufferView.buffer {buffer} is out of range"))?;
-        let (start, length) = (view.byte_offset.map_or(0, |o| o.0), view.byte_length.0);
         part(data, start, length).ok_or_else(|| {
             let have = data.len();
             format!("the bufferView (bytes {start} + {length}) exceeds its buffer of {have} bytes")
@@ -120,6 +176,11 @@ fn check_version(asset: &json::Asset) -> Result<()> {
         Some(version) if version != "2.0" => Err(format!("asset.minVersion is `{version}`; only 2.0 is supported")),
         _ => Ok(()),
     }
+}
+
+/// Whether the file declares compressed buffer views.
+fn is_compressed(text: &Text) -> bool {
+    text.root.extensions_used.iter().chain(&text.survey.extensions).any(|n| meshopt::NAMES.contains(&n.as_str()))
 }
 
 /// Finds the bytes of buffer `k`, and checks their number.

@@ -3,6 +3,7 @@
 use super::{
     container::Document,
     fault::{Result, get},
+    transform::NodeTransform,
 };
 use crate::unhonoured::quoted;
 use glam::{DMat4, DVec3};
@@ -18,9 +19,10 @@ pub(super) struct SceneNode<'a> {
     pub transform: DMat4,
 }
 
-/// The nodes of the default scene with their world transforms.
+/// The nodes of the default scene with their world transforms, from those to their parents.
 pub(super) fn in_world<'a>(
     document: &'a Document,
+    transforms: &[NodeTransform],
     metres_per_unit: f64,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<SceneNode<'a>>> {
@@ -30,7 +32,7 @@ pub(super) fn in_world<'a>(
     let mut seen = vec![false; root.nodes.len()];
     let mut placed = Vec::new();
     while let Some((index, parent)) = stack.pop() {
-        let (Some(node), Some(own)) = (root.nodes.get(index), document.transforms.get(index)) else {
+        let (Some(node), Some(own)) = (root.nodes.get(index), transforms.get(index)) else {
             return Err(format!("node index {index} is out of range, there are {}", root.nodes.len()));
         };
         let name = node.name.clone().unwrap_or_else(|| format!("node{index}"));

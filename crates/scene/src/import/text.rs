@@ -6,6 +6,7 @@
 use super::{fault::Result, survey::Survey, transform::NodeTransform};
 use gltf::json::{
     self, Index,
+    animation::Sampler,
     extensions::root,
     scene::{Node, Scene},
 };
@@ -22,16 +23,19 @@ pub(super) struct Text {
     pub survey: Survey,
 }
 
-/// A list of channels, each of which moves a property of a node.
+/// A list of channels, each of which moves one property of one node.
 #[derive(Deserialize)]
 pub(super) struct Animation {
     pub name: Option<String>,
     #[serde(default)]
     pub channels: Vec<Channel>,
+    #[serde(default)]
+    pub samplers: Vec<Sampler>,
 }
 
 #[derive(Deserialize)]
 pub(super) struct Channel {
+    pub sampler: Index<Sampler>,
     pub target: Target,
 }
 
@@ -39,6 +43,8 @@ pub(super) struct Channel {
 #[derive(Deserialize)]
 pub(super) struct Target {
     pub node: Option<Index<Node>>,
+    #[serde(default)]
+    pub path: String,
 }
 
 /// A list of nodes, which may be missing.
