@@ -65,9 +65,16 @@ impl CloudFiles {
         option("--metres-per-unit", &settings.how.metres_per_unit, &options.metres_per_unit)
             .or_else(|| option("--light-unit", &settings.how.light_unit, &options.light_unit))
             .or_else(|| option("--emission-unit", &settings.emission_unit(), &options.emission_unit))
+            .or_else(|| pose_difference(&scene.pose, &options.pose))
             .or_else(|| (scene.geometry_digest() != meta.geometry).then(|| "its mesh or materials differ".into()))
             .or_else(|| meta.materials.iter().any(renamed).then(|| "its materials differ".into()))
             .or_else(|| (scene.light_digest() != meta.lights).then(|| "its lights differ".into()))
             .or_else(|| option("--environment", &scene.environment.identity(), &options.environment))
     }
+}
+
+/// The difference of two poses, with the options that set them.
+fn pose_difference(here: &str, there: &str) -> Option<String> {
+    let name = |pose: &str| if pose.is_empty() { "at rest".to_owned() } else { format!("posed, {pose}") };
+    (here != there).then(|| format!("the scene is {}, the cloud's {} (--animation, --time)", name(here), name(there)))
 }

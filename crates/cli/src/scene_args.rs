@@ -6,6 +6,7 @@ use crate::{
 };
 use clap::Args;
 use formats::cloud::{LightUnit, Normals};
+use scene::Pose;
 
 /// Arguments about the scene, as the user typed them.
 #[derive(Args, Clone, Debug)]
@@ -38,12 +39,24 @@ pub struct SceneArgs {
     /// The same for the file's emitting materials [default: that of --light-unit]
     #[arg(long, value_name = "UNIT", value_parser = one_of(LightUnit::ALL, LightUnit::name))]
     pub emission_unit: Option<LightUnit>,
+    /// Pose the scene at this time of an animation, s [default: at rest, as the file has it]
+    #[arg(long, value_name = "SECONDS", value_parser = parse_non_negative)]
+    pub time: Option<f64>,
+    /// Pose the scene by this animation, at --time or else at its start [default for --time: the only one]
+    #[arg(long, value_name = "NAME")]
+    pub animation: Option<String>,
     /// Refuse a mesh whose translucent surfaces are open, flipped, inside out or duplicated, instead of a warning
     #[arg(long)]
     pub strict: bool,
 }
 
 impl SceneArgs {
+    /// The pose that was asked for.
+    pub fn pose(&self) -> Option<Pose> {
+        let is_posed = self.time.is_some() || self.animation.is_some();
+        is_posed.then(|| Pose { animation: self.animation.clone(), seconds: self.time.unwrap_or(0.0) })
+    }
+
     /// The arguments that differ from the defaults, as they are typed.
     pub fn words(&self) -> Vec<String> {
         let environment = self.environment.as_ref().map(|source| match source {
@@ -59,6 +72,8 @@ impl SceneArgs {
             ("--metres-per-unit", unless(self.metres_per_unit, 1.0)),
             ("--light-unit", (self.light_unit != LightUnit::Radiometric).then(|| self.light_unit.to_string())),
             ("--emission-unit", self.emission_unit.map(|unit| unit.to_string())),
+            ("--time", self.time.map(|seconds| seconds.to_string())),
+            ("--animation", self.animation.clone()),
         ];
         let given = options.into_iter().filter_map(|(option, value)| Some([option.to_owned(), value?]));
         given.flatten().collect()
@@ -82,7 +97,8 @@ mod tests {
         let typed = ["--environment", "1,2,0.5", "--environment-rotation", "-30", "--normals", "geometric"];
         let more = ["--metres-per-unit", "0.001", "--light-unit", "photometric", "--emission-unit", "radiometric"];
         let parse = |words: &[String]| Program::parse_from([&["program".to_owned()], words].concat()).scene.words();
-        let all: Vec<String> = typed.iter().chain(&more).map(|word| word.to_string()).collect();
+        let posed = ["--time", "1.25", "--animation", "walk on"];
+        let all: Vec<String> = typed.iter().chain(&more).chain(&posed).map(|word| word.to_string()).collect();
         assert_eq!(parse(&all), all);
         assert!(parse(&[]).is_empty());
     }

@@ -33,6 +33,7 @@ impl SceneSettings {
             metres_per_unit: self.how.metres_per_unit,
             light_unit: of_scene(self.how.light_unit),
             emission_unit: of_scene(self.emission_unit()),
+            pose: self.how.pose(),
         };
         let mut scene = Scene::import(&self.path, &options).map_err(with_option)?;
         self.warn(&scene.warnings, common);
@@ -73,9 +74,12 @@ impl SceneSettings {
 
 /// The failure of an import, with the option that helps.
 fn with_option(error: SceneError) -> Failure {
-    let is_too_large = matches!(error, SceneError::TooLarge { .. });
-    let failure = Failure::from(error);
-    if is_too_large { Failure::usage(format!("{}; set --metres-per-unit", failure.message)) } else { failure }
+    let option = match error {
+        SceneError::TooLarge { .. } => "set --metres-per-unit",
+        SceneError::Pose { .. } => "set --animation NAME and --time SECONDS",
+        _ => return Failure::from(error),
+    };
+    Failure::usage(format!("{}; {option}", Failure::from(error).message))
 }
 
 /// The unit of the same name in the terms of the importer.

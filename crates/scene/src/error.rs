@@ -11,6 +11,9 @@ pub enum SceneError {
     Read { path: PathBuf, source: std::io::Error },
     #[error("{}: {what}", path.display())]
     Invalid { path: PathBuf, what: String },
+    /// There is no such pose.
+    #[error("{}: {what}", path.display())]
+    Pose { path: PathBuf, what: String },
     #[error("{}: the mesh is too large for float32 coordinates", path.display())]
     TooLarge { path: PathBuf },
 }

@@ -53,7 +53,7 @@ pub mod warp;
 
 pub use error::{LostVolumes, SceneError};
 pub use glam::{DVec3, DVec4, Vec3};
-pub use import::{ImportOptions, LightUnit};
+pub use import::{ImportOptions, LightUnit, Pose};
 pub use material::{Material, Scatter, ScatterExtension, Volume};
 pub use mesh::{Mesh, NormalKind, SurfacePoint, Triangle};
 pub use mesh_defects::MeshDefects;

@@ -28,6 +28,8 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// World position of the mesh's center, m.
     pub origin: DVec3,
+    /// The time and animation that pose the scene; empty at rest.
+    pub pose: String,
     /// Warnings about parts that were left out or look wrong, one line each.
     pub warnings: Vec<String>,
     /// For each material, how many triangles were left out because they have no area.

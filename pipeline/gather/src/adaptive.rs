@@ -99,8 +99,8 @@ impl Work<'_> {
         Ok(passes)
     }
 
-    /// Doubles the paths until the error meets the target, or the cloud's own error exceeds it, or the most paths of the
-    /// job are reached.
+    /// Adds paths until the error meets the target, or the cloud's own error exceeds it, or the most paths of the job are
+    /// reached.
     fn render_to(&self, target: f64) -> Result<(Passes<'_>, End), Failure> {
         let (settings, input) = (&self.job.settings, &self.input);
         let max_paths = settings.paths_per_pixel;
@@ -136,9 +136,10 @@ impl Work<'_> {
                 ));
                 break End::Paths;
             }
+            let next = round.next(errors.as_ref());
             before = errors.map_or(f64::INFINITY, |errors| errors.total);
             done = paths;
-            paths = (2 * paths).min(max_paths);
+            paths = next.min(max_paths);
         };
         Ok((passes, end))
     }

@@ -4,7 +4,7 @@ use crate::arguments::Arguments;
 use cli::{Common, Failure, SceneSettings};
 use formats::cloud::{Choice, Options, Pattern, Shard};
 use sample_surface::Settings;
-use scene::light::Environment;
+use scene::Scene;
 use std::path::PathBuf;
 
 /// The task of the program.
@@ -59,8 +59,8 @@ impl Task {
 }
 
 impl Request {
-    /// How to sample in this environment.
-    pub fn settings(&self, environment: &Environment) -> Settings {
+    /// How to sample this scene, in its environment and pose.
+    pub fn settings(&self, scene: &Scene) -> Settings {
         let options = Options {
             seed: self.common.seed,
             shard: self.shard,
@@ -71,7 +71,8 @@ impl Request {
             metres_per_unit: self.scene.how.metres_per_unit,
             light_unit: self.scene.how.light_unit,
             emission_unit: self.scene.emission_unit(),
-            environment: environment.identity(),
+            pose: scene.pose.clone(),
+            environment: scene.environment.identity(),
         };
         Settings { samples: self.samples, options }
     }

@@ -66,6 +66,7 @@ pub fn sample_settings(sampling: &Sampling, normals: NormalKind, first: &str) ->
         metres_per_unit: 1.0,
         light_unit: LightUnit::Radiometric,
         emission_unit: LightUnit::Radiometric,
+        pose: String::new(),
         environment: "0,0,0".into(),
     };
     Settings { samples: sampling.samples, options }

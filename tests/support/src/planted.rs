@@ -66,6 +66,7 @@ fn facts() -> Meta {
         metres_per_unit: 1.0,
         light_unit: LightUnit::Radiometric,
         emission_unit: LightUnit::Radiometric,
+        pose: String::new(),
         environment: "0,0,0".into(),
     };
     let material = SampledMaterial { name: "test".into(), index: 0, halves: [Group::default(); 2], area_m2: 1.0 };

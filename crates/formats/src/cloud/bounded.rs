@@ -71,7 +71,7 @@ mod tests {
     fn no_claim_of_a_length_allocates_more_than_a_few_times_the_block() {
         let mut facts = meta(3);
         facts.options.shares = vec![("Wax".into(), 0.5)];
-        let block = bincode::serde::encode_to_vec(Versioned::V6(facts), meta_config()).expect("encodes");
+        let block = bincode::serde::encode_to_vec(Versioned::V7(facts), meta_config()).expect("encodes");
         let room = 8 * block.len();
         assert!((1..room).contains(&largest(&block)));
         for at in 0..block.len() - 8 {

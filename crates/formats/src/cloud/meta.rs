@@ -11,7 +11,7 @@ use std::{collections::BTreeMap, fmt};
 /// The facts with the number of their version, which is checked before they are read.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Versioned {
-    V6(Meta),
+    V7(Meta),
 }
 
 /// The facts of a cloud. They hold no time, host or path, so that the same inputs give the same bytes.
@@ -95,6 +95,9 @@ pub struct Options {
     pub light_unit: LightUnit,
     /// Unit of its emitting materials.
     pub emission_unit: LightUnit,
+    /// The animation and time of the scene; empty at rest.
+    #[serde(deserialize_with = "text")]
+    pub pose: String,
     /// Identity of the light from all around: its radiance, or a digest of the map.
     #[serde(deserialize_with = "text")]
     pub environment: String,

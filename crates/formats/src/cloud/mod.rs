@@ -72,7 +72,7 @@ fn part<'a>(tiles: &'a [Tile], nodes: &'a [Node], group: &Group) -> (&'a [Tile],
 
 /// Writes a cloud. The same content and facts give the same bytes.
 pub fn write(output: &mut Output, path: &Path, content: &Content, meta: &Meta) -> Result<(), Error> {
-    let facts = bincode::serde::encode_to_vec(Versioned::V6(meta.clone()), meta_config())
+    let facts = bincode::serde::encode_to_vec(Versioned::V7(meta.clone()), meta_config())
         .map_err(|e| Error::invalid(path, format!("the cloud's facts do not fit the file: {e}")))?;
     let provenance = serde_json::to_vec_pretty(&provenance(meta))
         .map_err(|e| Error::invalid(path, format!("the cloud's facts do not fit the file: {e}")))?;
@@ -285,7 +285,7 @@ fn read_meta(file: &[u8], header: &Header) -> Result<Meta, String> {
     }
     let bytes = &file[section.offset as usize..section.end() as usize];
     layout::verify(layout::checksum(bytes), section)?;
-    let (Versioned::V6(meta), used) =
+    let (Versioned::V7(meta), used) =
         bincode::serde::decode_from_slice(bytes, meta_config()).map_err(|_| damaged.to_owned())?;
     let fits = used == bytes.len() && groups_fit(&meta, header).is_some() && meta.is_sound();
     if fits { Ok(meta) } else { Err(damaged.into()) }

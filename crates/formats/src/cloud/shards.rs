@@ -53,6 +53,7 @@ fn difference(one: &Meta, two: &Meta) -> Option<&'static str> {
         (a.metres_per_unit != b.metres_per_unit, "their metres per unit"),
         (a.light_unit != b.light_unit, "their units of lights"),
         (a.emission_unit != b.emission_unit, "their units of emission"),
+        (a.pose != b.pose, "their poses"),
         (one.geometry != two.geometry, "their meshes or materials"),
         (names(one) != names(two), "their translucent materials"),
         (one.lights != two.lights, "their lights"),

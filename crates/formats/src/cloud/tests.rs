@@ -15,6 +15,7 @@ pub(super) fn meta(count: u64) -> Meta {
         metres_per_unit: 1.0,
         light_unit: LightUnit::Radiometric,
         emission_unit: LightUnit::Radiometric,
+        pose: String::new(),
         environment: "0,0,0".into(),
     };
     Meta {

@@ -10,6 +10,7 @@ use gltf::json::{
     buffer::View,
     validation::Checked,
 };
+use std::borrow::Cow;
 
 /// An accessor whose type and range are checked. Its elements are still bytes.
 pub(super) struct CheckedAccessor<'a> {
@@ -29,16 +30,20 @@ struct Changes<'a> {
 
 /// `count` elements of `size` bytes, all within `bytes`.
 struct Elements<'a> {
-    bytes: &'a [u8],
+    bytes: Cow<'a, [u8]>,
     count: usize,
     stride: usize,
     size: usize,
 }
 
-impl<'a> Elements<'a> {
-    fn iter(&self) -> impl Iterator<Item = &'a [u8]> + use<'a> {
-        let (bytes, stride, size) = (self.bytes, self.stride, self.size);
-        (0..self.count).map(move |k| &bytes[k * stride..k * stride + size])
+impl Elements<'_> {
+    fn iter(&self) -> impl Iterator<Item = &[u8]> {
+        (0..self.count).map(|k| self.get(k))
+    }
+
+    /// Element `k`, which is below `count`.
+    fn get(&self, k: usize) -> &[u8] {
+        &self.bytes[k * self.stride..k * self.stride + self.size]
     }
 }
 
@@ -67,6 +72,30 @@ impl<'a> CheckedAccessor<'a> {
         CheckedAccessor::new(document, index, field, Number::of_index, &[Type::Scalar], expected)
     }
 
+    /// Keys and values of animations, and places of copies: of float32 or normalized integers.
+    pub fn animated(document: &'a Document, index: &Index<Accessor>, field: String, shape: Type) -> Result<Self> {
+        let shape_name = format!("{shape:?}").to_uppercase();
+        let expected = format!("{shape_name} of 32-bit float, or of normalized 8 or 16-bit integers");
+        CheckedAccessor::new(document, index, field, Number::of_animation, &[shape], &expected)
+    }
+
+    /// A list of matrices by columns.
+    pub fn matrices(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self> {
+        let expected = "MAT4 of 32-bit float";
+        CheckedAccessor::new(document, index, field, Number::of_matrix, &[Type::Mat4], expected)
+    }
+
+    /// The joints of each vertex, four to a set.
+    pub fn joints(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self> {
+        let expected = "VEC4 of 8 or 16-bit unsigned integers, not normalized";
+        CheckedAccessor::new(document, index, field, Number::of_joint, &[Type::Vec4], expected)
+    }
+
+    /// The weights of the joints of each vertex.
+    pub fn weights(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self> {
+        CheckedAccessor::animated(document, index, field, Type::Vec4)
+    }
+
     /// Elements of one of these shapes, of numbers that `number` accepts: what is `expected`.
     fn new(
         document: &'a Document,
@@ -91,14 +120,31 @@ impl<'a> CheckedAccessor<'a> {
                 Run { view, offset, count, size, unit }.elements(document)
             }
             None if accessor.sparse.is_some() => zeros(count, size, document.longest),
-            None => {
-                Err("the accessor has no bufferView (compressed geometry? export again without compression)".into())
-            }
+            None => Err("the accessor has no bufferView (a compression that is not supported?)".into()),
         };
         let elements = elements.map_err(fault)?;
         let changes = accessor.sparse.as_ref().map(|s| Changes::new(document, s, count, size, unit)).transpose();
         let changes = changes.map_err(|e| fault(format!("sparse: {e}")))?;
         Ok(CheckedAccessor { field, number, elements, changes })
+    }
+
+    /// Vectors that were decoded, of `components` numbers.
+    pub fn of_reals(field: String, numbers: &[f32], components: usize) -> Self {
+        let bytes = numbers.iter().flat_map(|x| x.to_le_bytes()).collect();
+        let number = Number { component: ComponentType::F32, normalized: false };
+        CheckedAccessor::of_bytes(field, number, bytes, components)
+    }
+
+    /// Indices that were decoded.
+    pub fn of_indices(field: String, indices: &[u32]) -> Self {
+        let bytes = indices.iter().flat_map(|x| x.to_le_bytes()).collect();
+        CheckedAccessor::of_bytes(field, Number { component: ComponentType::U32, normalized: false }, bytes, 1)
+    }
+
+    fn of_bytes(field: String, number: Number, bytes: Vec<u8>, components: usize) -> Self {
+        let size = components * number.size();
+        let elements = Elements { count: bytes.len() / size, bytes: bytes.into(), stride: size, size };
+        CheckedAccessor { field, number, elements, changes: None }
     }
 
     pub fn len(&self) -> usize {
@@ -107,16 +153,23 @@ impl<'a> CheckedAccessor<'a> {
 
     /// The elements. Every number is finite, and components that the accessor lacks are 1.
     pub fn read_reals<const N: usize>(&self) -> Result<Vec<[f32; N]>> {
-        let (number, size) = (self.number, self.number.size());
-        let list = self.read(|bytes| {
-            let mut numbers = bytes.chunks_exact(size).map(|b| number.real(b));
-            std::array::from_fn(|_| numbers.next().unwrap_or(1.0))
-        })?;
+        let number = self.number;
+        let list = self.read(|bytes| number.reals(bytes))?;
         match list.iter().enumerate().find(|(_, v)| !v.iter().all(|x| x.is_finite())) {
             // Here and below, messages do not state the value, because a link can make a buffer of any file.
             Some((k, _)) => Err(format!("{}: element {k} is not finite; repair the mesh and export again", self.field)),
             None => Ok(list),
         }
+    }
+
+    /// One element, which is below the number of elements, without reading the others.
+    pub fn real<const N: usize>(&self, k: usize) -> Result<[f32; N]> {
+        let sparse = self.changes.as_ref().and_then(|changes| changes.of(k));
+        let numbers = self.number.reals(sparse.unwrap_or_else(|| self.elements.get(k)));
+        if numbers.iter().all(|x: &f32| x.is_finite()) {
+            return Ok(numbers);
+        }
+        Err(format!("{}: element {k} is not finite; repair the file and export again", self.field))
     }
 
     /// The indices, each below `vertices`.
@@ -143,6 +196,21 @@ impl<'a> CheckedAccessor<'a> {
 }
 
 impl<'a> Changes<'a> {
+    /// The new value of element `k`, by bisection: glTF says that the indices ascend.
+    fn of(&self, k: usize) -> Option<&[u8]> {
+        let at = |i: usize| Number::unsigned(self.indices.get(i)) as usize;
+        let (mut low, mut high) = (0, self.indices.count);
+        while low < high {
+            let middle = low + (high - low) / 2;
+            if at(middle) < k {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        (low < self.indices.count && at(low) == k).then(|| self.values.get(low))
+    }
+
     /// The changes of an accessor of `all` elements. There are at most as many, so that a short accessor is not slow to
     /// read.
     fn new(document: &'a Document, sparse: &Sparse, all: u64, size: usize, unit: usize) -> Result<Self> {
@@ -186,7 +254,7 @@ impl Run<'_> {
             let have = bytes.len();
             return Err(format!("{count} elements of {size} bytes do not fit the {have} bytes of their bufferView"));
         }
-        Ok(Elements { bytes, count: count as usize, stride, size })
+        Ok(Elements { bytes: bytes.into(), count: count as usize, stride, size })
     }
 }
 
@@ -196,12 +264,12 @@ const MIN_BYTES_PER_VERTEX: u64 = 4;
 /// The zeros that a sparse accessor without a buffer view changes. They take no bytes of the file, but other attributes
 /// of the same vertices do; without this limit, a short file could need any memory.
 fn zeros(count: u64, size: usize, longest: usize) -> Result<Elements<'static>> {
-    const ZEROS: [u8; 16] = [0; 16];
+    const ZEROS: [u8; 64] = [0; 64];
     let limit = longest as u64 / MIN_BYTES_PER_VERTEX;
     if count > limit {
         return Err(format!("{count} elements without a bufferView, a file of this length holds at most {limit}"));
     }
-    Ok(Elements { bytes: &ZEROS, count: count as usize, stride: 0, size })
+    Ok(Elements { bytes: ZEROS[..].into(), count: count as usize, stride: 0, size })
 }
 
 /// The value of a field of the file, if glTF knows it.
@@ -234,6 +302,24 @@ impl Number {
         allowed.then_some(Number { component, normalized })
     }
 
+    /// The type of a component of a key of an animation.
+    fn of_animation(component: ComponentType, normalized: bool) -> Option<Number> {
+        use ComponentType::{F32, U32};
+        let allowed = if normalized { !matches!(component, F32 | U32) } else { component == F32 };
+        allowed.then_some(Number { component, normalized })
+    }
+
+    /// The type of an element of a matrix.
+    fn of_matrix(component: ComponentType, normalized: bool) -> Option<Number> {
+        (component == ComponentType::F32 && !normalized).then_some(Number { component, normalized })
+    }
+
+    /// The type of a joint's index.
+    fn of_joint(component: ComponentType, normalized: bool) -> Option<Number> {
+        let allowed = matches!(component, ComponentType::U8 | ComponentType::U16) && !normalized;
+        allowed.then_some(Number { component, normalized })
+    }
+
     /// The type of a vertex index.
     fn of_index(component: ComponentType, normalized: bool) -> Option<Number> {
         let allowed = matches!(component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32) && !normalized;
@@ -243,6 +329,12 @@ impl Number {
     /// Size, bytes.
     fn size(self) -> usize {
         self.component.size()
+    }
+
+    /// The values of an element. Components that it lacks are 1.
+    fn reals<const N: usize>(self, bytes: &[u8]) -> [f32; N] {
+        let mut numbers = bytes.chunks_exact(self.size()).map(|b| self.real(b));
+        std::array::from_fn(|_| numbers.next().unwrap_or(1.0))
     }
 
     /// The value of its bytes.

@@ -2,29 +2,48 @@
 
 use super::{
     fault::{Result, get},
+    features,
     files::{self, Files},
+    foreign, meshopt,
     survey::Survey,
+    text::{Animation, Text},
     transform::NodeTransform,
 };
 use crate::error::SceneError;
 use gltf::json::{self, Index, buffer::View};
-use serde::Deserialize;
-use std::{cell::RefCell, collections::BTreeMap, ops::Range, path::Path, rc::Rc};
+use std::{
+    cell::{Cell, OnceCell, RefCell},
+    collections::BTreeMap,
+    ops::Range,
+    path::Path,
+    rc::Rc,
+};
 
 /// A parsed file with its buffers. Its content is not checked yet.
 pub(super) struct Document {
     /// The file itself and the files that it names.
     pub files: RefCell<Files>,
     pub root: json::Root,
+    pub animations: Vec<Animation>,
     /// The transform of each node.
     pub transforms: Vec<NodeTransform>,
-    /// Length of the file or of its longest buffer, bytes.
-    pub longest: usize,
     /// Properties of the file that are not honoured.
     pub survey: Survey,
+    /// Length of the file or of its longest buffer, bytes.
+    pub longest: usize,
     bytes: Vec<u8>,
     buffers: Vec<Buffer>,
+    /// The bytes of compressed buffer views, once they were needed.
+    decoded: Vec<OnceCell<Vec<u8>>>,
+    /// Bytes that may still be decoded.
+    room: Cell<u64>,
 }
+
+/// The most memory that compressed geometry may need for each byte of the file's buffers. Without this limit, a short
+/// file could need any memory. Streams of meshopt reach 64, those of Draco rarely 40.
+const EXPANSION: u64 = 64;
+/// The most memory that compressed geometry of any file may need, bytes.
+const FREE: u64 = 16 << 20;
 
 /// The bytes of a buffer.
 enum Buffer {
@@ -32,6 +51,8 @@ enum Buffer {
     Chunk(Range<usize>),
     /// A file or a data URI, and the length of the buffer. Buffers that name the same file share it.
     Loaded(Rc<Vec<u8>>, usize),
+    /// Stands for what is compressed elsewhere.
+    Absent,
 }
 
 impl Buffer {
@@ -39,14 +60,9 @@ impl Buffer {
         match self {
             Buffer::Chunk(range) => range.len(),
             Buffer::Loaded(_, length) => *length,
+            Buffer::Absent => 0,
         }
     }
-}
-
-#[derive(Deserialize)]
-struct Transforms {
-    #[serde(default)]
-    nodes: Vec<NodeTransform>,
 }
 
 impl Document {
@@ -56,23 +72,45 @@ impl Document {
     }
 
     fn parse(bytes: Vec<u8>, path: &Path) -> Result<Document> {
+        if let Some(what) = foreign::name(&bytes, path) {
+            return Err(what);
+        }
         let whole = 0..bytes.len();
         let (text, chunk) = if bytes.starts_with(b"glTF") { split_glb(&bytes)? } else { (whole, None) };
         let text = &bytes[text];
         let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text); // Some editors write a byte order mark.
-        let not_gltf = |e: json::Error| format!("not a glTF file (.glb or .gltf): {e}");
-        let root: json::Root = json::deserialize::from_slice(text).map_err(not_gltf)?;
-        let transforms: Transforms = json::deserialize::from_slice(text).map_err(not_gltf)?;
-        let survey: Survey = json::deserialize::from_slice(text).map_err(not_gltf)?;
-        check_version(&root.asset)?;
+        let text = Text::parse(text)?;
+        check_version(&text.root.asset)?;
+        // What the file needs is said before what is missing without it.
+        features::check(&text)?;
         let mut files = Files::new(path);
-        let mut buffers = Vec::with_capacity(root.buffers.len());
-        for (k, buffer) in root.buffers.iter().enumerate() {
-            buffers.push(locate(k, buffer, chunk.clone(), &mut files)?);
+        let mut buffers = Vec::with_capacity(text.root.buffers.len());
+        for (k, buffer) in text.root.buffers.iter().enumerate() {
+            // Buffers that stand for what is compressed need not be there.
+            let is_needless = buffer.uri.is_none() && (k > 0 || chunk.is_none()) && is_compressed(&text);
+            let chunk = chunk.clone();
+            buffers.push(if is_needless { Buffer::Absent } else { locate(k, buffer, chunk, &mut files)? });
         }
         let longest = buffers.iter().map(Buffer::len).fold(bytes.len(), usize::max);
         let files = RefCell::new(files);
-        Ok(Document { files, root, transforms: transforms.nodes, survey, longest, bytes, buffers })
+        let Text { root, animations, transforms, survey } = text;
+        let decoded = vec![OnceCell::new(); root.buffer_views.len()];
+        let room = Cell::new(0);
+        let document = Document { files, root, animations, transforms, survey, longest, bytes, buffers, decoded, room };
+        document.room.set(document.buffer_bytes().saturating_mul(EXPANSION).saturating_add(FREE));
+        Ok(document)
+    }
+
+    /// Bytes of compressed geometry that may still be decoded.
+    pub fn room(&self) -> u64 {
+        self.room.get()
+    }
+
+    /// Takes decoded bytes off that limit.
+    pub fn spend(&self, bytes: u64) -> Result<()> {
+        let left = self.room.get().checked_sub(bytes);
+        self.room.set(left.ok_or("the compressed geometry is too large for the length of the file")?);
+        Ok(())
     }
 
     /// The first `byteLength` bytes of a buffer.
@@ -80,6 +118,7 @@ impl Document {
         match self.buffers.get(index)? {
             Buffer::Chunk(range) => self.bytes.get(range.clone()),
             Buffer::Loaded(data, length) => data.get(..*length),
+            Buffer::Absent => None,
         }
     }
 
@@ -93,12 +132,29 @@ impl Document {
         longest_at.values().map(|length| *length as u64).sum()
     }
 
-    /// The bytes of a buffer view.
+    /// The bytes of a buffer view, decoded if they are compressed.
     pub fn view(&self, index: &Index<View>) -> Result<&[u8]> {
         let view = get(&self.root.buffer_views, index, "bufferView")?;
-        let buffer = view.buffer.value();
+        let Some(compressed) = meshopt::Compressed::of(view)? else {
+            let (start, length) = (view.byte_offset.map_or(0, |o| o.0), view.byte_length.0);
+            return self.range(view.buffer.value(), start, length);
+        };
+        let cell = self.decoded.get(index.value()).ok_or("bufferView: out of range")?;
+        if cell.get().is_none() {
+            self.spend(compressed.decoded_bytes())?;
+            let stream = self.range(compressed.buffer, compressed.byte_offset, compressed.byte_length)?;
+            // It was empty.
+            _ = cell.set(compressed.decode(stream).map_err(|e| format!("bufferViews[{}]: {e}", index.value()))?);
+        }
+        Ok(cell.get().map_or(&[], Vec::as_slice))
+    }
+
+    /// Bytes of a buffer.
+    fn range(&self, buffer: usize, start: u64, length: u64) -> Result<&[u8]> {
+        if matches!(self.buffers.get(buffer), Some(Buffer::Absent)) {
+            return Err(format!("buffers[{buffer}] has no uri and the file no binary chunk for it"));
+        }
         let data = self.buffer(buffer).ok_or_else(|| format!("bufferView.buffer {buffer} is out of range"))?;
-        let (start, length) = (view.byte_offset.map_or(0, |o| o.0), view.byte_length.0);
         part(data, start, length).ok_or_else(|| {
             let have = data.len();
             format!("the bufferView (bytes {start} + {length}) exceeds its buffer of {have} bytes")
@@ -120,6 +176,11 @@ fn check_version(asset: &json::Asset) -> Result<()> {
         Some(version) if version != "2.0" => Err(format!("asset.minVersion is `{version}`; only 2.0 is supported")),
         _ => Ok(()),
     }
+}
+
+/// Whether the file declares compressed buffer views.
+fn is_compressed(text: &Text) -> bool {
+    text.root.extensions_used.iter().chain(&text.survey.extensions).any(|n| meshopt::NAMES.contains(&n.as_str()))
 }
 
 /// Finds the bytes of buffer `k`, and checks their number.
@@ -157,7 +218,9 @@ fn split_glb(bytes: &[u8]) -> Result<(Range<usize>, Option<Range<usize>>)> {
     if &kind != b"JSON" {
         return Err(format!("the first chunk of the .glb is `{}`, not `JSON`", kind.escape_ascii()));
     }
-    let second = text.end.next_multiple_of(4);
+    // Some writers leave the padding out.
+    let unpadded = chunk_at(bytes, text.end).is_ok_and(|(kind, _)| &kind == b"BIN\0");
+    let second = if unpadded { text.end } else { text.end.next_multiple_of(4) };
     if second >= length {
         return Ok((text, None));
     }

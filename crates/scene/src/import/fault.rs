@@ -11,6 +11,8 @@ pub(super) type Result<T, E = Fault> = std::result::Result<T, E>;
 /// Why a file makes no scene.
 pub(super) enum Refusal {
     Invalid(Fault),
+    /// The file has no such animation.
+    NoPose(Fault),
     /// Coordinates in float32 cannot hold the mesh.
     TooLarge,
 }

@@ -3,11 +3,13 @@
 use super::{
     accessor::CheckedAccessor,
     fault::{Fault, Refusal, Result},
+    instancing::Copies,
     nodes::SceneNode,
     primitive::{CheckedMesh, CheckedPrimitive},
+    skin::Influences,
 };
 use crate::mesh::{Mesh, Triangle, area, bounds};
-use glam::{DMat3, DVec3, Vec3};
+use glam::{DMat3, DMat4, DVec3, Vec3};
 use memmap2::MmapMut;
 use std::collections::BTreeMap;
 
@@ -16,6 +18,8 @@ use std::collections::BTreeMap;
 const MAX_TRIANGLES: u64 = 1 << 26;
 const MAX_VERTICES: u64 = 1 << 27;
 const MAX_PRIMITIVES: u64 = 1 << 22;
+/// Morph targets and sets of joints of all vertices: each is a few nanoseconds of work and takes no memory.
+const MAX_CHANGES: u64 = 1 << 29;
 
 /// Bytes of a triangle with its vertices, and its part of the ray tree while that is built. 360 were measured.
 const BYTES_PER_TRIANGLE: usize = 512;
@@ -27,6 +31,32 @@ const MAX_DIAGONAL: f64 = 1e18;
 pub(super) struct Instance<'a> {
     pub parts: &'a CheckedMesh<'a>,
     pub placed: &'a SceneNode<'a>,
+    /// The copies of the node's mesh, if it has any.
+    pub copies: Option<Copies<'a>>,
+    /// Weights of the morph targets.
+    pub weights: &'a [f32],
+    /// Matrices of the joints, from the mesh to the world. A mesh with joints is where they are, not where its node is.
+    pub joints: Option<&'a [DMat4]>,
+}
+
+impl Instance<'_> {
+    fn count(&self) -> usize {
+        let copies = self.copies.as_ref().filter(|_| self.joints.is_none());
+        copies.map_or(1, |copies| copies.count)
+    }
+
+    /// From the mesh to the world.
+    fn transform(&self, copy: usize) -> Result<DMat4> {
+        let Some(copies) = &self.copies else { return Ok(self.placed.transform) };
+        let transform = copies.transform(copy).map_err(|e| format!("node `{}`: {e}", self.placed.name))?;
+        Ok(self.placed.transform * transform)
+    }
+
+    /// Changes to each vertex before it is placed.
+    fn changes(&self) -> u64 {
+        let sets = if self.joints.is_some() { self.parts.sets } else { 0 };
+        (sets + self.weights.iter().filter(|weight| **weight != 0.0).count()) as u64
+    }
 }
 
 pub(super) struct Geometry {
@@ -43,8 +73,11 @@ pub(super) fn join(instances: &[Instance]) -> Result<Geometry, Refusal> {
     let mut builder = Builder::default();
     builder.reserve(instances)?;
     for instance in instances {
-        for part in &instance.parts.list {
-            builder.add(part, instance.placed)?;
+        for copy in 0..instance.count() {
+            let transform = instance.transform(copy)?;
+            for part in &instance.parts.list {
+                builder.add(part, instance, transform)?;
+            }
         }
     }
     builder.finish()
@@ -65,11 +98,15 @@ struct Builder {
 impl Builder {
     /// Counts all vertices and triangles, checks the limits, and reserves the memory.
     fn reserve(&mut self, instances: &[Instance]) -> Result<()> {
-        let total = |of: fn(&CheckedMesh) -> u64| instances.iter().map(|i| of(i.parts)).fold(0, u64::saturating_add);
+        let total = |of: fn(&Instance) -> u64| {
+            let all = instances.iter().map(|i| of(i).saturating_mul(i.count() as u64));
+            all.fold(0, u64::saturating_add)
+        };
         let counts = [
-            (total(|p| p.triangles), MAX_TRIANGLES, "triangles"),
-            (total(|p| p.vertices), MAX_VERTICES, "vertices"),
-            (total(|p| p.list.len() as u64), MAX_PRIMITIVES, "primitives"),
+            (total(|i| i.parts.triangles), MAX_TRIANGLES, "triangles"),
+            (total(|i| i.parts.vertices), MAX_VERTICES, "vertices"),
+            (total(|i| i.parts.list.len() as u64), MAX_PRIMITIVES, "primitives"),
+            (total(|i| i.parts.vertices.saturating_mul(i.changes())), MAX_CHANGES, "joints and morphs of vertices"),
         ];
         for (count, limit, what) in counts {
             if count > limit {
@@ -79,7 +116,7 @@ impl Builder {
                 ));
             }
         }
-        let [triangles, vertices, _] = counts.map(|(count, ..)| count as usize);
+        let [triangles, vertices, ..] = counts.map(|(count, ..)| count as usize);
         // The system is asked first, because an allocator may end the process instead of returning an error.
         let room = MmapMut::map_anon((triangles * BYTES_PER_TRIANGLE).max(1)).is_ok()
             && self.triangles.try_reserve_exact(triangles).is_ok()
@@ -89,15 +126,18 @@ impl Builder {
         room.then_some(()).ok_or_else(scarce)
     }
 
-    /// Adds a primitive on a node.
-    fn add(&mut self, part: &CheckedPrimitive, placed: &SceneNode) -> Result<()> {
+    /// Adds a primitive of an instance whose transform is this.
+    fn add(&mut self, part: &CheckedPrimitive, instance: &Instance, transform: DMat4) -> Result<()> {
         let vectors =
             |column: &CheckedAccessor| Ok::<_, Fault>(column.read_reals()?.into_iter().map(Vec3::from_array).collect());
-        let positions: Vec<Vec3> = vectors(&part.positions)?;
-        let normals = match &part.normals {
+        let mut positions: Vec<Vec3> = vectors(&part.positions)?;
+        let mut normals = match &part.normals {
             Some(normals) => vectors(normals)?,
             None => vec![Vec3::ZERO; positions.len()],
         };
+        // Without normals there are none to change.
+        let changed = if part.normals.is_some() { &mut normals[..] } else { &mut [] };
+        part.morph(instance.weights, &mut positions, changed)?;
         let indices = match &part.indices {
             Some(indices) => indices.read_indices(positions.len())?,
             None => (0..positions.len() as u32).collect(),
@@ -105,9 +145,18 @@ impl Builder {
         // The limits keep it in range.
         let first = self.positions.len() as u32;
         self.add_colors(part)?;
-        let mirrored = self.add_vertices(&positions, &normals, placed)?;
+        let name = &instance.placed.name;
+        let mirrored = match instance.joints {
+            Some(joints) if !part.influences.is_empty() => Mirrored::Each(self.add_skinned(
+                &positions,
+                &normals,
+                (&Influences::read(&part.influences)?, joints),
+                name,
+            )?),
+            _ => Mirrored::All(self.add_vertices(&positions, &normals, transform, name)?),
+        };
         for mut vertices in part.triangles(&indices) {
-            if mirrored {
+            if mirrored.at(vertices[0]) {
                 vertices.swap(1, 2);
             }
             self.triangles.push(Triangle { vertices: vertices.map(|i| i + first), material: part.material });
@@ -130,20 +179,32 @@ impl Builder {
     }
 
     /// Adds vertices in world space. True if the transform is a reflection, which reverses the winding.
-    fn add_vertices(&mut self, positions: &[Vec3], normals: &[Vec3], placed: &SceneNode) -> Result<bool> {
-        let linear = DMat3::from_mat4(placed.transform);
-        let determinant = linear.determinant();
-        let normal_matrix = if determinant == 0.0 { DMat3::ZERO } else { linear.inverse().transpose() };
+    fn add_vertices(&mut self, positions: &[Vec3], normals: &[Vec3], transform: DMat4, name: &str) -> Result<bool> {
+        let (normal_matrix, mirrored) = of_normals(transform);
         for p in positions {
-            let world = placed.transform.transform_point3(p.as_dvec3());
-            if !world.is_finite() {
-                return Err(format!("node `{}`: a vertex is not finite in world space", placed.name));
-            }
-            self.positions.push(world);
+            self.positions.push(finite(transform.transform_point3(p.as_dvec3()), name)?);
         }
-        let in_world = |n: &Vec3| (normal_matrix * n.as_dvec3()).normalize_or_zero().as_vec3();
-        self.normals.extend(normals.iter().map(in_world));
-        Ok(determinant < 0.0)
+        self.normals.extend(normals.iter().map(|n| turned(normal_matrix, *n)));
+        Ok(mirrored)
+    }
+
+    /// Adds vertices, each of which follows its joints. Tells of each whether it is mirrored.
+    fn add_skinned(
+        &mut self,
+        positions: &[Vec3],
+        normals: &[Vec3],
+        (influences, joints): (&Influences, &[DMat4]),
+        name: &str,
+    ) -> Result<Vec<bool>> {
+        let mut all_mirrored = Vec::with_capacity(positions.len());
+        for (vertex, (p, n)) in positions.iter().zip(normals).enumerate() {
+            let transform = influences.matrix(vertex, joints).map_err(|e| format!("node `{name}`: {e}"))?;
+            let (normal_matrix, mirrored) = of_normals(transform);
+            self.positions.push(finite(transform.transform_point3(p.as_dvec3()), name)?);
+            self.normals.push(turned(normal_matrix, *n));
+            all_mirrored.push(mirrored);
+        }
+        Ok(all_mirrored)
     }
 
     /// Center of the box around all triangles.
@@ -202,6 +263,43 @@ impl Builder {
         }
         let Builder { normals, triangles, coordinates, colors, .. } = self;
         Ok(Geometry { mesh: Mesh { positions, normals, triangles, coordinates, colors }, origin, degenerate, rounded })
+    }
+}
+
+/// Whether the transform of a vertex is a reflection.
+enum Mirrored {
+    All(bool),
+    Each(Vec<bool>),
+}
+
+impl Mirrored {
+    fn at(&self, vertex: u32) -> bool {
+        match self {
+            Mirrored::All(mirrored) => *mirrored,
+            Mirrored::Each(list) => list[vertex as usize],
+        }
+    }
+}
+
+/// The matrix that turns normals with a transform, and whether the transform is a reflection.
+fn of_normals(transform: DMat4) -> (DMat3, bool) {
+    let linear = DMat3::from_mat4(transform);
+    let determinant = linear.determinant();
+    let matrix = if determinant == 0.0 { DMat3::ZERO } else { linear.inverse().transpose() };
+    (matrix, determinant < 0.0)
+}
+
+/// A normal in the world.
+fn turned(matrix: DMat3, normal: Vec3) -> Vec3 {
+    (matrix * normal.as_dvec3()).normalize_or_zero().as_vec3()
+}
+
+/// A position in the world.
+fn finite(position: DVec3, name: &str) -> Result<DVec3> {
+    if position.is_finite() {
+        Ok(position)
+    } else {
+        Err(format!("node `{name}`: a vertex is not finite in world space"))
     }
 }
 

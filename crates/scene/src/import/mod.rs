@@ -8,19 +8,26 @@ mod accessor;
 mod cameras;
 mod clipping;
 mod container;
+mod draco;
 mod duplicates;
 mod fault;
 mod features;
 pub(crate) mod files;
+mod foreign;
 mod geometry;
 mod honoured;
+mod instancing;
 mod jpeg;
 mod lights;
 mod materials;
+mod meshopt;
 mod nodes;
 mod options;
+mod pose;
 mod primitive;
+mod skin;
 mod survey;
+mod text;
 mod textures;
 mod transform;
 mod unhonoured;
@@ -39,9 +46,12 @@ use fault::{Refusal, get};
 use geometry::{Geometry, Instance};
 use glam::DVec3;
 use gltf::json::Root;
+use instancing::Copies;
 use nodes::SceneNode;
-pub use options::{ImportOptions, LightUnit};
+pub use options::{ImportOptions, LightUnit, Pose};
+use pose::Posed;
 use primitive::CheckedMesh;
+use skin::Skins;
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
@@ -54,6 +64,7 @@ impl Scene {
         let document = Document::read(path)?;
         import(&document, options).map_err(|refusal| match refusal {
             Refusal::Invalid(what) => SceneError::Invalid { path: path.to_owned(), what },
+            Refusal::NoPose(what) => SceneError::Pose { path: path.to_owned(), what },
             Refusal::TooLarge => SceneError::TooLarge { path: path.to_owned() },
         })
     }
@@ -74,11 +85,10 @@ impl Scene {
 fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal> {
     let root = &document.root;
     let mut warnings = Vec::new();
-    features::check(document)?;
-    let nodes = nodes::in_world(document, options.metres_per_unit)?;
-    features::check_nodes(root, &nodes, &mut warnings)?;
+    let posed = pose::of(document, options.pose.as_ref(), &mut warnings)?;
+    let nodes = nodes::in_world(document, &posed.transforms, options.metres_per_unit, &mut warnings)?;
     let mut materials = materials::read(document, options, &mut warnings)?;
-    let Geometry { mut mesh, origin, degenerate, rounded } = geometry(document, &nodes, &mut warnings)?;
+    let Geometry { mut mesh, origin, degenerate, rounded } = geometry(document, &nodes, &posed, &mut warnings)?;
     if mesh.triangles.iter().any(|t| usize::from(t.material) == materials.len()) {
         materials.push(materials::default());
     }
@@ -103,6 +113,7 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
         environment: Environment::Constant(DVec3::ZERO),
         cameras,
         origin,
+        pose: posed.name,
         warnings,
         degenerate_triangles: degenerate,
         rounded_triangles: rounded,
@@ -112,21 +123,36 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
 }
 
 /// The triangles of all nodes. A mesh is checked once, for any number of nodes.
-fn geometry(document: &Document, nodes: &[SceneNode], warnings: &mut Vec<String>) -> Result<Geometry, Refusal> {
+fn geometry(
+    document: &Document,
+    nodes: &[SceneNode],
+    posed: &Posed,
+    warnings: &mut Vec<String>,
+) -> Result<Geometry, Refusal> {
     let meshes = &document.root.meshes;
     let mut parts: Vec<Option<CheckedMesh>> = meshes.iter().map(|_| None).collect();
-    let mut instances = Vec::new();
+    let mut placed_meshes = Vec::new();
     for placed in nodes {
         let Some(index) = &placed.node.mesh else { continue };
         let mesh = get(meshes, index, "node.mesh")?;
-        instances.push((index.value(), placed));
+        placed_meshes.push((index.value(), placed));
         if parts[index.value()].is_none() {
             let name = mesh.name.as_deref().unwrap_or(&placed.name);
             parts[index.value()] = Some(CheckedMesh::new(document, mesh, name, warnings)?);
         }
     }
-    let with_parts = |(k, placed): (usize, _)| Some(Instance { parts: parts[k].as_ref()?, placed });
-    let instances: Vec<Instance> = instances.into_iter().filter_map(with_parts).collect();
+    let skins = Skins::new(document, nodes)?;
+    let mut instances = Vec::with_capacity(placed_meshes.len());
+    for (k, placed) in placed_meshes {
+        let Some(parts) = &parts[k] else { continue };
+        let node = placed.node;
+        let copies = Copies::of(document, node).map_err(|e| format!("node `{}`: {e}", placed.name))?;
+        // The weights of a pose, of the node, of the mesh: the first of them counts.
+        let of_file = node.weights.as_ref().or(meshes[k].weights.as_ref());
+        let weights = posed.weights.get(&placed.index).or(of_file).map_or(&[][..], Vec::as_slice);
+        let joints = node.skin.as_ref().and_then(|skin| skins.of(skin));
+        instances.push(Instance { parts, placed, copies, weights, joints });
+    }
     geometry::join(&instances)
 }
 

@@ -1,7 +1,7 @@
-//! Units of the numbers in a file.
+//! How a file is read.
 
-/// Units of the numbers in a file.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Units of the numbers in a file, and the pose of what moves.
+#[derive(Clone, Debug, PartialEq)]
 pub struct ImportOptions {
     /// Size of one unit of the file, m.
     pub metres_per_unit: f64,
@@ -9,6 +9,17 @@ pub struct ImportOptions {
     pub light_unit: LightUnit,
     /// Unit of emitting materials.
     pub emission_unit: LightUnit,
+    /// A time of an animation; without one, everything is as the file has it at rest.
+    pub pose: Option<Pose>,
+}
+
+/// A time of an animation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pose {
+    /// The name of the animation, which is `animationK` for one without a name. None for the only one.
+    pub animation: Option<String>,
+    /// Seconds on the clock of the animation.
+    pub seconds: f64,
 }
 
 /// The unit of the lights or of the emitting materials. The two may differ: Blender multiplies its lights by 683 lm/W,

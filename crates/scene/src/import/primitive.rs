@@ -1,9 +1,10 @@
 //! The primitives of a mesh, checked and not read yet: a mesh may have many instances, or be too large to be read.
 
-use super::{accessor::CheckedAccessor, container::Document, fault::Result, textures::Coordinates};
+use super::{accessor::CheckedAccessor, container::Document, draco, fault::Result, textures::Coordinates};
+use glam::Vec3;
 use gltf::json::{
     self, Accessor, Index,
-    mesh::{Mode, Primitive, Semantic},
+    mesh::{Mode, MorphTarget, Primitive, Semantic},
     validation::Checked,
 };
 
@@ -13,6 +14,8 @@ pub(super) struct CheckedMesh<'a> {
     pub list: Vec<CheckedPrimitive<'a>>,
     pub triangles: u64,
     pub vertices: u64,
+    /// Most sets of joints of a vertex.
+    pub sets: usize,
 }
 
 /// A primitive with the accessors of its vertices and triangles.
@@ -23,9 +26,18 @@ pub(super) struct CheckedPrimitive<'a> {
     /// Texture coordinates, and their transform by the texture.
     pub coordinates: Option<(CheckedAccessor<'a>, Coordinates)>,
     pub colors: Option<CheckedAccessor<'a>>,
+    targets: Vec<Target<'a>>,
+    /// Joints and weights, four to a vertex in each set.
+    pub influences: Vec<[CheckedAccessor<'a>; 2]>,
     /// Index of the material. Primitives without one have the number of materials.
     pub material: u16,
     mode: Mode,
+}
+
+/// Displacements of the vertices, to be added by their weight.
+struct Target<'a> {
+    positions: Option<CheckedAccessor<'a>>,
+    normals: Option<CheckedAccessor<'a>>,
 }
 
 impl<'a> CheckedMesh<'a> {
@@ -50,6 +62,7 @@ impl<'a> CheckedMesh<'a> {
             }
             parts.triangles += triangles;
             parts.vertices += part.positions.len() as u64;
+            parts.sets = parts.sets.max(part.influences.len());
             parts.list.push(part);
         }
         Ok(parts)
@@ -65,8 +78,103 @@ fn short(name: &str) -> String {
     }
 }
 
-/// The function that checks an attribute.
-type AttributeCheck<'a> = fn(&'a Document, &Index<Accessor>, String) -> Result<CheckedAccessor<'a>>;
+/// The function that checks an attribute, and how many numbers an element of it has in a decoded stream.
+type AttributeKind<'a> = (fn(&'a Document, &Index<Accessor>, String) -> Result<CheckedAccessor<'a>>, usize);
+
+/// A primitive of the file, with its stream if it is compressed.
+struct Source<'a, 'b> {
+    document: &'a Document,
+    primitive: &'b Primitive,
+    draco: Option<draco::Decoded>,
+    name: &'b str,
+}
+
+impl<'a> Source<'a, '_> {
+    /// An attribute, if the primitive has it.
+    fn attribute(
+        &self,
+        semantic: Semantic,
+        (check, components): AttributeKind<'a>,
+    ) -> Result<Option<CheckedAccessor<'a>>> {
+        let key = semantic.to_string();
+        let Some(index) = self.primitive.attributes.get(&Checked::Valid(semantic)) else { return Ok(None) };
+        let field = format!("{}: {key}", self.name);
+        if let Some(draco) = &self.draco
+            && let Some(column) = draco.attribute(self.document, (&key, index), components, field.clone())?
+        {
+            return Ok(Some(column));
+        }
+        check(self.document, index, field).map(Some)
+    }
+
+    /// An attribute of as many elements as there are vertices.
+    fn beside(
+        &self,
+        positions: &CheckedAccessor,
+        semantic: Semantic,
+        kind: AttributeKind<'a>,
+    ) -> Result<Option<CheckedAccessor<'a>>> {
+        let field = format!("{}: {}", self.name, semantic.to_string());
+        match self.attribute(semantic, kind)? {
+            Some(column) if column.len() != positions.len() => {
+                Err(format!("{field} has {} elements, POSITION {}", column.len(), positions.len()))
+            }
+            column => Ok(column),
+        }
+    }
+
+    fn indices(&self) -> Result<Option<CheckedAccessor<'a>>> {
+        let field = format!("{}: indices", self.name);
+        match (&self.draco, &self.primitive.indices) {
+            (Some(draco), _) => Ok(Some(draco.indices(field))),
+            (None, Some(index)) => CheckedAccessor::indices(self.document, index, field).map(Some),
+            (None, None) => Ok(None),
+        }
+    }
+
+    /// The morph targets.
+    fn targets(&self, positions: &CheckedAccessor) -> Result<Vec<Target<'a>>> {
+        let column = |k: usize, name: &str, index: &Option<Index<Accessor>>| {
+            let field = format!("{}: targets[{k}].{name}", self.name);
+            let Some(index) = index else { return Ok(None) };
+            let column = CheckedAccessor::vectors(self.document, index, field.clone())?;
+            match column.len() == positions.len() {
+                true => Ok(Some(column)),
+                false => Err(format!("{field} has {} elements, POSITION {}", column.len(), positions.len())),
+            }
+        };
+        let target = |(k, target): (usize, &MorphTarget)| {
+            let positions = column(k, "POSITION", &target.positions)?;
+            Ok(Target { positions, normals: column(k, "NORMAL", &target.normals)? })
+        };
+        self.primitive.targets.iter().flatten().enumerate().map(target).collect()
+    }
+
+    /// The sets of joints and weights.
+    fn influences(&self, positions: &CheckedAccessor) -> Result<Vec<[CheckedAccessor<'a>; 2]>> {
+        let mut sets = Vec::new();
+        loop {
+            let set = sets.len() as u32;
+            let joints = self.beside(positions, Semantic::Joints(set), (CheckedAccessor::joints, 4))?;
+            let weights = self.beside(positions, Semantic::Weights(set), (CheckedAccessor::weights, 4))?;
+            match (joints, weights) {
+                (Some(joints), Some(weights)) => sets.push([joints, weights]),
+                (None, None) => return Ok(sets),
+                _ => return Err(format!("{}: JOINTS_{set} and WEIGHTS_{set} need each other", self.name)),
+            }
+        }
+    }
+
+    /// Index of the material, or the number of materials.
+    fn material(&self) -> Result<u16> {
+        let (name, materials) = (self.name, self.document.root.materials.len());
+        let material = self.primitive.material.as_ref().map_or(materials, |m| m.value());
+        if self.primitive.material.is_some() && material >= materials {
+            return Err(format!("{name}: material index {material} is out of range, there are {materials}"));
+        }
+        u16::try_from(material).map_err(|_| format!("{name}: too many materials"))
+    }
+}
 
 impl<'a> CheckedPrimitive<'a> {
     fn new(
@@ -76,42 +184,42 @@ impl<'a> CheckedPrimitive<'a> {
         name: &str,
         warnings: &mut Vec<String>,
     ) -> Result<Self> {
-        let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic));
-        let position = attribute(Semantic::Positions).ok_or_else(|| format!("{name}: no POSITION"))?;
-        let positions = CheckedAccessor::vectors(document, position, format!("{name}: POSITION"))?;
-        let beside = |semantic: Semantic, column: AttributeCheck<'a>| {
-            let field = format!("{name}: {}", semantic.to_string());
-            let column = attribute(semantic).map(|a| column(document, a, field.clone())).transpose()?;
-            match column {
-                Some(column) if column.len() != positions.len() => {
-                    Err(format!("{field} has {} elements, POSITION {}", column.len(), positions.len()))
-                }
-                column => Ok(column),
-            }
-        };
-        let normals = beside(Semantic::Normals, CheckedAccessor::vectors)?;
-        let colors = beside(Semantic::Colors(0), CheckedAccessor::colors)?;
-        let indices = primitive.indices.as_ref();
-        let indices = indices.map(|i| CheckedAccessor::indices(document, i, format!("{name}: indices"))).transpose()?;
-        let materials = document.root.materials.len();
-        let material = primitive.material.as_ref().map_or(materials, |m| m.value());
-        if primitive.material.is_some() && material >= materials {
-            return Err(format!("{name}: material index {material} is out of range, there are {materials}"));
-        }
-        let material = u16::try_from(material).map_err(|_| format!("{name}: too many materials"))?;
+        let draco = draco::Decoded::of(document, primitive).map_err(|e| format!("{name}: {e}"))?;
+        // A stream holds a list of triangles in either mode.
+        let mode = if draco.is_some() { Mode::Triangles } else { mode };
+        let source = Source { document, primitive, draco, name };
+        let positions = source.attribute(Semantic::Positions, (CheckedAccessor::vectors, 3))?;
+        let positions = positions.ok_or_else(|| format!("{name}: no POSITION"))?;
+        let normals = source.beside(&positions, Semantic::Normals, (CheckedAccessor::vectors, 3))?;
+        let colors = source.beside(&positions, Semantic::Colors(0), (CheckedAccessor::colors, 4))?;
+        let (indices, material) = (source.indices()?, source.material()?);
         let texture = document.root.materials.get(usize::from(material));
         let texture = texture.and_then(|m| m.pbr_metallic_roughness.base_color_texture.as_ref());
         let transform = texture.map(Coordinates::new).transpose().map_err(|e| format!("{name}: {e}"))?;
         let mut coordinates = None;
         if let Some(transform) = transform {
             let set = transform.set;
-            let column = beside(Semantic::TexCoords(set), CheckedAccessor::coordinates)?;
+            let column = source.beside(&positions, Semantic::TexCoords(set), (CheckedAccessor::coordinates, 2))?;
             coordinates = column.map(|column| (column, transform));
             if coordinates.is_none() {
                 warnings.push(format!("{name}: no TEXCOORD_{set}: one texel of its texture is taken"));
             }
         }
-        Ok(CheckedPrimitive { positions, normals, indices, coordinates, colors, material, mode })
+        let (targets, influences) = (source.targets(&positions)?, source.influences(&positions)?);
+        Ok(CheckedPrimitive { positions, normals, indices, coordinates, colors, targets, influences, material, mode })
+    }
+
+    /// Adds the morph targets to positions and normals.
+    pub fn morph(&self, weights: &[f32], positions: &mut [Vec3], normals: &mut [Vec3]) -> Result<()> {
+        for (target, weight) in self.targets.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
+            for (column, vectors) in [(&target.positions, &mut *positions), (&target.normals, &mut *normals)] {
+                let Some(column) = column else { continue };
+                for (vector, change) in vectors.iter_mut().zip(column.read_reals()?) {
+                    *vector += *weight * Vec3::from_array(change);
+                }
+            }
+        }
+        Ok(())
     }
 
     fn triangle_count(&self) -> u64 {

@@ -5,7 +5,7 @@ use glam::{DMat4, DQuat, DVec3, DVec4};
 use serde::Deserialize;
 
 /// The local transform of a node as in the file.
-#[derive(Deserialize)]
+#[derive(Clone, Deserialize)]
 pub(super) struct NodeTransform {
     matrix: Option<[f64; 16]>,
     translation: Option<[f64; 3]>,
@@ -29,6 +29,38 @@ impl NodeTransform {
         let scale = DVec3::from_array(self.scale.unwrap_or([1.0; 3]));
         let translation = DVec3::from_array(self.translation.unwrap_or([0.0; 3]));
         Ok(DMat4::from_scale_rotation_translation(scale, rotation / length, translation))
+    }
+}
+
+/// What animations set. A matrix is taken apart first, though glTF excludes it for nodes that move.
+impl NodeTransform {
+    pub fn set_translation(&mut self, translation: [f64; 3]) -> Result<()> {
+        self.take_apart()?;
+        self.translation = Some(translation);
+        Ok(())
+    }
+
+    pub fn set_rotation(&mut self, rotation: [f64; 4]) -> Result<()> {
+        self.take_apart()?;
+        self.rotation = Some(rotation);
+        Ok(())
+    }
+
+    pub fn set_scale(&mut self, scale: [f64; 3]) -> Result<()> {
+        self.take_apart()?;
+        self.scale = Some(scale);
+        Ok(())
+    }
+
+    fn take_apart(&mut self) -> Result<()> {
+        if self.matrix.is_some() {
+            let (scale, rotation, translation) = self.matrix()?.to_scale_rotation_translation();
+            self.matrix = None;
+            self.scale = Some(scale.to_array());
+            self.rotation = Some(rotation.to_array());
+            self.translation = Some(translation.to_array());
+        }
+        Ok(())
     }
 }
 

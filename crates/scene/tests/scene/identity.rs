@@ -9,6 +9,7 @@ fn imported(name: &str) -> Scene {
         metres_per_unit: 1.0,
         light_unit: LightUnit::Radiometric,
         emission_unit: LightUnit::Radiometric,
+        pose: None,
     };
     Scene::import(&path, &options).expect("the scene can be read")
 }

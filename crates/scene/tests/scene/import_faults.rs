@@ -149,15 +149,11 @@ fn nodes() {
             ("/nodes/0/scale", json!([0, 0, 0]), "no area"),
             ("/nodes/0/scale", json!([0, 1, 0]), "no area"),
             ("/nodes/0", json!({}), "no triangles"),
-            ("/nodes/0/skin", json!(0), "`body`&skinned&apply the pose"),
-            ("/meshes/0/primitives/0/targets", json!([{}]), "morph targets"),
+            ("/nodes/0/skin", json!(0), "node.skin&out of range"),
+            ("/meshes/0/primitives/0/targets", json!([{ "POSITION": 9 }]), "targets[0].POSITION&out of range"),
             ("/meshes/0/primitives", json!([]), "no triangles"),
         ],
     );
-    let channel = json!({ "sampler": 0, "target": { "node": 0, "path": "scale" } });
-    let mut moved = tetrahedron();
-    moved.push("animations", json!({ "name": "walk", "channels": [channel], "samplers": [] }));
-    assert!(fault(&moved).contains("`walk` moves a mesh"));
 }
 
 #[test]
@@ -229,11 +225,7 @@ fn materials_and_extensions() {
             ("/materials/0/emissiveFactor", json!([-1, 0, 0]), "`wax`&emissive"),
             ("/materials/0/pbrMetallicRoughness", json!({ "baseColorFactor": [-1, 0, 0, 1] }), "baseColorFactor"),
             ("/materials", json!(vec![json!({}); 65536]), "materials: 65536"),
-            ("/extensionsRequired", json!(["KHR_draco_mesh_compression"]), "KHR_draco&without compression"),
-            ("/extensionsUsed", json!(["EXT_meshopt_compression"]), "EXT_meshopt&without compression"),
-            ("/extensionsUsed", json!(["KHR_meshopt_compression"]), "KHR_meshopt&without compression"),
             ("/extensionsUsed", json!(["KHR_node_visibility"]), "KHR_node_visibility&hidden"),
-            ("/extensionsUsed", json!(["EXT_mesh_gpu_instancing"]), "instances as nodes"),
             ("/extensionsRequired", json!(["ACME_wings"]), "ACME_wings&without it"),
         ],
     );
