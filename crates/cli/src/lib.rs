@@ -45,6 +45,7 @@ mod tables;
 mod terminal;
 mod threads;
 mod truncated;
+mod units;
 mod values;
 
 pub use assign_media::{AssignError, assign_media};
@@ -64,4 +65,5 @@ pub use scene_settings::{SceneSettings, normal_kind};
 pub use seconds::Seconds;
 pub use tables::{camera_names, camera_table, material_names, material_table};
 pub use terminal::printable;
+pub use units::{UnitChoice, stored_unit};
 pub use values::{one_of, parse_relative_error, parse_rgb};

@@ -35,6 +35,7 @@ impl LitScene {
         files: &mut Files,
     ) -> Result<LitScene, Failure> {
         let cloud_files = CloudFiles::open(clouds)?;
+        let settings = &settings.with_units_of(&cloud_files.clouds[0].meta().options);
         let mut scene = import(settings, common)?;
         scene.files.iter().try_for_each(|path| files.reads("a file that SCENE names", path))?;
         cloud_files.check_fit(&scene, settings, common)?;

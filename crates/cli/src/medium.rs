@@ -1,7 +1,7 @@
 //! Media as a command line names them, or as a scene's file describes them.
 
 use bssrdf::{Medium, MediumError, MediumFile, Optics, Unit, built_in, single_scattering_albedo};
-use scene::{Material, ScatterExtension};
+use scene::{Material, ScatterExtension, StatedMedium};
 use std::{fs, io};
 
 /// Why a medium cannot be read.
@@ -15,6 +15,8 @@ pub enum ReadMediumError {
     Read { path: String, source: std::io::Error },
     #[error("material `{material}` of SCENE (eta is its KHR_materials_ior): {source}; give --medium {material}=NAME")]
     Scene { material: String, source: MediumError },
+    #[error("material `{material}` of SCENE: extras.medium: {source}; or give --medium {material}=NAME")]
+    Stated { material: String, source: MediumError },
 }
 
 /// Whether the name of a medium is a path: it ends in `.json` or contains a slash.
@@ -39,8 +41,17 @@ fn read_text(name: &str) -> io::Result<String> {
     fs::read_to_string(name)
 }
 
-/// The medium that the scene's file gives a material, or none if it gives no coefficients.
+/// The medium that the scene's file gives a material, or none if it gives no coefficients. What its extras state takes
+/// precedence; a name there is that of a built-in medium and never a path.
 pub fn scene_medium(material: &Material) -> Result<Option<Medium>, ReadMediumError> {
+    if let Some(stated) = &material.stated {
+        let medium = match stated {
+            StatedMedium::Name(name) => built_in(name),
+            StatedMedium::Json(text) => Medium::from_json(text),
+        };
+        let fault = |source| ReadMediumError::Stated { material: material.name.clone(), source };
+        return medium.map(Some).map_err(fault);
+    }
     let Some(volume) = &material.medium else { return Ok(None) };
     let scatter = volume.scatter.as_ref();
     let asymmetry = scatter.map_or(0.0, |s| s.asymmetry);
@@ -75,5 +86,30 @@ mod tests {
     fn a_device_is_refused() {
         let message = read_medium("/dev/zero").expect_err("refused").to_string();
         assert!(message.contains("/dev/zero: cannot read: not a regular file"), "{message}");
+    }
+
+    /// A name or JSON in the extras of a material; a name is never a path.
+    ///
+    /// Seen to catch: the extensions of the material taken before its extras.
+    #[test]
+    fn extras_of_a_material_state_its_medium() {
+        let bench = test_support::Bench::new();
+        let medium = |medium: serde_json::Value| {
+            let mut asset = test_support::glb::tetrahedron();
+            asset.set("/materials/0/extras", serde_json::json!({ "medium": medium }));
+            let transmission = serde_json::json!({ "KHR_materials_transmission": { "transmissionFactor": 1 } });
+            asset.set("/materials/0/extensions", transmission);
+            let path = bench.write("wax.glb", asset.glb());
+            let scene = scene::Scene::import(&path, &test_support::glb::OPTIONS).expect("imports");
+            scene_medium(&scene.materials[0]).map_err(|e| e.to_string())
+        };
+        let marble = built_in("marble").expect("it is built in");
+        assert_eq!(medium("marble".into()), Ok(Some(marble)));
+        let own = r#"{"name":"own","unit":"1/m","sigma_a":[1,1,1],"sigma_s":[9,9,9]}"#;
+        assert_eq!(medium(own.into()), Ok(Some(Medium::from_json(own).expect("a medium"))));
+        for wrong in ["marbel", "/etc/passwd", "data/media/marble.json", "{"] {
+            let message = medium(wrong.into()).expect_err("it is no medium");
+            assert!(message.contains("`wax` of SCENE: extras.medium") && message.contains("--medium"), "{message}");
+        }
     }
 }

@@ -53,8 +53,8 @@ pub mod warp;
 
 pub use error::{LostVolumes, SceneError};
 pub use glam::{DVec3, DVec4, Vec3};
-pub use import::{ImportOptions, LightUnit};
-pub use material::{Material, Scatter, ScatterExtension, Volume};
+pub use import::{FileUnits, ImportOptions, LightUnit};
+pub use material::{Material, Scatter, ScatterExtension, StatedMedium, Volume};
 pub use mesh::{Mesh, NormalKind, SurfacePoint, Triangle};
 pub use mesh_defects::MeshDefects;
 pub use rays::{Hit, Rays};

@@ -14,8 +14,10 @@ pub struct Material {
     pub cutoff: Option<f32>,
     /// Radiance that it emits, W/(m² sr).
     pub emission: DVec3,
-    /// Whether the file marks the surface as the boundary of a volume.
+    /// Whether the file marks the surface as translucent: light enters it, or it bounds a volume.
     pub volume: bool,
+    /// The medium that its `extras` state; it takes precedence over that of extensions.
+    pub stated: Option<StatedMedium>,
     /// The medium of that volume, if the file describes it.
     pub medium: Option<Volume>,
     /// Whether it emits to both sides.
@@ -27,6 +29,15 @@ impl Material {
     pub fn emits(&self) -> bool {
         self.emission != DVec3::ZERO
     }
+}
+
+/// A medium as the `extras` of a material state it, not read yet: this crate knows no media.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum StatedMedium {
+    /// The name of a built-in one.
+    Name(String),
+    /// The text of a medium's file, JSON.
+    Json(String),
 }
 
 /// The medium below a surface, by KHR_materials_volume, KHR_materials_ior and the two draft extensions for scattering.

@@ -2,6 +2,7 @@
 
 use crate::{
     error::LostVolumes,
+    import::FileUnits,
     light::{contract::Light, environment::Environment},
     material::Material,
     mesh::Mesh,
@@ -28,6 +29,8 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// World position of the mesh's center, m.
     pub origin: DVec3,
+    /// The units of the file's lights and emitting materials.
+    pub units: FileUnits,
     /// Warnings about parts that were left out or look wrong, one line each.
     pub warnings: Vec<String>,
     /// For each material, how many triangles were left out because they have no area.

@@ -1,10 +1,10 @@
 //! The task of the program: the arguments, checked, before any file is read.
 
 use crate::arguments::Arguments;
-use cli::{Common, Failure, SceneSettings};
+use cli::{Common, Failure, SceneSettings, stored_unit};
 use formats::cloud::{Choice, Options, Pattern, Shard};
 use sample_surface::Settings;
-use scene::light::Environment;
+use scene::Scene;
 use std::path::PathBuf;
 
 /// The task of the program.
@@ -59,8 +59,8 @@ impl Task {
 }
 
 impl Request {
-    /// How to sample in this environment.
-    pub fn settings(&self, environment: &Environment) -> Settings {
+    /// How to sample this scene.
+    pub fn settings(&self, scene: &Scene) -> Settings {
         let options = Options {
             seed: self.common.seed,
             shard: self.shard,
@@ -69,9 +69,9 @@ impl Request {
             shares: self.shares.clone(),
             normals: self.scene.how.normals,
             metres_per_unit: self.scene.how.metres_per_unit,
-            light_unit: self.scene.how.light_unit,
-            emission_unit: self.scene.emission_unit(),
-            environment: environment.identity(),
+            light_unit: stored_unit(scene.units.light),
+            emission_unit: stored_unit(scene.units.emission),
+            environment: scene.environment.identity(),
         };
         Settings { samples: self.samples, options }
     }

@@ -1,6 +1,6 @@
 //! Import of materials.
 
-use super::{container::Document, fault::Result, options::ImportOptions, textures::Textures, volumes};
+use super::{container::Document, extras, fault::Result, textures::Textures, units::FileUnits, volumes};
 use crate::material::Material;
 use glam::{DVec3, DVec4};
 use gltf::json::{self, material::AlphaMode, validation::Checked};
@@ -8,7 +8,12 @@ use gltf::json::{self, material::AlphaMode, validation::Checked};
 /// Triangles have a material index of 16 bits, and one index is for triangles without material.
 const MAX_MATERIALS: usize = u16::MAX as usize;
 
-pub(super) fn read(document: &Document, options: &ImportOptions, warnings: &mut Vec<String>) -> Result<Vec<Material>> {
+pub(super) fn read(
+    document: &Document,
+    metres_per_unit: f64,
+    units: &FileUnits,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<Material>> {
     let root = &document.root;
     let count = root.materials.len();
     if count > MAX_MATERIALS {
@@ -19,7 +24,8 @@ pub(super) fn read(document: &Document, options: &ImportOptions, warnings: &mut 
     let mut textures = Textures::new(document);
     let named = |(k, m): (usize, &json::Material)| {
         let name = m.name.clone().unwrap_or_else(|| format!("material{k}"));
-        material(name.clone(), m, options, &mut textures, warnings).map_err(|e| format!("material `{name}`: {e}"))
+        material(name.clone(), m, (metres_per_unit, units), &mut textures, warnings)
+            .map_err(|e| format!("material `{name}`: {e}"))
     };
     root.materials.iter().enumerate().map(named).collect()
 }
@@ -33,6 +39,7 @@ pub(super) fn default() -> Material {
         cutoff: None,
         emission: DVec3::ZERO,
         volume: false,
+        stated: None,
         medium: None,
         double_sided: false,
     }
@@ -41,7 +48,7 @@ pub(super) fn default() -> Material {
 fn material(
     name: String,
     m: &json::Material,
-    options: &ImportOptions,
+    (metres_per_unit, units): (f64, &FileUnits),
     textures: &mut Textures,
     warnings: &mut Vec<String>,
 ) -> Result<Material> {
@@ -70,16 +77,18 @@ fn material(
         (masked && emission != DVec3::ZERO, "alphaMode MASK is not used: the surface emits"),
     ];
     warnings.extend(unused.iter().filter(|u| u.0).map(|(_, what)| format!("material `{name}`: {what}")));
-    let emission = emission * options.emission_unit.watts();
-    let note = |what| warnings.push(format!("material `{name}`: {what}"));
-    let medium = volumes::read(m, options.metres_per_unit, note)?;
+    let emission = emission * units.emission.watts();
+    let mut note = |what| warnings.push(format!("material `{name}`: {what}"));
+    let stated = extras::medium(m, &mut note);
+    let medium = volumes::read(m, metres_per_unit, note)?;
     Ok(Material {
         name,
         base_color,
         base_texture,
         cutoff: masked.then_some(cutoff),
         emission,
-        volume: volumes::is_marked(m),
+        volume: stated.is_some() || volumes::is_marked(m),
+        stated,
         medium,
         double_sided: m.double_sided,
     })

@@ -9,6 +9,7 @@ mod cameras;
 mod clipping;
 mod container;
 mod duplicates;
+mod extras;
 mod fault;
 mod features;
 pub(crate) mod files;
@@ -24,6 +25,7 @@ mod survey;
 mod textures;
 mod transform;
 mod unhonoured;
+mod units;
 mod volumes;
 
 use crate::{
@@ -47,6 +49,7 @@ use std::{
     path::{Path, PathBuf},
 };
 use unhonoured::RenderedParts;
+pub use units::FileUnits;
 
 impl Scene {
     /// Reads a .glb or .gltf file.
@@ -77,7 +80,8 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
     features::check(document)?;
     let nodes = nodes::in_world(document, options.metres_per_unit)?;
     features::check_nodes(root, &nodes, &mut warnings)?;
-    let mut materials = materials::read(document, options, &mut warnings)?;
+    let units = units::decide(root, &nodes, options);
+    let mut materials = materials::read(document, options.metres_per_unit, &units, &mut warnings)?;
     let Geometry { mut mesh, origin, degenerate, rounded } = geometry(document, &nodes, &mut warnings)?;
     if mesh.triangles.iter().any(|t| usize::from(t.material) == materials.len()) {
         materials.push(materials::default());
@@ -88,7 +92,7 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
         let count: u64 = duplicates.values().sum();
         warnings.push(format!("{count} triangles lie exactly on others of their material and are left out"));
     }
-    let mut lights = lights::punctual(root, &nodes, options, origin, &mut warnings)?;
+    let mut lights = lights::punctual(root, &nodes, (options.metres_per_unit, &units), origin, &mut warnings)?;
     lights.extend(lights::emitters(&mesh, &materials));
     let metres_per_unit = options.metres_per_unit;
     let cameras = cameras::read(root, &nodes, metres_per_unit)?;
@@ -103,6 +107,7 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
         environment: Environment::Constant(DVec3::ZERO),
         cameras,
         origin,
+        units,
         warnings,
         degenerate_triangles: degenerate,
         rounded_triangles: rounded,
