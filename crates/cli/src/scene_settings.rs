@@ -56,6 +56,7 @@ impl SceneSettings {
         defects: MeshDefects,
         common: &Common,
     ) -> Result<(), Failure> {
+        scene.check_textures(&translucent)?;
         let known = scene.warnings.len();
         scene.warn_of_unhonoured(&translucent);
         scene.warn_of_colors(&translucent);

@@ -54,7 +54,7 @@ pub mod warp;
 pub use error::{LostVolumes, SceneError};
 pub use glam::{DVec3, DVec4, Vec3};
 pub use import::{FileUnits, ImportOptions, LightUnit};
-pub use material::{Material, Scatter, ScatterExtension, StatedMedium, Volume};
+pub use material::{Alpha, Material, Scatter, ScatterExtension, StatedMedium, Volume};
 pub use mesh::{Mesh, NormalKind, SurfacePoint, Triangle};
 pub use mesh_defects::MeshDefects;
 pub use rays::{Hit, Rays};

@@ -1,7 +1,7 @@
 //! The scene as it is imported.
 
 use crate::{
-    error::LostVolumes,
+    error::{LostVolumes, SceneError},
     import::FileUnits,
     light::{contract::Light, environment::Environment},
     material::Material,
@@ -39,6 +39,8 @@ pub struct Scene {
     pub rounded_triangles: BTreeMap<u16, u64>,
     /// For each material, how many triangles were left out because another of the same material has the same corners.
     pub duplicate_triangles: BTreeMap<u16, u64>,
+    /// Why the base color texture of a material cannot be read: a fault only where an opaque surface needs it.
+    pub(crate) texture_faults: BTreeMap<u16, String>,
     /// Materials that a primitive of the scene names, though it may have no triangle left.
     pub(crate) claimed: BTreeSet<u16>,
     /// Properties of the file that the image does not show.
@@ -52,8 +54,8 @@ impl Scene {
         self.file_lights.iter().map(|light| &**light).chain(environment)
     }
 
-    /// Indices of the materials whose surfaces bound media by default: those that the file marks as volumes or, if it
-    /// marks none, all that do not emit, with `true` for the latter. Only materials that cover a triangle count. It is
+    /// Indices of the materials whose surfaces bound media by default: those that the file marks as translucent or, if it
+    /// marks none, all that are no lamps, with `true` for the latter. Only materials that cover a triangle count. It is
     /// an error if the file marks materials and none of them covers a triangle.
     pub fn translucent(&self) -> Result<(Vec<u16>, bool), LostVolumes> {
         let mut used = vec![false; self.materials.len()];
@@ -66,7 +68,7 @@ impl Scene {
             return Ok((marked, false));
         }
         let lost = self.lost_volumes();
-        if lost.is_empty() { Ok((select(|m| !m.emits()), true)) } else { Err(self.lost(&lost)) }
+        if lost.is_empty() { Ok((select(|m| !m.is_lamp()), true)) } else { Err(self.lost(&lost)) }
     }
 
     /// Indices of the materials that the file marks as volumes and uses, and that cover no triangle.
@@ -91,6 +93,31 @@ impl Scene {
         let texture = material.base_texture.as_ref();
         let texel = texture.map_or(DVec4::ONE, |t| t.at(self.mesh.coordinates(triangle, weights)));
         material.base_color * texel * self.mesh.color(triangle, weights)
+    }
+
+    /// Radiance that the point of a triangle with these barycentric weights emits, W/(m² sr).
+    pub fn emission(&self, triangle: u32, weights: [f64; 3]) -> DVec3 {
+        let material = &self.materials[self.mesh.triangles[triangle as usize].material as usize];
+        match &material.emission_texture {
+            Some(texture) => {
+                material.emission * texture.at(self.mesh.emission_coordinates(triangle, weights)).truncate()
+            }
+            None => material.emission,
+        }
+    }
+
+    /// Refuses a base color texture that cannot be read, if an opaque surface needs it.
+    pub fn check_textures(&self, translucent: impl Fn(u16) -> bool) -> Result<(), SceneError> {
+        let mut used = vec![false; self.materials.len()];
+        self.mesh.triangles.iter().for_each(|t| used[t.material as usize] = true);
+        let needed = |k: &u16| used.get(usize::from(*k)) == Some(&true) && !translucent(*k);
+        match self.texture_faults.iter().find(|(k, _)| needed(k)) {
+            Some((_, what)) => {
+                let path = self.files.first().cloned().unwrap_or_default();
+                Err(SceneError::Invalid { path, what: what.clone() })
+            }
+            None => Ok(()),
+        }
     }
 
     fn lost(&self, materials: &[u16]) -> LostVolumes {

@@ -73,7 +73,7 @@ impl Renderer<'_> {
         let point = scene.mesh.point(triangle, weights, self.settings.normals);
         let material = &scene.materials[point.material as usize];
         let in_front = point.geometric_normal.dot(exit.direction) < 0.0;
-        let emitted = if in_front || material.double_sided { material.emission } else { DVec3::ZERO };
+        let emitted = if in_front || material.double_sided { scene.emission(triangle, weights) } else { DVec3::ZERO };
         if self.objects[point.material as usize].is_some() {
             return emitted;
         }

@@ -26,7 +26,10 @@ pub(super) fn emitters(mesh: &Mesh, materials: &[Material]) -> Vec<Box<dyn Light
             triangles[t.material as usize].push(k);
         }
     }
-    let light = |(m, own): (&Material, &Vec<usize>)| AreaLight::new(mesh, own, m.emission, m.double_sided);
+    let light = |(m, own): (&Material, &Vec<usize>)| match &m.emission_texture {
+        Some(texture) => AreaLight::textured(mesh, own, m.emission, m.double_sided, texture),
+        None => AreaLight::new(mesh, own, m.emission, m.double_sided),
+    };
     let lights = materials.iter().zip(&triangles).filter_map(light);
     lights.map(|light| Box::new(light) as Box<dyn Light>).collect()
 }

@@ -5,6 +5,7 @@
 //! made relative to the center of the mesh.
 
 mod accessor;
+mod base_color;
 mod cameras;
 mod clipping;
 mod container;
@@ -81,7 +82,9 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
     let nodes = nodes::in_world(document, options.metres_per_unit)?;
     features::check_nodes(root, &nodes, &mut warnings)?;
     let units = units::decide(root, &nodes, options);
-    let mut materials = materials::read(document, options.metres_per_unit, &units, &mut warnings)?;
+    let (metres_per_unit, claimed) = (options.metres_per_unit, claimed(root, &nodes));
+    let context = materials::Context { document, metres_per_unit, units: &units, used: &claimed };
+    let (mut materials, texture_faults) = materials::read(&context, &mut warnings)?;
     let Geometry { mut mesh, origin, degenerate, rounded } = geometry(document, &nodes, &mut warnings)?;
     if mesh.triangles.iter().any(|t| usize::from(t.material) == materials.len()) {
         materials.push(materials::default());
@@ -92,15 +95,15 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
         let count: u64 = duplicates.values().sum();
         warnings.push(format!("{count} triangles lie exactly on others of their material and are left out"));
     }
-    let mut lights = lights::punctual(root, &nodes, (options.metres_per_unit, &units), origin, &mut warnings)?;
+    let mut lights = lights::punctual(root, &nodes, (metres_per_unit, &units), origin, &mut warnings)?;
     lights.extend(lights::emitters(&mesh, &materials));
-    let metres_per_unit = options.metres_per_unit;
     let cameras = cameras::read(root, &nodes, metres_per_unit)?;
     let parts = RenderedParts { mesh: &mesh, nodes: &nodes, cameras: &cameras, origin, metres_per_unit };
     let unhonoured = [features::undeclared_effects(document), unhonoured::of(document, &parts)].concat();
     Ok(Scene {
         files: document.files.borrow().read.clone(),
-        claimed: claimed(root, &nodes),
+        claimed,
+        texture_faults,
         mesh,
         materials,
         file_lights: lights,

@@ -1,9 +1,16 @@
 //! The primitives of a mesh, checked and not read yet: a mesh may have many instances, or be too large to be read.
 
-use super::{accessor::CheckedAccessor, container::Document, fault::Result, textures::Coordinates};
+use super::{
+    accessor::CheckedAccessor,
+    base_color,
+    container::Document,
+    fault::{Fault, Result},
+    textures::Coordinates,
+};
 use gltf::json::{
     self, Accessor, Index,
     mesh::{Mode, Primitive, Semantic},
+    texture::Info,
     validation::Checked,
 };
 
@@ -22,6 +29,8 @@ pub(super) struct CheckedPrimitive<'a> {
     pub indices: Option<CheckedAccessor<'a>>,
     /// Texture coordinates, and their transform by the texture.
     pub coordinates: Option<(CheckedAccessor<'a>, Coordinates)>,
+    /// The same of the emissive texture.
+    pub emission_coordinates: Option<(CheckedAccessor<'a>, Coordinates)>,
     pub colors: Option<CheckedAccessor<'a>>,
     /// Index of the material. Primitives without one have the number of materials.
     pub material: u16,
@@ -99,19 +108,22 @@ impl<'a> CheckedPrimitive<'a> {
             return Err(format!("{name}: material index {material} is out of range, there are {materials}"));
         }
         let material = u16::try_from(material).map_err(|_| format!("{name}: too many materials"))?;
-        let texture = document.root.materials.get(usize::from(material));
-        let texture = texture.and_then(|m| m.pbr_metallic_roughness.base_color_texture.as_ref());
-        let transform = texture.map(Coordinates::new).transpose().map_err(|e| format!("{name}: {e}"))?;
-        let mut coordinates = None;
-        if let Some(transform) = transform {
+        let mut coordinates = |info: Option<&Info>| {
+            let transform = info.map(Coordinates::new).transpose().map_err(|e| format!("{name}: {e}"))?;
+            let Some(transform) = transform else { return Ok::<_, Fault>(None) };
             let set = transform.set;
             let column = beside(Semantic::TexCoords(set), CheckedAccessor::coordinates)?;
-            coordinates = column.map(|column| (column, transform));
-            if coordinates.is_none() {
+            if column.is_none() {
                 warnings.push(format!("{name}: no TEXCOORD_{set}: one texel of its texture is taken"));
             }
-        }
-        Ok(CheckedPrimitive { positions, normals, indices, coordinates, colors, material, mode })
+            Ok(column.map(|column| (column, transform)))
+        };
+        let own = document.root.materials.get(usize::from(material));
+        let base = own.and_then(base_color::texture);
+        let emission = own.filter(|m| m.emissive_factor.0 != [0.0; 3]).and_then(|m| m.emissive_texture.as_ref());
+        let [coordinates, emission_coordinates] =
+            [coordinates(base.as_ref().map(|(info, _)| &**info))?, coordinates(emission)?];
+        Ok(CheckedPrimitive { positions, normals, indices, coordinates, emission_coordinates, colors, material, mode })
     }
 
     fn triangle_count(&self) -> u64 {

@@ -182,19 +182,6 @@ fn emitting_materials_are_area_lights() {
     assert!(irradiance(&scene, DVec3::splat(-100.0), DVec3::ONE.normalize()).x > 0.0);
 }
 
-/// Emission is that of the factor. One warning says that the texture, which would vary it, is not used.
-#[test]
-fn an_emissive_texture_is_left_out_with_a_warning() {
-    let mut asset = tetrahedron();
-    asset.set("/materials/0/emissiveFactor", json!([0.5, 1, 1]));
-    asset.set("/materials/0/emissiveTexture", json!({ "index": 0 }));
-    asset.set("/materials/0/name", json!("Neon"));
-    let scene = import(&asset);
-    assert_eq!(scene.materials[0].emission, DVec3::new(0.5, 1.0, 1.0));
-    let about = scene.warnings.iter().filter(|w| w.contains("`Neon`") && w.contains("emissive texture"));
-    assert_eq!(about.count(), 1, "{:?}", scene.warnings);
-}
-
 /// Seen to catch: the cosines of the angles in the digest, which are 1 for both narrow spots.
 #[test]
 fn the_light_digest_tells_lights_apart() {
