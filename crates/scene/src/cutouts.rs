@@ -1,7 +1,10 @@
-//! Holes in opaque surfaces: where their alpha is below a threshold, or by chance where it is the share that they cover.
+//! Holes in opaque surfaces: where their alpha is below a threshold, by chance where it is the share that they cover, and
+//! by chance in panes of glass, which are met where they mirror.
 
 use crate::{
     material::{Alpha, Material},
+    mesh::unit,
+    panes,
     random::mix,
     scene::Scene,
 };
@@ -11,21 +14,36 @@ use glam::DVec3;
 #[derive(Clone)]
 pub(crate) struct Cutouts<'a> {
     scene: &'a Scene,
-    /// What alpha means on the surfaces of each material.
-    alphas: Vec<Alpha>,
+    /// What decides on the surfaces of each material.
+    rules: Vec<Rule>,
 }
+
+/// What decides whether a ray passes.
+#[derive(Clone, Copy, PartialEq)]
+enum Rule {
+    Alpha(Alpha),
+    /// Glass of this relative index.
+    Pane(f64),
+}
+
+const SOLID: Rule = Rule::Alpha(Alpha::Ignored);
 
 impl<'a> Cutouts<'a> {
     /// None if no opaque surface has holes. Emitting surfaces have none: light is sampled on all of them.
     pub fn new(scene: &'a Scene, translucent: impl Fn(u16) -> bool) -> Option<Self> {
-        let alpha = |k: usize| {
+        let rule = |k: usize| {
             let material = &scene.materials[k];
-            let has_holes = !translucent(k as u16) && !material.emits();
+            if translucent(k as u16) || material.emits() {
+                return SOLID;
+            }
+            if let Some(ior) = scene.panes[k] {
+                return Rule::Pane(ior);
+            }
             let covers_all = material.alpha == Alpha::Coverage && scene.mesh.colors.is_empty() && is_solid(material);
-            if has_holes && !covers_all { material.alpha } else { Alpha::Ignored }
+            if covers_all { SOLID } else { Rule::Alpha(material.alpha) }
         };
-        let alphas: Vec<Alpha> = (0..scene.materials.len()).map(alpha).collect();
-        alphas.iter().any(|alpha| *alpha != Alpha::Ignored).then_some(Cutouts { scene, alphas })
+        let rules: Vec<Rule> = (0..scene.materials.len()).map(rule).collect();
+        rules.iter().any(|rule| *rule != SOLID).then_some(Cutouts { scene, rules })
     }
 
     /// Whether a ray passes through a triangle at the point with these barycentric weights. By coverage, chance decides:
@@ -38,11 +56,16 @@ impl<'a> Cutouts<'a> {
     ) -> bool {
         let material = self.scene.mesh.triangles[triangle as usize].material;
         let alpha = || self.scene.color(triangle, weights()).w;
-        match self.alphas[material as usize] {
-            Alpha::Ignored => false,
+        match self.rules[material as usize] {
+            Rule::Alpha(Alpha::Ignored) => false,
             // Both are float32 in the file: an alpha that equals the cutoff in decimals must not be a hole.
-            Alpha::Cutoff(cutoff) => (alpha() as f32) < cutoff,
-            Alpha::Coverage => chance(triangle, origin, direction) >= alpha(),
+            Rule::Alpha(Alpha::Cutoff(cutoff)) => (alpha() as f32) < cutoff,
+            Rule::Alpha(Alpha::Coverage) => chance(triangle, origin, direction) >= alpha(),
+            Rule::Pane(ior) => {
+                let [a, b, c] = self.scene.mesh.corners(triangle as usize);
+                let cosine = unit((b - a).cross(c - a)).dot(direction);
+                chance(triangle, origin, direction) >= panes::reflectance(cosine, ior)
+            }
         }
     }
 }

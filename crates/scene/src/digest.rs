@@ -31,6 +31,11 @@ impl Scene {
             put(m.name.as_bytes());
         }
         self.put_colors(&mut put);
+        for (k, ior) in self.panes.iter().enumerate().filter_map(|(k, pane)| Some((k, (*pane)?))) {
+            put(b"pane");
+            put(&(k as u64).to_le_bytes());
+            put(&ior.to_le_bytes());
+        }
         *hasher.finalize().as_bytes()
     }
 

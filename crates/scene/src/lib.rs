@@ -41,6 +41,7 @@ pub mod light;
 mod material;
 mod mesh;
 mod mesh_defects;
+mod panes;
 pub mod random;
 mod rays;
 mod scene;

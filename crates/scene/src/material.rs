@@ -17,6 +17,8 @@ pub struct Material {
     pub emission_texture: Option<Texture>,
     /// Whether the file marks the surface as translucent: light enters it, or it bounds a volume.
     pub volume: bool,
+    /// Whether the file gives it walls without thickness that light crosses: transmission without a volume.
+    pub thin: bool,
     /// The medium that its `extras` state; it takes precedence over that of extensions.
     pub stated: Option<StatedMedium>,
     /// The medium of that volume, if the file describes it.

@@ -39,6 +39,8 @@ pub struct Scene {
     pub rounded_triangles: BTreeMap<u16, u64>,
     /// For each material, how many triangles were left out because another of the same material has the same corners.
     pub duplicate_triangles: BTreeMap<u16, u64>,
+    /// For each material, the relative index of the glass if its surface is a pane.
+    pub(crate) panes: Vec<Option<f64>>,
     /// Why the base color texture of a material cannot be read: a fault only where an opaque surface needs it.
     pub(crate) texture_faults: BTreeMap<u16, String>,
     /// Materials that a primitive of the scene names, though it may have no triangle left.
@@ -63,7 +65,7 @@ impl Scene {
         let select = |accept: fn(&Material) -> bool| -> Vec<u16> {
             (0..used.len()).filter(|k| used[*k] && accept(&self.materials[*k])).map(|k| k as u16).collect()
         };
-        let marked = select(|m| m.volume);
+        let marked: Vec<u16> = select(|m| m.volume).into_iter().filter(|k| !self.is_pane(*k)).collect();
         if !marked.is_empty() {
             return Ok((marked, false));
         }
@@ -77,6 +79,12 @@ impl Scene {
         lost.retain(|k| self.materials.get(usize::from(*k)).is_some_and(|m| m.volume));
         self.mesh.triangles.iter().for_each(|t| _ = lost.remove(&t.material));
         lost.into_iter().collect()
+    }
+
+    /// Whether the surface of a material is a sheet of clear glass, which rays pass or are mirrored by. It is none where it
+    /// is sampled as translucent.
+    pub fn is_pane(&self, material: u16) -> bool {
+        self.panes.get(usize::from(material)).is_some_and(Option::is_some)
     }
 
     /// Area of the triangles of each material, m².

@@ -162,7 +162,11 @@ impl Renderer<'_> {
         if material.emits() && (side == Side::Outside || material.double_sided) {
             light.add(state, Layer::Emission, self.input.scene.emission(hit.triangle, hit.weights));
         }
-        let bsdf = Surface::opaque(self.input.scene.color(hit.triangle, hit.weights).truncate());
+        // A ray meets a pane only where that mirrors.
+        let bsdf = match self.input.scene.is_pane(point.material) {
+            true => Surface::dielectric(1.0),
+            false => Surface::opaque(self.input.scene.color(hit.triangle, hit.weights).truncate()),
+        };
         if bsdf.is_specular() {
             let meeting = Meeting::new(point, bsdf, side, -state.direction, counts);
             return meeting.scatter(state, Lobe::Reflection, Layer::Specular, counts);

@@ -34,6 +34,7 @@ use crate::{
     light::Environment,
     material::Material,
     mesh::Mesh,
+    panes,
     scene::Scene,
     unhonoured::{first_of, quoted},
 };
@@ -100,7 +101,9 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
     let cameras = cameras::read(root, &nodes, metres_per_unit)?;
     let parts = RenderedParts { mesh: &mesh, nodes: &nodes, cameras: &cameras, origin, metres_per_unit };
     let unhonoured = [features::undeclared_effects(document), unhonoured::of(document, &parts)].concat();
+    let panes = panes::find(&mesh, &materials);
     Ok(Scene {
+        panes,
         files: document.files.borrow().read.clone(),
         claimed,
         texture_faults,

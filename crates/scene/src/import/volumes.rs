@@ -35,6 +35,12 @@ pub(super) fn is_marked(m: &json::Material) -> bool {
     m.extensions.as_ref().is_some_and(|e| enters(e) || is_solid(e) || drafts(e).next().is_some())
 }
 
+/// True if light enters by transmission alone: glTF then says that the walls have no thickness.
+pub(super) fn is_thin(m: &json::Material) -> bool {
+    let no_volume = |e: &material::Material| e.volume.as_ref().is_none_or(|v| v.thickness_factor.0 <= 0.0);
+    m.extensions.as_ref().is_some_and(|e| transmission(e) > 0.0 && no_volume(e) && drafts(e).next().is_none())
+}
+
 fn transmission(e: &material::Material) -> f32 {
     e.transmission.as_ref().map_or(0.0, |t| t.transmission_factor.0)
 }

@@ -19,6 +19,7 @@ mod lights;
 mod many_lights;
 mod mesh_defects;
 mod meshes;
+mod panes;
 mod rays;
 mod shadows;
 mod unhonoured;
