@@ -1,6 +1,6 @@
 //! The clouds of a run, checked: they belong together and to the scene, and are undamaged.
 
-use crate::{Common, Failure, SceneSettings};
+use crate::{Common, Failure, SceneSettings, stored_unit};
 use formats::cloud::{Cloud, SampledMaterial, shards};
 use scene::{MeshDefects, Scene};
 use std::{fmt::Display, num::NonZeroUsize, path::PathBuf};
@@ -63,8 +63,8 @@ impl CloudFiles {
         let renamed =
             |m: &SampledMaterial| scene.materials.get(usize::from(m.index)).is_none_or(|own| own.name != m.name);
         option("--metres-per-unit", &settings.how.metres_per_unit, &options.metres_per_unit)
-            .or_else(|| option("--light-unit", &settings.how.light_unit, &options.light_unit))
-            .or_else(|| option("--emission-unit", &settings.emission_unit(), &options.emission_unit))
+            .or_else(|| option("--light-unit", &stored_unit(scene.units.light), &options.light_unit))
+            .or_else(|| option("--emission-unit", &stored_unit(scene.units.emission), &options.emission_unit))
             .or_else(|| pose_difference(&scene.pose, &options.pose))
             .or_else(|| (scene.geometry_digest() != meta.geometry).then(|| "its mesh or materials differ".into()))
             .or_else(|| meta.materials.iter().any(renamed).then(|| "its materials differ".into()))

@@ -48,6 +48,7 @@ mod tables;
 mod terminal;
 mod threads;
 mod truncated;
+mod units;
 mod values;
 
 pub use asked::Asked;
@@ -70,4 +71,5 @@ pub use seconds::Seconds;
 pub use shell::quoted;
 pub use tables::{camera_names, camera_table, material_names, material_table};
 pub use terminal::printable;
+pub use units::{UnitChoice, stored_unit};
 pub use values::{one_of, parse_duration, parse_relative_error, parse_rgb};

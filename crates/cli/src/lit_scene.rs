@@ -38,6 +38,7 @@ impl LitScene {
     ) -> Result<LitScene, Failure> {
         let cloud_files = CloudFiles::open(clouds)?;
         let about_scene = Common { quiet: common.quiet || !repeats, ..common.clone() };
+        let settings = &settings.with_units_of(&cloud_files.clouds[0].meta().options);
         let mut scene = import(settings, &about_scene)?;
         scene.files.iter().try_for_each(|path| files.reads("a file that SCENE names", path))?;
         cloud_files.check_fit(&scene, settings, common)?;

@@ -2,7 +2,7 @@
 
 use crate::quoted;
 use bssrdf::{Medium, MediumError, MediumFile, Optics, Unit, built_in, single_scattering_albedo};
-use scene::{Material, ScatterExtension};
+use scene::{Material, ScatterExtension, StatedMedium};
 use std::{fs, io};
 
 /// Why a medium cannot be read.
@@ -16,6 +16,8 @@ pub enum ReadMediumError {
     Read { path: String, source: std::io::Error },
     #[error("material `{material}` of SCENE (eta is its KHR_materials_ior): {source}; give --medium {}", quoted(&format!("{material}=NAME")))]
     Scene { material: String, source: MediumError },
+    #[error("material `{material}` of SCENE: extras.medium: {source}; or give --medium {material}=NAME")]
+    Stated { material: String, source: MediumError },
 }
 
 /// Whether the name of a medium is a path: it ends in `.json` or contains a slash.
@@ -40,8 +42,17 @@ fn read_text(name: &str) -> io::Result<String> {
     fs::read_to_string(name)
 }
 
-/// The medium that the scene's file gives a material, or none if it gives no coefficients.
+/// The medium that the scene's file gives a material, or none if it gives no coefficients. What its extras state takes
+/// precedence; a name there is that of a built-in medium and never a path.
 pub fn scene_medium(material: &Material) -> Result<Option<Medium>, ReadMediumError> {
+    if let Some(stated) = &material.stated {
+        let medium = match stated {
+            StatedMedium::Name(name) => built_in(name),
+            StatedMedium::Json(text) => Medium::from_json(text),
+        };
+        let fault = |source| ReadMediumError::Stated { material: material.name.clone(), source };
+        return medium.map(Some).map_err(fault);
+    }
     let Some(volume) = &material.medium else { return Ok(None) };
     let scatter = volume.scatter.as_ref();
     let asymmetry = scatter.map_or(0.0, |s| s.asymmetry);
@@ -70,11 +81,45 @@ pub fn scene_medium(material: &Material) -> Result<Option<Medium>, ReadMediumErr
 #[cfg(test)]
 mod tests {
     use super::*;
+    use scene::{Alpha, DVec3, DVec4, Volume};
 
     /// Seen to catch: the kind of the file not looked at, so that a device takes all memory.
     #[test]
     fn a_device_is_refused() {
         let message = read_medium("/dev/zero").expect_err("refused").to_string();
         assert!(message.contains("/dev/zero: cannot read: not a regular file"), "{message}");
+    }
+
+    /// A name or JSON in the extras of a material; a name is never a path.
+    ///
+    /// Seen to catch: the extensions of the material taken before its extras.
+    #[test]
+    fn extras_of_a_material_state_its_medium() {
+        let volume = Volume { extinction: DVec3::ONE, ior: 1.3, scatter: None };
+        let medium = |stated: StatedMedium| {
+            let material = Material {
+                name: "wax".into(),
+                base_color: DVec4::ONE,
+                base_texture: None,
+                alpha: Alpha::Ignored,
+                emission: DVec3::ZERO,
+                emission_texture: None,
+                volume: true,
+                thin: false,
+                stated: Some(stated),
+                medium: Some(volume.clone()),
+                double_sided: false,
+            };
+            scene_medium(&material).map_err(|e| e.to_string())
+        };
+        let (name, json) = (|name: &str| StatedMedium::Name(name.into()), |text: &str| StatedMedium::Json(text.into()));
+        let marble = built_in("marble").expect("it is built in");
+        assert_eq!(medium(name("marble")), Ok(Some(marble)));
+        let own = r#"{"name":"own","unit":"1/m","sigma_a":[1,1,1],"sigma_s":[9,9,9]}"#;
+        assert_eq!(medium(json(own)), Ok(Some(Medium::from_json(own).expect("a medium"))));
+        for wrong in [name("marbel"), name("/etc/passwd"), name("data/media/marble.json"), json("{")] {
+            let message = medium(wrong).expect_err("it is no medium");
+            assert!(message.contains("`wax` of SCENE: extras.medium") && message.contains("--medium"), "{message}");
+        }
     }
 }

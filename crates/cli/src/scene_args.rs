@@ -2,10 +2,11 @@
 
 use crate::{
     environment::{EnvironmentSource, parse_environment},
+    units::UnitChoice,
     values::{one_of, parse_finite, parse_non_negative, parse_positive},
 };
 use clap::Args;
-use formats::cloud::{LightUnit, Normals};
+use formats::cloud::Normals;
 use scene::Pose;
 
 /// Arguments about the scene, as the user typed them.
@@ -32,13 +33,13 @@ pub struct SceneArgs {
     /// Size of one unit of SCENE, m
     #[arg(long, value_name = "M", default_value_t = 1.0, value_parser = parse_positive)]
     pub metres_per_unit: f64,
-    /// Take the numbers of the file's lights as W, or as lm and divide them by 683 lm/W
-    #[arg(long, value_name = "UNIT", default_value = "radiometric",
-        value_parser = one_of(LightUnit::ALL, LightUnit::name))]
-    pub light_unit: LightUnit,
+    /// Take the numbers of the file's lights as W, or as lm and divide them by 683 lm/W, or as the program that wrote
+    /// the file means them
+    #[arg(long, value_name = "UNIT", default_value = "auto", value_parser = one_of(UnitChoice::ALL, UnitChoice::name))]
+    pub light_unit: UnitChoice,
     /// The same for the file's emitting materials [default: that of --light-unit]
-    #[arg(long, value_name = "UNIT", value_parser = one_of(LightUnit::ALL, LightUnit::name))]
-    pub emission_unit: Option<LightUnit>,
+    #[arg(long, value_name = "UNIT", value_parser = one_of(UnitChoice::ALL, UnitChoice::name))]
+    pub emission_unit: Option<UnitChoice>,
     /// Pose the scene at this time of an animation, s [default: at rest, as the file has it]
     #[arg(long, value_name = "SECONDS", value_parser = parse_non_negative)]
     pub time: Option<f64>,
@@ -70,8 +71,8 @@ impl SceneArgs {
             ("--environment-rotation", unless(self.environment_rotation, 0.0)),
             ("--normals", (self.normals != Normals::Shading).then(|| self.normals.to_string())),
             ("--metres-per-unit", unless(self.metres_per_unit, 1.0)),
-            ("--light-unit", (self.light_unit != LightUnit::Radiometric).then(|| self.light_unit.to_string())),
-            ("--emission-unit", self.emission_unit.map(|unit| unit.to_string())),
+            ("--light-unit", (self.light_unit != UnitChoice::Auto).then(|| self.light_unit.name().to_owned())),
+            ("--emission-unit", self.emission_unit.map(|unit| unit.name().to_owned())),
             ("--time", self.time.map(|seconds| seconds.to_string())),
             ("--animation", self.animation.clone()),
         ];

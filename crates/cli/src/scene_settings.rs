@@ -1,7 +1,7 @@
 //! How a scene is read. Sampling and gathering must agree on it.
 
 use crate::{Common, Failure, Files, SceneArgs, environment::EnvironmentSource};
-use formats::cloud::{LightUnit, Normals};
+use formats::cloud::{Normals, Options};
 use scene::{ImportOptions, MeshDefects, NormalKind, Scene, SceneError};
 use std::path::PathBuf;
 
@@ -13,9 +13,13 @@ pub struct SceneSettings {
 }
 
 impl SceneSettings {
-    /// The unit of the file's emitting materials: that of its lights, unless one of their own was given.
-    pub fn emission_unit(&self) -> LightUnit {
-        self.how.emission_unit.unwrap_or(self.how.light_unit)
+    /// The same settings with the units of a cloud, where the arguments leave them open.
+    pub fn with_units_of(&self, options: &Options) -> SceneSettings {
+        let mut settings = self.clone();
+        let emission_unit = self.how.emission_unit.unwrap_or(self.how.light_unit).or(options.emission_unit);
+        settings.how.light_unit = self.how.light_unit.or(options.light_unit);
+        settings.how.emission_unit = Some(emission_unit);
+        settings
     }
 
     /// Declares the files that the arguments name. Those that the scene's file names are known once it is read.
@@ -31,11 +35,12 @@ impl SceneSettings {
     pub fn import(&self, common: &Common) -> Result<Scene, Failure> {
         let options = ImportOptions {
             metres_per_unit: self.how.metres_per_unit,
-            light_unit: of_scene(self.how.light_unit),
-            emission_unit: of_scene(self.emission_unit()),
+            light_unit: self.how.light_unit.of_scene(),
+            emission_unit: self.how.emission_unit.unwrap_or(self.how.light_unit).of_scene(),
             pose: self.how.pose(),
         };
         let mut scene = Scene::import(&self.path, &options).map_err(with_option)?;
+        scene.units.note.iter().for_each(|note| common.say(format_args!("{}: {note}", self.path.display())));
         self.warn(&scene.warnings, common);
         if let Some(source) = &self.how.environment {
             scene.environment = source.read(self.how.environment_scale, self.how.environment_rotation, common)?;
@@ -52,6 +57,7 @@ impl SceneSettings {
         defects: MeshDefects,
         common: &Common,
     ) -> Result<(), Failure> {
+        scene.check_textures(&translucent)?;
         let known = scene.warnings.len();
         scene.warn_of_unhonoured(&translucent);
         scene.warn_of_colors(&translucent);
@@ -80,14 +86,6 @@ fn with_option(error: SceneError) -> Failure {
         _ => return Failure::from(error),
     };
     Failure::usage(format!("{}; {option}", Failure::from(error).message))
-}
-
-/// The unit of the same name in the terms of the importer.
-fn of_scene(unit: LightUnit) -> scene::LightUnit {
-    match unit {
-        LightUnit::Radiometric => scene::LightUnit::Radiometric,
-        LightUnit::Photometric => scene::LightUnit::Photometric,
-    }
 }
 
 /// The normals of the same name in the terms of meshes.

@@ -79,6 +79,7 @@ pub fn material_table(scene: &Scene) -> Result<String, Failure> {
         let kind = match (is_in(&translucent), material.emits()) {
             _ if is_in(&lost) => "translucent, no triangle left",
             (_, _) if counts[index] == 0 => "unused",
+            (false, false) if scene.is_pane(index as u16) => "pane",
             (true, true) => "translucent, emits",
             (true, false) => "translucent",
             (false, true) => "emits",

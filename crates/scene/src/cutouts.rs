@@ -1,29 +1,84 @@
-//! Holes in opaque surfaces, where their alpha is below a threshold.
+//! Holes in opaque surfaces: where their alpha is below a threshold, by chance where it is the share that they cover, and
+//! by chance in panes of glass, which are met where they mirror.
 
-use crate::scene::Scene;
+use crate::{
+    material::{Alpha, Material},
+    mesh::unit,
+    panes,
+    random::mix,
+    scene::Scene,
+};
+use glam::DVec3;
 
 /// The surfaces of a scene that have holes.
 #[derive(Clone)]
 pub(crate) struct Cutouts<'a> {
     scene: &'a Scene,
-    /// For each material, the alpha below which its surfaces have holes.
-    cutoffs: Vec<Option<f32>>,
+    /// What decides on the surfaces of each material.
+    rules: Vec<Rule>,
 }
+
+/// What decides whether a ray passes.
+#[derive(Clone, Copy, PartialEq)]
+enum Rule {
+    Alpha(Alpha),
+    /// Glass of this relative index.
+    Pane(f64),
+}
+
+const SOLID: Rule = Rule::Alpha(Alpha::Ignored);
 
 impl<'a> Cutouts<'a> {
     /// None if no opaque surface has holes. Emitting surfaces have none: light is sampled on all of them.
     pub fn new(scene: &'a Scene, translucent: impl Fn(u16) -> bool) -> Option<Self> {
-        let with_holes = |k: usize| !translucent(k as u16) && !scene.materials[k].emits();
-        let cutoff = |k: usize| scene.materials[k].cutoff.filter(|_| with_holes(k));
-        let cutoffs: Vec<Option<f32>> = (0..scene.materials.len()).map(cutoff).collect();
-        cutoffs.iter().any(Option::is_some).then_some(Cutouts { scene, cutoffs })
+        let rule = |k: usize| {
+            let material = &scene.materials[k];
+            if translucent(k as u16) || material.emits() {
+                return SOLID;
+            }
+            if let Some(ior) = scene.panes[k] {
+                return Rule::Pane(ior);
+            }
+            let covers_all = material.alpha == Alpha::Coverage && scene.mesh.colors.is_empty() && is_solid(material);
+            if covers_all { SOLID } else { Rule::Alpha(material.alpha) }
+        };
+        let rules: Vec<Rule> = (0..scene.materials.len()).map(rule).collect();
+        rules.iter().any(|rule| *rule != SOLID).then_some(Cutouts { scene, rules })
     }
 
-    /// Whether a triangle has a hole at the point with these barycentric weights.
-    pub fn is_hole(&self, triangle: u32, weights: impl FnOnce() -> [f64; 3]) -> bool {
+    /// Whether a ray passes through a triangle at the point with these barycentric weights. By coverage, chance decides:
+    /// the same for the same ray and triangle, in all queries.
+    pub fn is_hole(
+        &self,
+        triangle: u32,
+        (origin, direction): (DVec3, DVec3),
+        weights: impl FnOnce() -> [f64; 3],
+    ) -> bool {
         let material = self.scene.mesh.triangles[triangle as usize].material;
-        // Both are float32 in the file: an alpha that equals the cutoff in decimals must not be a hole.
-        let alpha = || self.scene.color(triangle, weights()).w as f32;
-        self.cutoffs[material as usize].is_some_and(|cutoff| alpha() < cutoff)
+        let alpha = || self.scene.color(triangle, weights()).w;
+        match self.rules[material as usize] {
+            Rule::Alpha(Alpha::Ignored) => false,
+            // Both are float32 in the file: an alpha that equals the cutoff in decimals must not be a hole.
+            Rule::Alpha(Alpha::Cutoff(cutoff)) => (alpha() as f32) < cutoff,
+            Rule::Alpha(Alpha::Coverage) => chance(triangle, origin, direction) >= alpha(),
+            Rule::Pane(ior) => {
+                let [a, b, c] = self.scene.mesh.corners(triangle as usize);
+                let cosine = unit((b - a).cross(c - a)).dot(direction);
+                chance(triangle, origin, direction) >= panes::reflectance(cosine, ior)
+            }
+        }
     }
+}
+
+/// Whether neither factor nor texture has an alpha below 1.
+fn is_solid(material: &Material) -> bool {
+    let texels = material.base_texture.as_ref().map_or(&[][..], |texture| &texture.picture.texels);
+    material.base_color.w >= 1.0 && texels.iter().all(|texel| texel[3] == u8::MAX)
+}
+
+/// A number in [0, 1) that looks random, of a ray and a triangle.
+fn chance(triangle: u32, origin: DVec3, direction: DVec3) -> f64 {
+    let numbers = origin.to_array().into_iter().chain(direction.to_array());
+    let hash = numbers.fold(mix(u64::from(triangle)), |hash, x| mix(hash ^ x.to_bits()).wrapping_add(hash << 1));
+    (mix(hash) >> 11) as f64 / (1u64 << 53) as f64
 }

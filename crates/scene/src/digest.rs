@@ -1,6 +1,6 @@
 //! The identity of a scene, by which clouds recognize it.
 
-use crate::scene::Scene;
+use crate::{material::Alpha, scene::Scene};
 use std::{collections::BTreeMap, sync::Arc};
 
 impl Scene {
@@ -31,6 +31,11 @@ impl Scene {
             put(m.name.as_bytes());
         }
         self.put_colors(&mut put);
+        for (k, ior) in self.panes.iter().enumerate().filter_map(|(k, pane)| Some((k, (*pane)?))) {
+            put(b"pane");
+            put(&(k as u64).to_le_bytes());
+            put(&ior.to_le_bytes());
+        }
         *hasher.finalize().as_bytes()
     }
 
@@ -39,7 +44,11 @@ impl Scene {
         // A picture of several materials is put once, and referred to by its number afterwards.
         let mut numbers = BTreeMap::new();
         for material in &self.materials {
-            let cutoff = material.cutoff.map_or(f64::INFINITY, f64::from);
+            let cutoff = match material.alpha {
+                Alpha::Ignored => f64::INFINITY,
+                Alpha::Cutoff(cutoff) => f64::from(cutoff),
+                Alpha::Coverage => -1.0,
+            };
             material.base_color.to_array().iter().chain([&cutoff]).for_each(|x| put(&x.to_le_bytes()));
             let Some(texture) = &material.base_texture else { continue };
             let [along, down] = texture.wrap.map(|w| w as u8);

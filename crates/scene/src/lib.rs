@@ -41,6 +41,7 @@ pub mod light;
 mod material;
 mod mesh;
 mod mesh_defects;
+mod panes;
 pub mod random;
 mod rays;
 mod scene;
@@ -53,8 +54,8 @@ pub mod warp;
 
 pub use error::{LostVolumes, SceneError};
 pub use glam::{DVec3, DVec4, Vec3};
-pub use import::{ImportOptions, LightUnit, Pose};
-pub use material::{Material, Scatter, ScatterExtension, Volume};
+pub use import::{FileUnits, ImportOptions, LightUnit, Pose};
+pub use material::{Alpha, Material, Scatter, ScatterExtension, StatedMedium, Volume};
 pub use mesh::{Mesh, NormalKind, SurfacePoint, Triangle};
 pub use mesh_defects::MeshDefects;
 pub use rays::{Hit, Rays};

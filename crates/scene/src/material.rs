@@ -10,12 +10,17 @@ pub struct Material {
     /// Diffuse albedo of an opaque surface, and alpha: a factor of those of texture and vertices.
     pub base_color: DVec4,
     pub base_texture: Option<Texture>,
-    /// Where alpha is less, an opaque surface has a hole.
-    pub cutoff: Option<f32>,
-    /// Radiance that it emits, W/(m² sr).
+    /// What the alpha of an opaque surface means.
+    pub alpha: Alpha,
+    /// Radiance that it emits, W/(m² sr): a factor of that of the texture.
     pub emission: DVec3,
-    /// Whether the file marks the surface as the boundary of a volume.
+    pub emission_texture: Option<Texture>,
+    /// Whether the file marks the surface as translucent: light enters it, or it bounds a volume.
     pub volume: bool,
+    /// Whether the file gives it walls without thickness that light crosses: transmission without a volume.
+    pub thin: bool,
+    /// The medium that its `extras` state; it takes precedence over that of extensions.
+    pub stated: Option<StatedMedium>,
     /// The medium of that volume, if the file describes it.
     pub medium: Option<Volume>,
     /// Whether it emits to both sides.
@@ -23,10 +28,40 @@ pub struct Material {
 }
 
 impl Material {
-    /// True if any channel emits.
+    /// True if any channel emits anywhere.
     pub fn emits(&self) -> bool {
         self.emission != DVec3::ZERO
     }
+
+    /// True if it emits all over or, by its texture, on half of it or more. A surface with a few lights on it is no lamp.
+    pub fn is_lamp(&self) -> bool {
+        /// A texel of a lower code of sRGB is dark: it has 1.4 % of the light of a white one.
+        const BRIGHT: u8 = 32;
+        let Some(texture) = &self.emission_texture else { return self.emits() };
+        let texels = &texture.picture.texels;
+        let is_bright = |texel: &&[u8; 4]| (0..3).any(|c| self.emission[c] > 0.0 && texel[c] >= BRIGHT);
+        2 * texels.iter().filter(is_bright).count() >= texels.len()
+    }
+}
+
+/// What alpha below 1 means.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Alpha {
+    /// Nothing.
+    Ignored,
+    /// A hole where it is less than this.
+    Cutoff(f32),
+    /// The share of rays that meet the surface.
+    Coverage,
+}
+
+/// A medium as the `extras` of a material state it, not read yet: this crate knows no media.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum StatedMedium {
+    /// The name of a built-in one.
+    Name(String),
+    /// The text of a medium's file, JSON.
+    Json(String),
 }
 
 /// The medium below a surface, by KHR_materials_volume, KHR_materials_ior and the two draft extensions for scattering.

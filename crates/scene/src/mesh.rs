@@ -20,6 +20,8 @@ pub struct Mesh {
     pub triangles: Vec<Triangle>,
     /// Texture coordinates of the base color, in its picture; empty if no vertex has any.
     pub coordinates: Vec<[f32; 2]>,
+    /// The same of emission; empty if no vertex has any.
+    pub emission_coordinates: Vec<[f32; 2]>,
     /// Linear red, green and blue, and alpha; empty if no vertex has any.
     pub colors: Vec<[f32; 4]>,
 }
@@ -95,6 +97,17 @@ impl Mesh {
         let of =
             |i: u32| DVec2::from_array(self.coordinates.get(i as usize).copied().unwrap_or_default().map(f64::from));
         self.interpolated(triangle, weights, of).to_array()
+    }
+
+    /// Texture coordinates of emission at a vertex; 0 where the file has none.
+    pub(crate) fn emission_coordinate(&self, vertex: u32) -> DVec2 {
+        let own = self.emission_coordinates.get(vertex as usize).copied();
+        DVec2::from_array(own.unwrap_or_default().map(f64::from))
+    }
+
+    /// Texture coordinates of emission at the point with barycentric `weights`; 0 where the file has none.
+    pub(crate) fn emission_coordinates(&self, triangle: u32, weights: [f64; 3]) -> [f64; 2] {
+        self.interpolated(triangle, weights, |i| self.emission_coordinate(i)).to_array()
     }
 
     /// Color of the vertices at the point with barycentric `weights`.

@@ -1,7 +1,8 @@
 //! The scene as it is imported.
 
 use crate::{
-    error::LostVolumes,
+    error::{LostVolumes, SceneError},
+    import::FileUnits,
     light::{contract::Light, environment::Environment},
     material::Material,
     mesh::Mesh,
@@ -30,6 +31,8 @@ pub struct Scene {
     pub origin: DVec3,
     /// The time and animation that pose the scene; empty at rest.
     pub pose: String,
+    /// The units of the file's lights and emitting materials.
+    pub units: FileUnits,
     /// Warnings about parts that were left out or look wrong, one line each.
     pub warnings: Vec<String>,
     /// For each material, how many triangles were left out because they have no area.
@@ -38,6 +41,10 @@ pub struct Scene {
     pub rounded_triangles: BTreeMap<u16, u64>,
     /// For each material, how many triangles were left out because another of the same material has the same corners.
     pub duplicate_triangles: BTreeMap<u16, u64>,
+    /// For each material, the relative index of the glass if its surface is a pane.
+    pub(crate) panes: Vec<Option<f64>>,
+    /// Why the base color texture of a material cannot be read: a fault only where an opaque surface needs it.
+    pub(crate) texture_faults: BTreeMap<u16, String>,
     /// Materials that a primitive of the scene names, though it may have no triangle left.
     pub(crate) claimed: BTreeSet<u16>,
     /// Properties of the file that the image does not show.
@@ -51,8 +58,8 @@ impl Scene {
         self.file_lights.iter().map(|light| &**light).chain(environment)
     }
 
-    /// Indices of the materials whose surfaces bound media by default: those that the file marks as volumes or, if it
-    /// marks none, all that do not emit, with `true` for the latter. Only materials that cover a triangle count. It is
+    /// Indices of the materials whose surfaces bound media by default: those that the file marks as translucent or, if it
+    /// marks none, all that are no lamps, with `true` for the latter. Only materials that cover a triangle count. It is
     /// an error if the file marks materials and none of them covers a triangle.
     pub fn translucent(&self) -> Result<(Vec<u16>, bool), LostVolumes> {
         let mut used = vec![false; self.materials.len()];
@@ -60,12 +67,12 @@ impl Scene {
         let select = |accept: fn(&Material) -> bool| -> Vec<u16> {
             (0..used.len()).filter(|k| used[*k] && accept(&self.materials[*k])).map(|k| k as u16).collect()
         };
-        let marked = select(|m| m.volume);
+        let marked: Vec<u16> = select(|m| m.volume).into_iter().filter(|k| !self.is_pane(*k)).collect();
         if !marked.is_empty() {
             return Ok((marked, false));
         }
         let lost = self.lost_volumes();
-        if lost.is_empty() { Ok((select(|m| !m.emits()), true)) } else { Err(self.lost(&lost)) }
+        if lost.is_empty() { Ok((select(|m| !m.is_lamp()), true)) } else { Err(self.lost(&lost)) }
     }
 
     /// Indices of the materials that the file marks as volumes and uses, and that cover no triangle.
@@ -74,6 +81,12 @@ impl Scene {
         lost.retain(|k| self.materials.get(usize::from(*k)).is_some_and(|m| m.volume));
         self.mesh.triangles.iter().for_each(|t| _ = lost.remove(&t.material));
         lost.into_iter().collect()
+    }
+
+    /// Whether the surface of a material is a sheet of clear glass, which rays pass or are mirrored by. It is none where it
+    /// is sampled as translucent.
+    pub fn is_pane(&self, material: u16) -> bool {
+        self.panes.get(usize::from(material)).is_some_and(Option::is_some)
     }
 
     /// Area of the triangles of each material, m².
@@ -90,6 +103,31 @@ impl Scene {
         let texture = material.base_texture.as_ref();
         let texel = texture.map_or(DVec4::ONE, |t| t.at(self.mesh.coordinates(triangle, weights)));
         material.base_color * texel * self.mesh.color(triangle, weights)
+    }
+
+    /// Radiance that the point of a triangle with these barycentric weights emits, W/(m² sr).
+    pub fn emission(&self, triangle: u32, weights: [f64; 3]) -> DVec3 {
+        let material = &self.materials[self.mesh.triangles[triangle as usize].material as usize];
+        match &material.emission_texture {
+            Some(texture) => {
+                material.emission * texture.at(self.mesh.emission_coordinates(triangle, weights)).truncate()
+            }
+            None => material.emission,
+        }
+    }
+
+    /// Refuses a base color texture that cannot be read, if an opaque surface needs it.
+    pub fn check_textures(&self, translucent: impl Fn(u16) -> bool) -> Result<(), SceneError> {
+        let mut used = vec![false; self.materials.len()];
+        self.mesh.triangles.iter().for_each(|t| used[t.material as usize] = true);
+        let needed = |k: &u16| used.get(usize::from(*k)) == Some(&true) && !translucent(*k);
+        match self.texture_faults.iter().find(|(k, _)| needed(k)) {
+            Some((_, what)) => {
+                let path = self.files.first().cloned().unwrap_or_default();
+                Err(SceneError::Invalid { path, what: what.clone() })
+            }
+            None => Ok(()),
+        }
     }
 
     fn lost(&self, materials: &[u16]) -> LostVolumes {

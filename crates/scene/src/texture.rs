@@ -70,7 +70,11 @@ impl Texture {
     fn texel(&self, i: i64, j: i64) -> DVec4 {
         let Picture { width, texels } = &*self.picture;
         let [x, y] = [self.wrap[0].texel(i, *width as i64), self.wrap[1].texel(j, (texels.len() / width) as i64)];
-        let [r, g, b, a] = texels[y as usize * width + x as usize];
+        Texture::linear(texels[y as usize * width + x as usize])
+    }
+
+    /// Linear red, green and blue, and alpha, of a texel.
+    pub(crate) fn linear([r, g, b, a]: [u8; 4]) -> DVec4 {
         DVec3::from_array([r, g, b].map(|c| LINEAR[c as usize])).extend(f64::from(a) / 255.0)
     }
 }

@@ -1,6 +1,7 @@
 //! Warnings about properties of a file that the image does not show.
 
 use crate::{
+    material::Alpha,
     scene::Scene,
     unhonoured::{Holder, first_of, quoted},
 };
@@ -41,7 +42,8 @@ impl Scene {
         for (k, material) in self.materials.iter().enumerate() {
             let unused = [
                 (material.base_texture.is_some(), "base color texture"),
-                (material.cutoff.is_some(), "alphaMode MASK"),
+                (matches!(material.alpha, Alpha::Cutoff(_)), "alphaMode MASK"),
+                (material.alpha == Alpha::Coverage, "alphaMode BLEND"),
                 (colored[k], "vertex colors"),
             ];
             let unused: Vec<&str> = unused.iter().filter(|u| u.0).map(|u| u.1).collect();

@@ -14,7 +14,8 @@
 //!
 //! let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/scenes/slab.glb");
 //! let unit = LightUnit::Radiometric;
-//! let import = ImportOptions { metres_per_unit: 1.0, light_unit: unit, emission_unit: unit, pose: None };
+//! let import =
+//!     ImportOptions { metres_per_unit: 1.0, light_unit: Some(unit), emission_unit: Some(unit), pose: None };
 //! let scene = Scene::import(file.as_ref(), &import)?;
 //! let rays = Rays::of_scene(&scene, |_| false);
 //! let settings = Settings {

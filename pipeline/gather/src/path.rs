@@ -97,7 +97,7 @@ impl Renderer<'_> {
                 state.from = None;
                 true
             }
-            (Some(object), Side::Outside) => self.meet_from_outside(state, object, &point, trace, context),
+            (Some(object), Side::Outside) => self.meet_from_outside(state, object, (&point, &hit), trace, context),
             (Some(object), Side::Inside) => self.meet_from_inside(state, object, &point, &mut context.counts),
         }
     }
@@ -160,9 +160,13 @@ impl Renderer<'_> {
     ) -> bool {
         let material = &self.input.scene.materials[point.material as usize];
         if material.emits() && (side == Side::Outside || material.double_sided) {
-            light.add(state, Layer::Emission, material.emission);
+            light.add(state, Layer::Emission, self.input.scene.emission(hit.triangle, hit.weights));
         }
-        let bsdf = Surface::opaque(self.input.scene.color(hit.triangle, hit.weights).truncate());
+        // A ray meets a pane only where that mirrors.
+        let bsdf = match self.input.scene.is_pane(point.material) {
+            true => Surface::dielectric(1.0),
+            false => Surface::opaque(self.input.scene.color(hit.triangle, hit.weights).truncate()),
+        };
         if bsdf.is_specular() {
             let meeting = Meeting::new(point, bsdf, side, -state.direction, counts);
             return meeting.scatter(state, Lobe::Reflection, Layer::Specular, counts);
@@ -181,7 +185,7 @@ impl Renderer<'_> {
         &self,
         state: &mut PathState,
         object: &TranslucentObject,
-        point: &SurfacePoint,
+        (point, hit): (&SurfacePoint, &Hit),
         trace: &mut Trace,
         context: &mut ThreadContext,
     ) -> bool {
@@ -209,8 +213,7 @@ impl Renderer<'_> {
             state.throughput *= transmittance;
             trace.light.through = if object.is_dark() { 0.0 } else { transmittance };
         }
-        let emission = self.input.scene.materials[point.material as usize].emission;
-        trace.light.add(state, Layer::Emission, emission);
+        trace.light.add(state, Layer::Emission, self.input.scene.emission(hit.triangle, hit.weights));
         self.gather(state, object, point, &meeting.view, &mut trace.light, context);
         (state.walks, state.near) = (None, None);
         state.inside = Some(point.material);

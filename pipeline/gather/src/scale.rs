@@ -98,7 +98,8 @@ fn warnings(object: &Object, medium: &Medium, request: &Request) -> Vec<String> 
     let reduced = shortest(medium.map(|c| 1.0 / c.reduced_extinction()));
     let [size, path, depth, apart, rounded] = [diagonal, free_path, reduced, spacing, rounding].map(length);
     let mut warnings = Vec::new();
-    if free_path > diagonal {
+    // Clear glass is meant so.
+    if free_path > diagonal && free_path < f64::INFINITY {
         warnings.push(format!(
             "`{material}`: light crosses the object ({size}) without scattering (mean free path {path}); are the medium's \
              unit and --metres-per-unit right?"

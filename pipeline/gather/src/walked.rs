@@ -73,8 +73,9 @@ impl Renderer<'_> {
         let point = scene.mesh.point(triangle, weights, self.settings.normals);
         let material = &scene.materials[point.material as usize];
         let in_front = point.geometric_normal.dot(exit.direction) < 0.0;
-        let emitted = if in_front || material.double_sided { material.emission } else { DVec3::ZERO };
-        if self.objects[point.material as usize].is_some() {
+        let emitted = if in_front || material.double_sided { scene.emission(triangle, weights) } else { DVec3::ZERO };
+        // What panes mirror is left out, as for a cloud.
+        if self.objects[point.material as usize].is_some() || scene.is_pane(point.material) {
             return emitted;
         }
         let albedo = scene.color(triangle, weights).truncate();

@@ -1,7 +1,7 @@
 //! The task of the program: the arguments, checked, before any file is read.
 
 use crate::arguments::Arguments;
-use cli::{Common, Failure, SceneSettings};
+use cli::{Common, Failure, SceneSettings, stored_unit};
 use formats::cloud::{Choice, Options, Pattern, Shard};
 use sample_surface::Settings;
 use scene::Scene;
@@ -69,8 +69,8 @@ impl Request {
             shares: self.shares.clone(),
             normals: self.scene.how.normals,
             metres_per_unit: self.scene.how.metres_per_unit,
-            light_unit: self.scene.how.light_unit,
-            emission_unit: self.scene.emission_unit(),
+            light_unit: stored_unit(scene.units.light),
+            emission_unit: stored_unit(scene.units.emission),
             pose: scene.pose.clone(),
             environment: scene.environment.identity(),
         };

@@ -12,7 +12,7 @@ pub fn surfaces(request: &Request, scene: &Scene) -> Result<Surfaces, Failure> {
     let mut surfaces = if request.translucent.is_empty() {
         let (surfaces, unmarked) = Surfaces::translucent(scene).map_err(|e| failure(request, &e))?;
         if unmarked {
-            request.common.say("no material is marked as a volume: all surfaces that do not emit are translucent");
+            request.common.say("no material is marked as translucent: all surfaces that do not emit are translucent");
         }
         surfaces
     } else {

@@ -3,12 +3,9 @@
 use scene::{ImportOptions, LightUnit, Scene};
 use serde_json::{Value, json};
 
-pub const OPTIONS: ImportOptions = ImportOptions {
-    metres_per_unit: 1.0,
-    light_unit: LightUnit::Radiometric,
-    emission_unit: LightUnit::Radiometric,
-    pose: None,
-};
+pub const OPTIONS: ImportOptions =
+    ImportOptions { metres_per_unit: 1.0, light_unit: Some(WATTS), emission_unit: Some(WATTS), pose: None };
+const WATTS: LightUnit = LightUnit::Radiometric;
 
 pub const UNSIGNED_BYTE: u32 = 5121;
 pub const UNSIGNED_SHORT: u32 = 5123;

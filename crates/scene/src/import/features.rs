@@ -22,6 +22,12 @@ const SUPPORTED: &[&str] = &[
     "KHR_texture_transform",
 ];
 
+/// Whether an extension changes materials or their pictures alone. Without one that is not honoured the image is
+/// plainer, and a warning names it; a picture that cannot be read is a fault only where it is needed.
+fn is_appearance(name: &str) -> bool {
+    name.starts_with("KHR_materials_") || ["EXT_texture_webp", "KHR_texture_basisu"].contains(&name)
+}
+
 /// Extensions that change the geometry, with the way out. Without them the image would be wrong, whether they are
 /// required or not.
 const GEOMETRY: &[(&str, &str)] = &[("KHR_node_visibility", "delete what is hidden and export again")];
@@ -30,7 +36,7 @@ const GEOMETRY: &[(&str, &str)] = &[("KHR_node_visibility", "delete what is hidd
 pub(super) fn check(text: &Text) -> Result<()> {
     let root = &text.root;
     for name in &root.extensions_required {
-        if !SUPPORTED.contains(&name.as_str()) {
+        if !SUPPORTED.contains(&name.as_str()) && !is_appearance(name) {
             let hint = GEOMETRY.iter().find(|(n, _)| n == name).map_or("export again without it", |(_, hint)| hint);
             return Err(format!("extensionsRequired: {name} is not supported; {hint}"));
         }

@@ -91,6 +91,8 @@ struct Builder {
     triangles: Vec<Triangle>,
     /// Texture coordinates; vertices at the end may have none.
     coordinates: Vec<[f32; 2]>,
+    /// The same of emission.
+    emission_coordinates: Vec<[f32; 2]>,
     /// Vertex colors; vertices at the end may have none.
     colors: Vec<[f32; 4]>,
 }
@@ -166,9 +168,13 @@ impl Builder {
 
     /// Adds texture coordinates and colors of the next vertices.
     fn add_colors(&mut self, part: &CheckedPrimitive) -> Result<()> {
-        if let Some((column, transform)) = &part.coordinates {
-            self.coordinates.resize(self.positions.len(), [0.0; 2]);
-            self.coordinates.extend(column.read_reals()?.into_iter().map(|uv| transform.apply(uv)));
+        let of_textures =
+            [(&part.coordinates, &mut self.coordinates), (&part.emission_coordinates, &mut self.emission_coordinates)];
+        for (part, all) in of_textures {
+            if let Some((column, transform)) = part {
+                all.resize(self.positions.len(), [0.0; 2]);
+                all.extend(column.read_reals()?.into_iter().map(|uv| transform.apply(uv)));
+            }
         }
         if let Some(column) = &part.colors {
             self.colors.resize(self.positions.len(), [1.0; 4]);
@@ -261,8 +267,9 @@ impl Builder {
         for (material, count) in &rounded {
             *degenerate.entry(*material).or_default() += count;
         }
-        let Builder { normals, triangles, coordinates, colors, .. } = self;
-        Ok(Geometry { mesh: Mesh { positions, normals, triangles, coordinates, colors }, origin, degenerate, rounded })
+        let Builder { normals, triangles, coordinates, emission_coordinates, colors, .. } = self;
+        let mesh = Mesh { positions, normals, triangles, coordinates, emission_coordinates, colors };
+        Ok(Geometry { mesh, origin, degenerate, rounded })
     }
 }
 

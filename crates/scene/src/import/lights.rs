@@ -3,7 +3,7 @@
 use super::{
     fault::{Fault, Result, get},
     nodes::SceneNode,
-    options::ImportOptions,
+    units::FileUnits,
 };
 use crate::{
     light::{AreaLight, DirectionalLight, Light, PointLight, Spot},
@@ -26,7 +26,10 @@ pub(super) fn emitters(mesh: &Mesh, materials: &[Material]) -> Vec<Box<dyn Light
             triangles[t.material as usize].push(k);
         }
     }
-    let light = |(m, own): (&Material, &Vec<usize>)| AreaLight::new(mesh, own, m.emission, m.double_sided);
+    let light = |(m, own): (&Material, &Vec<usize>)| match &m.emission_texture {
+        Some(texture) => AreaLight::textured(mesh, own, m.emission, m.double_sided, texture),
+        None => AreaLight::new(mesh, own, m.emission, m.double_sided),
+    };
     let lights = materials.iter().zip(&triangles).filter_map(light);
     lights.map(|light| Box::new(light) as Box<dyn Light>).collect()
 }
@@ -62,7 +65,7 @@ fn light_of(
 pub(super) fn punctual(
     root: &Root,
     nodes: &[SceneNode],
-    options: &ImportOptions,
+    (metres_per_unit, units): (f64, &FileUnits),
     origin: DVec3,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<Box<dyn Light>>> {
@@ -75,23 +78,23 @@ pub(super) fn punctual(
         let fault = |what: Fault| format!("light of node `{}`: {what}", node.name);
         let defined = defined.ok_or("the file has no `lights` in KHR_lights_punctual".into()).map_err(fault)?;
         let light = get(&defined.lights, &reference.light, "KHR_lights_punctual.light").map_err(fault)?;
-        let power = power_of(light, options).map_err(fault)?;
+        let power = power_of(light, units).map_err(fault)?;
         if power == DVec3::ZERO {
             warnings.push(fault("its intensity is 0".into()));
             continue;
         }
-        lights.push(light_of(light, node, power, origin, options.metres_per_unit).map_err(fault)?);
+        lights.push(light_of(light, node, power, origin, metres_per_unit).map_err(fault)?);
     }
     Ok(lights)
 }
 
 /// Irradiance of a directional light, W/m², or intensity of the others, W/sr.
-fn power_of(light: &Punctual, options: &ImportOptions) -> Result<DVec3> {
+fn power_of(light: &Punctual, units: &FileUnits) -> Result<DVec3> {
     let power = DVec3::from_array(light.color.map(f64::from)) * f64::from(light.intensity);
     if !power.is_finite() || power.min_element() < 0.0 {
         return Err(format!("color times intensity, {power}, must be finite and not negative"));
     }
-    Ok(power * options.light_unit.watts())
+    Ok(power * units.light.watts())
 }
 
 /// Inner and outer angle of a spot, rad. glTF excludes a hard edge (inner = outer), but some writers have it.

@@ -1,54 +1,100 @@
 //! Import of materials.
 
-use super::{container::Document, fault::Result, options::ImportOptions, textures::Textures, volumes};
-use crate::material::Material;
+use super::{base_color, container::Document, extras, fault::Result, textures::Textures, units::FileUnits, volumes};
+use crate::{
+    material::{Alpha, Material},
+    texture::Texture,
+};
 use glam::{DVec3, DVec4};
 use gltf::json::{self, material::AlphaMode, validation::Checked};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Triangles have a material index of 16 bits, and one index is for triangles without material.
 const MAX_MATERIALS: usize = u16::MAX as usize;
 
-pub(super) fn read(document: &Document, options: &ImportOptions, warnings: &mut Vec<String>) -> Result<Vec<Material>> {
-    let root = &document.root;
+/// What materials are read with.
+pub(super) struct Context<'a> {
+    pub document: &'a Document,
+    pub metres_per_unit: f64,
+    pub units: &'a FileUnits,
+    /// The materials that the scene uses. Textures of others are not read.
+    pub used: &'a BTreeSet<u16>,
+}
+
+/// The materials of a file, and why the base color texture of some cannot be read: whether they need it is not known
+/// yet.
+pub(super) fn read(context: &Context, warnings: &mut Vec<String>) -> Result<(Vec<Material>, BTreeMap<u16, String>)> {
+    let root = &context.document.root;
     let count = root.materials.len();
     if count > MAX_MATERIALS {
         return Err(format!(
             "materials: {count} of them, at most {MAX_MATERIALS} are supported; export without unused ones"
         ));
     }
-    let mut textures = Textures::new(document);
-    let named = |(k, m): (usize, &json::Material)| {
-        let name = m.name.clone().unwrap_or_else(|| format!("material{k}"));
-        material(name.clone(), m, options, &mut textures, warnings).map_err(|e| format!("material `{name}`: {e}"))
-    };
-    root.materials.iter().enumerate().map(named).collect()
+    let (mut textures, mut faults, mut materials) = (Textures::new(context.document), BTreeMap::new(), Vec::new());
+    for (index, m) in (0..).zip(&root.materials) {
+        let name = m.name.clone().unwrap_or_else(|| format!("material{index}"));
+        let named = |e| format!("material `{name}`: {e}");
+        let mut material = material(name.clone(), m, context, warnings).map_err(named)?;
+        if context.used.contains(&index) {
+            match base_texture(m, &mut textures) {
+                Ok(texture) => material.base_texture = texture,
+                Err(e) => _ = faults.insert(index, named(e)),
+            }
+            read_emission(&mut material, m, &mut textures).map_err(named)?;
+        }
+        if material.alpha != Alpha::Ignored && material.emits() {
+            warnings.push(named("alphaMode MASK and BLEND are not used where the surface emits".into()));
+        }
+        materials.push(material);
+    }
+    Ok((materials, faults))
+}
+
+fn base_texture(m: &json::Material, textures: &mut Textures) -> Result<Option<Texture>> {
+    let texture = base_color::texture(m);
+    texture.map(|(info, field)| textures.read(&info).map_err(|e| format!("{field}: {e}"))).transpose()
+}
+
+/// Reads the texture of a material that emits; one that is black does not.
+fn read_emission(material: &mut Material, m: &json::Material, textures: &mut Textures) -> Result<()> {
+    let Some(info) = m.emissive_texture.as_ref().filter(|_| material.emits()) else { return Ok(()) };
+    let texture = textures.read(info).map_err(|e| format!("emissiveTexture: {e}"))?;
+    let emits = |texel: &[u8; 4]| (0..3).any(|c| material.emission[c] > 0.0 && texel[c] > 0);
+    if texture.picture.texels.iter().any(emits) {
+        material.emission_texture = Some(texture);
+    } else {
+        material.emission = DVec3::ZERO;
+    }
+    Ok(())
 }
 
 /// The material of triangles that name none.
 pub(super) fn default() -> Material {
+    default_named("default".into())
+}
+
+fn default_named(name: String) -> Material {
     Material {
-        name: "default".into(),
+        name,
         base_color: DVec3::splat(0.8).extend(1.0),
         base_texture: None,
-        cutoff: None,
+        alpha: Alpha::Ignored,
         emission: DVec3::ZERO,
+        emission_texture: None,
         volume: false,
+        thin: false,
+        stated: None,
         medium: None,
         double_sided: false,
     }
 }
 
-fn material(
-    name: String,
-    m: &json::Material,
-    options: &ImportOptions,
-    textures: &mut Textures,
-    warnings: &mut Vec<String>,
-) -> Result<Material> {
+fn material(name: String, m: &json::Material, context: &Context, warnings: &mut Vec<String>) -> Result<Material> {
     let strength = m.extensions.as_ref().and_then(|e| e.emissive_strength.as_ref());
     let strength = strength.map_or(1.0, |s| f64::from(s.emissive_strength.0));
     let emission = DVec3::from_array(m.emissive_factor.0.map(f64::from)) * strength;
-    let base_color = DVec4::from_array(m.pbr_metallic_roughness.base_color_factor.0.map(f64::from));
+    let base_color = DVec4::from_array(base_color::factor(m));
     let cutoff = m.alpha_cutoff.map_or(0.5, |c| c.0);
     let numbers = [
         ("emissiveFactor times emissiveStrength", &emission.to_array()[..]),
@@ -60,27 +106,22 @@ fn material(
             return Err(format!("{field} {value:?} must be finite and not negative"));
         }
     }
-    let texture = m.pbr_metallic_roughness.base_color_texture.as_ref();
-    let base_texture = texture.map(|t| textures.read(t)).transpose().map_err(|e| format!("baseColorTexture: {e}"))?;
-    let masked = m.alpha_mode == Checked::Valid(AlphaMode::Mask);
-    let blends = !masked && m.alpha_mode != Checked::Valid(AlphaMode::Opaque);
-    let unused = [
-        (m.emissive_texture.is_some(), "the emissive texture is not used, its factor is"),
-        (blends, "alphaMode BLEND is not used: the surface is opaque"),
-        (masked && emission != DVec3::ZERO, "alphaMode MASK is not used: the surface emits"),
-    ];
-    warnings.extend(unused.iter().filter(|u| u.0).map(|(_, what)| format!("material `{name}`: {what}")));
-    let emission = emission * options.emission_unit.watts();
-    let note = |what| warnings.push(format!("material `{name}`: {what}"));
-    let medium = volumes::read(m, options.metres_per_unit, note)?;
+    let mut note = |what| warnings.push(format!("material `{name}`: {what}"));
+    let stated = extras::medium(m, &mut note);
+    let medium = volumes::read(m, context.metres_per_unit, note)?;
     Ok(Material {
-        name,
         base_color,
-        base_texture,
-        cutoff: masked.then_some(cutoff),
-        emission,
-        volume: volumes::is_marked(m),
+        alpha: match m.alpha_mode {
+            Checked::Valid(AlphaMode::Opaque) => Alpha::Ignored,
+            Checked::Valid(AlphaMode::Mask) => Alpha::Cutoff(cutoff),
+            Checked::Valid(AlphaMode::Blend) | Checked::Invalid => Alpha::Coverage,
+        },
+        emission: emission * context.units.emission.watts(),
+        volume: stated.is_some() || volumes::is_marked(m),
+        thin: stated.is_none() && volumes::is_thin(m),
+        stated,
         medium,
         double_sided: m.double_sided,
+        ..default_named(name)
     })
 }

@@ -5,11 +5,13 @@
 //! made relative to the center of the mesh.
 
 mod accessor;
+mod base_color;
 mod cameras;
 mod clipping;
 mod container;
 mod draco;
 mod duplicates;
+mod extras;
 mod fault;
 mod features;
 pub(crate) mod files;
@@ -31,6 +33,7 @@ mod text;
 mod textures;
 mod transform;
 mod unhonoured;
+mod units;
 mod volumes;
 
 use crate::{
@@ -38,6 +41,7 @@ use crate::{
     light::Environment,
     material::Material,
     mesh::Mesh,
+    panes,
     scene::Scene,
     unhonoured::{first_of, quoted},
 };
@@ -57,6 +61,7 @@ use std::{
     path::{Path, PathBuf},
 };
 use unhonoured::RenderedParts;
+pub use units::FileUnits;
 
 impl Scene {
     /// Reads a .glb or .gltf file.
@@ -87,7 +92,10 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
     let mut warnings = Vec::new();
     let posed = pose::of(document, options.pose.as_ref(), &mut warnings)?;
     let nodes = nodes::in_world(document, &posed.transforms, options.metres_per_unit, &mut warnings)?;
-    let mut materials = materials::read(document, options, &mut warnings)?;
+    let units = units::decide(root, &nodes, options);
+    let (metres_per_unit, claimed) = (options.metres_per_unit, claimed(root, &nodes));
+    let context = materials::Context { document, metres_per_unit, units: &units, used: &claimed };
+    let (mut materials, texture_faults) = materials::read(&context, &mut warnings)?;
     let Geometry { mut mesh, origin, degenerate, rounded } = geometry(document, &nodes, &posed, &mut warnings)?;
     if mesh.triangles.iter().any(|t| usize::from(t.material) == materials.len()) {
         materials.push(materials::default());
@@ -98,15 +106,17 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
         let count: u64 = duplicates.values().sum();
         warnings.push(format!("{count} triangles lie exactly on others of their material and are left out"));
     }
-    let mut lights = lights::punctual(root, &nodes, options, origin, &mut warnings)?;
+    let mut lights = lights::punctual(root, &nodes, (metres_per_unit, &units), origin, &mut warnings)?;
     lights.extend(lights::emitters(&mesh, &materials));
-    let metres_per_unit = options.metres_per_unit;
     let cameras = cameras::read(root, &nodes, metres_per_unit)?;
     let parts = RenderedParts { mesh: &mesh, nodes: &nodes, cameras: &cameras, origin, metres_per_unit };
     let unhonoured = [features::undeclared_effects(document), unhonoured::of(document, &parts)].concat();
+    let panes = panes::find(&mesh, &materials);
     Ok(Scene {
+        panes,
         files: document.files.borrow().read.clone(),
-        claimed: claimed(root, &nodes),
+        claimed,
+        texture_faults,
         mesh,
         materials,
         file_lights: lights,
@@ -114,6 +124,7 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
         cameras,
         origin,
         pose: posed.name,
+        units,
         warnings,
         degenerate_triangles: degenerate,
         rounded_triangles: rounded,

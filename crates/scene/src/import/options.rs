@@ -5,10 +5,10 @@
 pub struct ImportOptions {
     /// Size of one unit of the file, m.
     pub metres_per_unit: f64,
-    /// Unit of directional, point and spot lights.
-    pub light_unit: LightUnit,
-    /// Unit of emitting materials.
-    pub emission_unit: LightUnit,
+    /// Unit of directional, point and spot lights; none if the file decides it.
+    pub light_unit: Option<LightUnit>,
+    /// Unit of emitting materials; none if the file decides it.
+    pub emission_unit: Option<LightUnit>,
     /// A time of an animation; without one, everything is as the file has it at rest.
     pub pose: Option<Pose>,
 }

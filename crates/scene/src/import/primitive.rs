@@ -1,10 +1,18 @@
 //! The primitives of a mesh, checked and not read yet: a mesh may have many instances, or be too large to be read.
 
-use super::{accessor::CheckedAccessor, container::Document, draco, fault::Result, textures::Coordinates};
+use super::{
+    accessor::CheckedAccessor,
+    base_color,
+    container::Document,
+    draco,
+    fault::{Fault, Result},
+    textures::Coordinates,
+};
 use glam::Vec3;
 use gltf::json::{
     self, Accessor, Index,
     mesh::{Mode, MorphTarget, Primitive, Semantic},
+    texture::Info,
     validation::Checked,
 };
 
@@ -25,6 +33,8 @@ pub(super) struct CheckedPrimitive<'a> {
     pub indices: Option<CheckedAccessor<'a>>,
     /// Texture coordinates, and their transform by the texture.
     pub coordinates: Option<(CheckedAccessor<'a>, Coordinates)>,
+    /// The same of the emissive texture.
+    pub emission_coordinates: Option<(CheckedAccessor<'a>, Coordinates)>,
     pub colors: Option<CheckedAccessor<'a>>,
     targets: Vec<Target<'a>>,
     /// Joints and weights, four to a vertex in each set.
@@ -193,20 +203,34 @@ impl<'a> CheckedPrimitive<'a> {
         let normals = source.beside(&positions, Semantic::Normals, (CheckedAccessor::vectors, 3))?;
         let colors = source.beside(&positions, Semantic::Colors(0), (CheckedAccessor::colors, 4))?;
         let (indices, material) = (source.indices()?, source.material()?);
-        let texture = document.root.materials.get(usize::from(material));
-        let texture = texture.and_then(|m| m.pbr_metallic_roughness.base_color_texture.as_ref());
-        let transform = texture.map(Coordinates::new).transpose().map_err(|e| format!("{name}: {e}"))?;
-        let mut coordinates = None;
-        if let Some(transform) = transform {
+        let mut coordinates = |info: Option<&Info>| {
+            let transform = info.map(Coordinates::new).transpose().map_err(|e| format!("{name}: {e}"))?;
+            let Some(transform) = transform else { return Ok::<_, Fault>(None) };
             let set = transform.set;
             let column = source.beside(&positions, Semantic::TexCoords(set), (CheckedAccessor::coordinates, 2))?;
-            coordinates = column.map(|column| (column, transform));
-            if coordinates.is_none() {
+            if column.is_none() {
                 warnings.push(format!("{name}: no TEXCOORD_{set}: one texel of its texture is taken"));
             }
-        }
+            Ok(column.map(|column| (column, transform)))
+        };
+        let own = document.root.materials.get(usize::from(material));
+        let base = own.and_then(base_color::texture);
+        let emission = own.filter(|m| m.emissive_factor.0 != [0.0; 3]).and_then(|m| m.emissive_texture.as_ref());
+        let [coordinates, emission_coordinates] =
+            [coordinates(base.as_ref().map(|(info, _)| &**info))?, coordinates(emission)?];
         let (targets, influences) = (source.targets(&positions)?, source.influences(&positions)?);
-        Ok(CheckedPrimitive { positions, normals, indices, coordinates, colors, targets, influences, material, mode })
+        Ok(CheckedPrimitive {
+            positions,
+            normals,
+            indices,
+            coordinates,
+            emission_coordinates,
+            colors,
+            targets,
+            influences,
+            material,
+            mode,
+        })
     }
 
     /// Adds the morph targets to positions and normals.

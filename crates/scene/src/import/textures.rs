@@ -1,4 +1,4 @@
-//! Import of textures, from PNG and JPEG pictures.
+//! Import of textures, from PNG, JPEG and WebP pictures.
 
 use super::{
     container::Document,
@@ -8,28 +8,28 @@ use super::{
 use crate::texture::{Picture, Texture, Wrap};
 use glam::{DMat2, DVec2};
 use gltf::json::{
-    self,
+    self, Index,
     texture::{Info, MagFilter, Sampler, WrappingMode},
     validation::Checked,
 };
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 use memmap2::MmapMut;
-use std::{
-    borrow::Cow,
-    collections::{BTreeMap, btree_map::Entry},
-    io::Cursor,
-    path::PathBuf,
-    sync::Arc,
-};
+use std::{borrow::Cow, collections::BTreeMap, io::Cursor, path::PathBuf, sync::Arc};
 
 /// Most texels of one picture and of all, because a small file can state a large picture.
 const MAX_TEXELS: u64 = 1 << 26;
 const MAX_TEXELS_OF_ALL: u64 = 1 << 28;
 
+/// Pictures that may fail to be read before the rest are not tried.
+const MAX_FAILURES: u32 = 8;
+
 /// Reads textures. Each picture is read once, for any number of textures and images that name it.
 pub(super) struct Textures<'a> {
     document: &'a Document,
-    known: BTreeMap<Source, Arc<Picture>>,
+    /// A picture that cannot be read is tried once, too.
+    known: BTreeMap<Source, Result<Arc<Picture>>>,
+    /// How many more may fail before the rest are not tried: a failure has cost as much as a picture.
+    failures_left: u32,
     texels_left: u64,
     /// Bytes of buffers that are left for pictures.
     bytes_left: u64,
@@ -49,18 +49,23 @@ enum Source {
 impl<'a> Textures<'a> {
     pub fn new(document: &'a Document) -> Self {
         let bytes_left = document.buffer_bytes();
-        Textures { document, known: BTreeMap::new(), texels_left: MAX_TEXELS_OF_ALL, bytes_left }
+        Textures {
+            document,
+            known: BTreeMap::new(),
+            failures_left: MAX_FAILURES,
+            texels_left: MAX_TEXELS_OF_ALL,
+            bytes_left,
+        }
     }
 
     pub fn read(&mut self, info: &Info) -> Result<Texture> {
         let root = &self.document.root;
         let texture = get(&root.textures, &info.index, "index")?;
-        if texture.source.value() == u32::MAX as usize {
-            return Err(format!("textures[{}] has no PNG or JPEG `source`; export it with one", info.index.value()));
-        }
+        let none = || format!("textures[{}] has no PNG, JPEG or WebP `source`; export it with one", info.index.value());
+        let source = source_of(texture).ok_or_else(none)?;
         let sampler = texture.sampler.as_ref().map(|s| get(&root.samplers, s, "texture.sampler")).transpose()?;
-        let image = get(&root.images, &texture.source, "texture.source")?;
-        let index = texture.source.value();
+        let image = get(&root.images, &source, "texture.source")?;
+        let index = source.value();
         let picture = self.picture(index, image).map_err(|e| format!("{}: {e}", name_of(index, image)))?;
         let wrap = |mode: fn(&Sampler) -> Checked<WrappingMode>| match sampler.map(mode) {
             None | Some(Checked::Valid(WrappingMode::Repeat)) => Ok(Wrap::Repeat),
@@ -82,26 +87,41 @@ impl<'a> Textures<'a> {
             (None, Some(bytes)) => Source::View(bytes.as_ptr() as usize, bytes.len()),
             (None, None) => return Err("the image has neither uri nor bufferView".into()),
         };
-        let vacant = match self.known.entry(source) {
-            Entry::Occupied(known) => return Ok(known.get().clone()),
-            Entry::Vacant(vacant) => vacant,
-        };
-        let picture = match view {
-            Some(bytes) => {
-                // Pictures that do not overlap never exceed this. A short file could name one picture many times, each
-                // time a byte longer.
-                let left = self.bytes_left.checked_sub(bytes.len() as u64);
-                self.bytes_left = left.ok_or("the bufferViews of the images overlap; export them apart")?;
-                decode(bytes, self.texels_left)?
-            }
-            None => {
-                let bytes = self.document.files.borrow_mut().resolve(image.uri.as_deref().unwrap_or_default())?;
-                decode(&bytes, self.texels_left)?
-            }
-        };
-        self.texels_left -= picture.texels.len() as u64;
-        Ok(vacant.insert(Arc::new(picture)).clone())
+        if let Some(known) = self.known.get(&source) {
+            return known.clone();
+        }
+        if self.failures_left == 0 {
+            return Err(format!("it is not read, because {MAX_FAILURES} others cannot be"));
+        }
+        let picture = self.decoded(image, view).map(Arc::new);
+        match &picture {
+            Ok(picture) => self.texels_left -= picture.texels.len() as u64,
+            Err(_) => self.failures_left -= 1,
+        }
+        self.known.insert(source, picture.clone());
+        picture
     }
+
+    fn decoded(&mut self, image: &json::Image, view: Option<&[u8]>) -> Result<Picture> {
+        let Some(bytes) = view else {
+            let bytes = self.document.files.borrow_mut().resolve(image.uri.as_deref().unwrap_or_default())?;
+            return decode(&bytes, self.texels_left);
+        };
+        // Pictures that do not overlap never exceed this. A short file could name one picture many times, each time a
+        // byte longer.
+        let left = self.bytes_left.checked_sub(bytes.len() as u64);
+        self.bytes_left = left.ok_or("the bufferViews of the images overlap; export them apart")?;
+        decode(bytes, self.texels_left)
+    }
+}
+
+/// The image of a texture: the PNG or JPEG one, or else that of EXT_texture_webp.
+pub(super) fn source_of(texture: &json::Texture) -> Option<Index<json::Image>> {
+    if texture.source.value() != u32::MAX as usize {
+        return Some(texture.source);
+    }
+    let webp = texture.extensions.as_ref()?.others.get("EXT_texture_webp")?.get("source")?.as_u64()?;
+    u32::try_from(webp).ok().map(Index::new)
 }
 
 fn name_of(index: usize, image: &json::Image) -> String {
@@ -138,16 +158,22 @@ fn without_compressed_chunks(bytes: &[u8]) -> Cow<'_, [u8]> {
     kept
 }
 
+/// Whether a RIFF file, such as a WebP picture, has all bytes that its header states.
+fn is_whole_riff(bytes: &[u8]) -> bool {
+    let size = bytes.get(4..8).and_then(|b| b.try_into().ok()).map_or(0, u32::from_le_bytes);
+    bytes.len() as u64 >= 8 + u64::from(size)
+}
+
 /// Decodes a picture of at most `room` texels. Messages do not repeat those of the decoder, which show bytes, because a
 /// link can make a picture of any file.
 fn decode(bytes: &[u8], room: u64) -> Result<Picture> {
-    const WAY_OUT: &str = "export it as PNG or JPEG";
-    let fault = |_| format!("the PNG or JPEG picture is damaged or of a kind that is not supported; {WAY_OUT} again");
+    const WAY_OUT: &str = "export it as PNG, JPEG or WebP";
+    let fault = |_| format!("the picture is damaged or of a kind that is not supported; {WAY_OUT} again");
     let bytes = without_compressed_chunks(bytes);
     let reader = ImageReader::new(Cursor::new(&*bytes)).with_guessed_format().map_err(|e| e.to_string())?;
     let format = reader.format();
-    if !matches!(format, Some(ImageFormat::Png | ImageFormat::Jpeg)) {
-        return Err(format!("neither a PNG nor a JPEG picture; {WAY_OUT}"));
+    if !matches!(format, Some(ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::WebP)) {
+        return Err(format!("neither a PNG, a JPEG nor a WebP picture; {WAY_OUT}"));
     }
     let decoder = reader.into_decoder().map_err(fault)?;
     let (width, height) = decoder.dimensions();
@@ -160,6 +186,9 @@ fn decode(bytes: &[u8], room: u64) -> Result<Picture> {
     let needed = decoder.total_bytes().saturating_add(8 * texels);
     let space = MmapMut::map_anon(needed as usize);
     space.map_err(|_| format!("not enough memory for {width} x {height} texels; export it smaller"))?;
+    if format == Some(ImageFormat::WebP) && !is_whole_riff(&bytes) {
+        return Err(format!("the WebP picture ends early; {WAY_OUT} again"));
+    }
     if format == Some(ImageFormat::Jpeg) {
         jpeg::check(&bytes).map_err(|e| format!("{e}; {WAY_OUT} again"))?;
     }

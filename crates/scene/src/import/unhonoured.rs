@@ -1,11 +1,12 @@
 //! The properties that are not honoured, of all parts of the file that the image shows or that light it.
 
 use super::{
-    clipping,
+    base_color, clipping,
     container::Document,
     honoured::{self, Fate},
     nodes::SceneNode,
     survey::{Finding, Survey},
+    textures,
 };
 use crate::{
     mesh::Mesh,
@@ -78,15 +79,18 @@ impl Collected<'_> {
         }
     }
 
-    /// Adds the base color textures with their samplers and images.
+    /// Adds the textures of base color and emission with their samplers and images.
     fn add_pictures(&mut self, root: &Root, materials: &BTreeSet<u16>) {
         let materials = materials.iter().filter_map(|k| root.materials.get(usize::from(*k)));
-        let infos = materials.filter_map(|m| m.pbr_metallic_roughness.base_color_texture.as_ref());
-        let textures: BTreeSet<usize> = infos.map(|info| info.index.value()).collect();
+        let own = |m: &json::Material| {
+            let base = base_color::texture(m).map(|(info, _)| info.index.value());
+            [base, m.emissive_texture.as_ref().map(|info| info.index.value())]
+        };
+        let textures: BTreeSet<usize> = materials.flat_map(own).flatten().collect();
         let (mut samplers, mut images) = (BTreeSet::new(), BTreeSet::new());
         for texture in textures.iter().filter_map(|k| root.textures.get(*k)) {
             samplers.extend(texture.sampler.as_ref().map(|s| s.value()));
-            images.insert(texture.source.value());
+            images.extend(textures::source_of(texture).map(|source| source.value()));
         }
         self.add_each(honoured::TEXTURES, textures, |k| root.textures.get(k)?.name.clone());
         self.add_each(honoured::SAMPLERS, samplers, |_| None);

@@ -28,53 +28,77 @@ struct Fields {
     scatter_anisotropy: f64,
 }
 
-/// True if the file says that the surface bounds a medium.
+/// True if the file says that light enters the surface, or that it bounds a medium.
 pub(super) fn is_marked(m: &json::Material) -> bool {
     let is_solid = |e: &material::Material| e.volume.as_ref().is_some_and(|v| v.thickness_factor.0 > 0.0);
-    m.extensions.as_ref().is_some_and(|e| is_solid(e) || drafts(e).next().is_some())
+    let enters = |e| transmission(e) > 0.0 || diffuse_transmission(e) > 0.0;
+    m.extensions.as_ref().is_some_and(|e| enters(e) || is_solid(e) || drafts(e).next().is_some())
+}
+
+/// True if light enters by transmission alone: glTF then says that the walls have no thickness.
+pub(super) fn is_thin(m: &json::Material) -> bool {
+    let no_volume = |e: &material::Material| e.volume.as_ref().is_none_or(|v| v.thickness_factor.0 <= 0.0);
+    m.extensions.as_ref().is_some_and(|e| transmission(e) > 0.0 && no_volume(e) && drafts(e).next().is_none())
+}
+
+fn transmission(e: &material::Material) -> f32 {
+    e.transmission.as_ref().map_or(0.0, |t| t.transmission_factor.0)
+}
+
+/// The factor of KHR_materials_diffuse_transmission.
+fn diffuse_transmission(e: &material::Material) -> f64 {
+    let factor = e.others.get("KHR_materials_diffuse_transmission").and_then(|d| d.get("diffuseTransmissionFactor"));
+    factor.and_then(Value::as_f64).unwrap_or(0.0)
 }
 
 fn drafts(e: &material::Material) -> impl Iterator<Item = (ScatterExtension, &Value)> {
     DRAFTS.into_iter().filter_map(|draft| Some((draft, e.others.get(draft.extension())?)))
 }
 
-/// The coefficients of the medium, if the material states them. Warnings about missing or changed values go to `note`.
+/// The coefficients of the medium, if the material states them. Without a volume, or in one that absorbs nothing, what
+/// light enters by transmission is clear. Warnings about missing or changed values go to `note`.
 pub(super) fn read(m: &json::Material, metres_per_unit: f64, mut note: impl FnMut(String)) -> Result<Option<Volume>> {
     let Some(e) = &m.extensions else { return Ok(None) };
-    let transmission = e.transmission.as_ref().map_or(0.0, |t| t.transmission_factor.0);
+    let transmits = transmission(e) > 0.0;
     let mut drafts = drafts(e);
     let draft = drafts.next();
     if let Some((older, _)) = drafts.next() {
         note(format!("{} is not used beside the draft that replaces it", older.extension()));
     }
     // Light must enter, and there must be a volume.
-    let enters = transmission > 0.0 || matches!(draft, Some((ScatterExtension::VolumeScatter, _)));
+    let enters = transmits || matches!(draft, Some((ScatterExtension::VolumeScatter, _)));
     let solid = e.volume.as_ref().filter(|v| draft.is_some() || v.thickness_factor.0 > 0.0);
     let (true, Some(volume)) = (enters, solid) else {
-        if let Some((draft, _)) = draft {
-            let needs = if enters { "KHR_materials_volume" } else { "KHR_materials_transmission" };
-            note(format!("{} has no effect without {needs}: the file gives no medium", draft.extension()));
-        }
+        let Some((draft, _)) = draft else { return Ok(transmits.then(|| clear(e))) };
+        let needs = if enters { "KHR_materials_volume" } else { "KHR_materials_transmission" };
+        note(format!("{} has no effect without {needs}: the file gives no medium", draft.extension()));
         return Ok(None);
     };
     let extinction = extinction(volume, metres_per_unit, &mut note)?;
     if extinction == DVec3::ZERO {
-        if let Some((draft, _)) = draft {
-            note(format!("{} without attenuationDistance and attenuationColor gives no medium", draft.extension()));
-        }
+        let Some((draft, _)) = draft else { return Ok(Some(clear(e))) };
+        note(format!("{} without attenuationDistance and attenuationColor gives no medium", draft.extension()));
         return Ok(None);
     }
     let scatter = match draft {
         Some((draft, value)) => scatter(draft, value, &mut note).map_err(|e| format!("{}: {e}", draft.extension()))?,
         None => None,
     };
-    if draft.is_some() && volume.thickness_factor.0 <= 0.0 {
-        note("thicknessFactor is 0, yet the medium is taken as solid".into());
+    if let Some((draft, _)) = draft.filter(|_| volume.thickness_factor.0 <= 0.0) {
+        let name = draft.extension();
+        note(format!(
+            "thicknessFactor is 0, which {name} calls a thin wall; it is rendered as the solid that it bounds"
+        ));
     }
+    Ok(Some(Volume { extinction, scatter, ..clear(e) }))
+}
+
+/// A medium of the material's index that neither absorbs nor scatters.
+fn clear(e: &material::Material) -> Volume {
     let ior = e.ior.as_ref().map_or(IndexOfRefraction::default().0, |i| i.ior.0);
     // The decimal number of the file, and not its rounding to float32.
     let ior = ior.to_string().parse().unwrap_or(f64::from(ior));
-    Ok(Some(Volume { extinction, ior, scatter }))
+    Volume { extinction: DVec3::ZERO, ior, scatter: None }
 }
 
 /// `σ_t = −ln(attenuationColor)/attenuationDistance`, 1/m. The distance is in units of the world and independent of the

@@ -62,7 +62,8 @@ impl<'a> Bounce<'a> {
     /// None if no opaque surface reflects.
     pub fn new(scene: &'a Scene, translucent: impl Fn(u16) -> bool) -> Option<Self> {
         let reflects = |k: usize| scene.materials[k].base_color.truncate() != DVec3::ZERO;
-        let opaque: Vec<bool> = (0..scene.materials.len()).map(|k| !translucent(k as u16) && reflects(k)).collect();
+        let diffuse = |k: usize| !translucent(k as u16) && !scene.is_pane(k as u16) && reflects(k);
+        let opaque: Vec<bool> = (0..scene.materials.len()).map(diffuse).collect();
         let any = scene.mesh.triangles.iter().any(|t| opaque[t.material as usize]);
         any.then_some(Bounce { scene, opaque })
     }

@@ -11,8 +11,10 @@ mod direction_cone;
 mod directional;
 pub(crate) mod environment;
 mod environment_map;
+mod glow;
 mod hierarchical_sampler;
 mod point;
+mod texel_sums;
 mod tree;
 
 pub use area::AreaLight;

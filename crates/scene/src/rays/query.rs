@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 
 /// Tells whether a point of a triangle is solid or a hole.
 pub(super) trait Solid: Copy {
-    fn is_solid(self, triangle: u32, crossing: &Crossing) -> bool;
+    fn is_solid(self, ray: &Ray, triangle: u32, crossing: &Crossing) -> bool;
 }
 
 /// Triangles without holes.
@@ -21,15 +21,15 @@ pub(super) struct Whole;
 
 impl Solid for Whole {
     #[inline(always)]
-    fn is_solid(self, _: u32, _: &Crossing) -> bool {
+    fn is_solid(self, _: &Ray, _: u32, _: &Crossing) -> bool {
         true
     }
 }
 
 impl Solid for &Cutouts<'_> {
     #[inline(always)]
-    fn is_solid(self, triangle: u32, crossing: &Crossing) -> bool {
-        !self.is_hole(triangle, || crossing.weights())
+    fn is_solid(self, ray: &Ray, triangle: u32, crossing: &Crossing) -> bool {
+        !self.is_hole(triangle, (ray.origin, ray.direction), || crossing.weights())
     }
 }
 
@@ -46,7 +46,8 @@ impl<S: Solid> Segment<'_, S> {
     /// Whether a crossing with a triangle is a hit, apart from the limit.
     #[inline(always)]
     fn is_hit(&self, leaf: &Leaf, lane: usize, crossing: &Crossing) -> bool {
-        self.mesh.counts(crossing.distance, leaf, lane, self.ray) && self.solid.is_solid(leaf.triangles[lane], crossing)
+        self.mesh.counts(crossing.distance, leaf, lane, self.ray)
+            && self.solid.is_solid(self.ray, leaf.triangles[lane], crossing)
     }
 }
 

@@ -62,9 +62,8 @@ fn only_masks_of_opaque_surfaces_have_holes() {
         material["alphaMode"] = json!(mode);
         screens([0, 255], material)
     };
-    for scene in [blended("OPAQUE"), blended("BLEND")] {
-        assert!(is_solid(&scene, &Rays::of_scene(&scene, |_| false), 0.3));
-    }
+    let scene = blended("OPAQUE");
+    assert!(is_solid(&scene, &Rays::of_scene(&scene, |_| false), 0.3));
     let scene = blended("MASK");
     assert!(is_solid(&scene, &Rays::of_scene(&scene, |m| m == 0), 0.3), "translucent");
     let mut lamp = masked(json!(0.5));
@@ -72,6 +71,27 @@ fn only_masks_of_opaque_surfaces_have_holes() {
     let scene = screens([0, 255], lamp);
     assert!(is_solid(&scene, &Rays::of_scene(&scene, |_| false), 0.3), "emits");
     assert!(scene.warnings.iter().any(|w| w.contains("`Cloth`: alphaMode MASK")), "{:?}", scene.warnings);
+}
+
+/// Where alphaMode is BLEND, alpha is the share of rays that meet the surface. Each of 20000 rays does by chance, for all
+/// queries alike; four standard deviations, 1.4 %, are left by chance once in 16000 runs.
+///
+/// Seen to catch: a chance that is the same for all rays of a direction; holes where alpha is 1.
+#[test]
+fn alpha_is_the_share_of_rays_that_meet_a_blended_surface() {
+    let mut material = masked(json!(0.5));
+    material["alphaMode"] = json!("BLEND");
+    for (alphas, shares) in [([51, 204], [0.2, 0.8]), ([0, 255], [0.0, 1.0])] {
+        let scene = screens(alphas, material.clone());
+        let rays = Rays::of_scene(&scene, |_| false);
+        for (side, share) in shares.into_iter().enumerate() {
+            let x = |k: u32| 0.5 * side as f64 + 0.05 + 0.4 * (f64::from(k) / 20_000.0);
+            let solid = (0..20_000).filter(|k| is_solid(&scene, &rays, x(*k))).count() as f64 / 20_000.0;
+            let allowed = if share == 0.0 || share == 1.0 { 0.0 } else { 0.0143 };
+            assert!((solid - share).abs() <= allowed, "{solid}, not {share}");
+        }
+        assert!(is_solid(&scene, &Rays::of_scene(&scene, |m| m == 0), 0.3), "translucent");
+    }
 }
 
 /// Seen to catch: the alpha of vertices, or of the factor, left out.

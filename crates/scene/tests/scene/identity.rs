@@ -7,8 +7,8 @@ fn imported(name: &str) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../data/scenes/{name}.glb"));
     let options = ImportOptions {
         metres_per_unit: 1.0,
-        light_unit: LightUnit::Radiometric,
-        emission_unit: LightUnit::Radiometric,
+        light_unit: Some(LightUnit::Radiometric),
+        emission_unit: Some(LightUnit::Radiometric),
         pose: None,
     };
     Scene::import(&path, &options).expect("the scene can be read")

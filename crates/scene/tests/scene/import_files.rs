@@ -129,11 +129,12 @@ fn links_are_followed_and_messages_do_not_show_what_is_there() {
         link(name, &[start, b"root:x:0:0:root:/root:/bin/bash"].concat());
         asset.set("/images/0", json!({ "uri": name }));
         let path = bench.write("picture.glb", asset.glb());
-        let message = Scene::import(&path, &OPTIONS).err().expect("no picture").to_string();
+        let scene = Scene::import(&path, &OPTIONS).expect("only opaque surfaces need it");
+        let message = scene.check_textures(|_| false).expect_err("no picture").to_string();
         let (_, said) = message.split_once(&format!("`{name}`: ")).expect("the image's name");
         let known = [
-            "the PNG or JPEG picture is damaged or of a kind that is not supported; export it as PNG or JPEG again",
-            "neither a PNG nor a JPEG picture; export it as PNG or JPEG",
+            "the picture is damaged or of a kind that is not supported; export it as PNG, JPEG or WebP again",
+            "neither a PNG, a JPEG nor a WebP picture; export it as PNG, JPEG or WebP",
         ];
         assert!(known.contains(&said), "{said}");
     }

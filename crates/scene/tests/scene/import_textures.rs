@@ -7,12 +7,20 @@ use serde_json::{Value, json};
 use std::io::Cursor;
 use test_support::{
     Bench,
-    glb::{Asset, FLOAT, OPTIONS, UNSIGNED_BYTE, UNSIGNED_SHORT, fault},
+    glb::{Asset, FLOAT, OPTIONS, UNSIGNED_BYTE, UNSIGNED_SHORT},
 };
 
 /// Linear values of some sRGB codes (IEC 61966-2-1).
 const LINEAR_64: f64 = 0.051_269_458;
 const LINEAR_188: f64 = 0.502_886_458;
+
+/// Why the file is refused where its surfaces are opaque.
+fn fault(asset: &Asset) -> String {
+    match asset.import() {
+        Ok(scene) => scene.check_textures(|_| false).expect_err("a texture is needed").to_string(),
+        Err(fault) => fault.to_string(),
+    }
+}
 
 /// Two by two texels with alpha 255, 51, 102, 0.
 fn texels() -> RgbaImage {
@@ -131,7 +139,8 @@ fn a_picture_beside_the_scene() {
     let mut asset = with_picture(&[], textured(json!({})), json!({ "magFilter": NEAREST }));
     asset.set("/images/0", json!({ "uri": "my%20w%C3%A9ave.png" }));
     let path = bench.write("cloth.glb", asset.glb());
-    let message = Scene::import(&path, &OPTIONS).err().expect("it is not there").to_string();
+    let scene = Scene::import(&path, &OPTIONS).expect("a translucent surface needs no texture");
+    let message = scene.check_textures(|_| false).expect_err("it is not there").to_string();
     for word in ["cloth.glb", "`Cloth`", "images[0] `my%20w%C3%A9ave.png`", "my wéave.png", "beside it"] {
         assert!(message.contains(word), "{word}: {message}");
     }
@@ -254,9 +263,9 @@ fn pictures_that_cannot_be_read() {
     let jpeg = encoded(&texels(), ImageFormat::Jpeg);
     let cases = [
         (png()[..60].to_vec(), "PNG"),
-        (jpeg[..jpeg.len() / 2].to_vec(), "PNG or JPEG again"),
-        (b"GIF89a".to_vec(), "neither a PNG nor a JPEG"),
-        (Vec::new(), "neither a PNG nor a JPEG"),
+        (jpeg[..jpeg.len() / 2].to_vec(), "PNG, JPEG or WebP again"),
+        (b"GIF89a".to_vec(), "neither a PNG, a JPEG nor a WebP"),
+        (Vec::new(), "neither a PNG, a JPEG nor a WebP"),
         (claiming(60_000, 60_000), "60000 x 60000 texels: 1 to 67108864"),
         (claiming(u32::MAX >> 1, u32::MAX >> 1), "images[0]"),
         (claiming(0, 7), "images[0]"),
@@ -273,7 +282,11 @@ fn pictures_that_cannot_be_read() {
         ("/bufferViews/3/byteLength", json!(1 << 20), "exceeds its buffer"),
         ("/images/0", json!({}), "neither uri nor bufferView"),
         ("/textures/0/source", json!(5), "texture.source: index 5"),
-        ("/textures/0", json!({ "extensions": { "EXT_texture_webp": { "source": 0 } } }), "no PNG or JPEG `source`"),
+        (
+            "/textures/0",
+            json!({ "extensions": { "KHR_texture_basisu": { "source": 0 } } }),
+            "no PNG, JPEG or WebP `source`",
+        ),
         ("/textures/0/sampler", json!(5), "texture.sampler: index 5"),
         ("/materials/0/pbrMetallicRoughness/baseColorTexture/index", json!(5), "index 5 is out of range"),
         ("/samplers/0", json!({ "wrapS": 1 }), "unknown wrap mode"),
@@ -301,7 +314,8 @@ fn pictures_that_end_early_are_refused() {
             assert!(message.contains("images[0] `weave`: "), "{missing}: {message}");
             let marked = [cut, &[0xff, 0xd9]].concat();
             let marked = with_picture(&marked, textured(json!({})), json!({})).import();
-            assert!(format == ImageFormat::Png || missing < 8 || marked.is_err(), "{missing}");
+            let refused = marked.map_or(true, |scene| scene.check_textures(|_| false).is_err());
+            assert!(format == ImageFormat::Png || missing < 8 || refused, "{missing}");
         }
     }
 }
@@ -311,13 +325,79 @@ fn pictures_that_end_early_are_refused() {
 fn damaged_pictures() {
     let small = RgbaImage::from_fn(9, 9, |x, y| Rgba([20 * x as u8, 20 * y as u8, 7, 255]));
     let mut refused = 0;
-    for format in [ImageFormat::Png, ImageFormat::Jpeg] {
+    for format in [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::WebP] {
         let bytes = encoded(&small, format);
         for at in 0..bytes.len() {
             let mut bytes = bytes.clone();
             bytes[at] ^= [0xFF, 0x01, 0x80][at % 3];
-            refused += u32::from(with_picture(&bytes, textured(json!({})), json!({})).import().is_err());
+            let scene = with_picture(&bytes, textured(json!({})), json!({})).import().expect("imports");
+            refused += u32::from(scene.check_textures(|_| false).is_err());
         }
     }
     assert!(refused > 30, "{refused}");
+}
+
+/// The same texels as WebP, by the picture itself and by the extension that names it beside a PNG or alone.
+///
+/// Seen to catch: the source of the extension not looked at; a picture that ends early padded.
+#[test]
+fn webp_pictures() {
+    let webp = encoded(&texels(), ImageFormat::WebP);
+    let plain = with_picture(&webp, textured(json!({})), json!({ "magFilter": NEAREST }));
+    let mut named = plain.clone();
+    named.set("/textures/0", json!({ "sampler": 0, "extensions": { "EXT_texture_webp": { "source": 0 } } }));
+    named.json["extensionsRequired"] = json!(["EXT_texture_webp"]);
+    for asset in [plain, named] {
+        let scene = asset.import().expect("imports");
+        scene.check_textures(|_| false).expect("it can be read");
+        for (x, y) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            assert_color(&scene, [x, y].map(|k| 0.5 * f64::from(k) + 0.25), linear(x, y));
+        }
+    }
+    let long = encoded(
+        &RgbaImage::from_fn(40, 24, |x, y| Rgba([6 * x as u8, 10 * y as u8, (x * y) as u8, 255])),
+        ImageFormat::WebP,
+    );
+    for missing in 1..long.len() {
+        let cut = with_picture(&long[..long.len() - missing], textured(json!({})), json!({}));
+        assert!(fault(&cut).contains("images[0] `weave`: "), "{missing}");
+    }
+}
+
+/// A picture that nobody can read is no fault on a translucent surface, nor on one that is not in the scene.
+///
+/// Seen to catch: textures of unused materials read.
+#[test]
+fn what_is_not_needed_is_not_read() {
+    let scene = with_picture(b"KTX 20", textured(json!({})), json!({})).import().expect("imports");
+    assert!(scene.check_textures(|_| true).is_ok() && scene.check_textures(|_| false).is_err());
+    let mut asset = with_picture(b"KTX 20", textured(json!({})), json!({}));
+    let plain = asset.push("materials", json!({ "name": "Plain" }));
+    asset.set("/meshes/0/primitives/0/material", json!(plain));
+    asset.import().expect("imports").check_textures(|_| false).expect("no surface needs it");
+    asset.json["materials"][0]["emissiveFactor"] = json!([1, 1, 1]);
+    asset.json["materials"][0]["emissiveTexture"] = json!({ "index": 0 });
+    asset.import().expect("imports");
+    asset.set("/meshes/0/primitives/0/material", json!(0));
+    let message = asset.import().err().expect("its light is needed").to_string();
+    assert!(message.contains("`Cloth`: emissiveTexture: images[0] `weave`: neither"), "{message}");
+}
+
+/// The older model of materials: its diffuse color, whatever the newer one says.
+///
+/// Seen to catch: the texture of the newer model.
+#[test]
+fn diffuse_color_of_specular_glossiness() {
+    let older = json!({ "diffuseFactor": [0.5, 0.25, 1, 1], "diffuseTexture": { "index": 0 }, "glossinessFactor": 0 });
+    let material = json!({ "name": "Cloth", "extensions": { "KHR_materials_pbrSpecularGlossiness": older },
+        "pbrMetallicRoughness": { "baseColorFactor": [0, 0, 0, 0], "baseColorTexture": { "index": 7 } } });
+    let mut asset = with_picture(&png(), material, json!({ "magFilter": NEAREST }));
+    asset.json["extensionsRequired"] = json!(["KHR_materials_pbrSpecularGlossiness"]);
+    let mut scene = asset.import().expect("imports");
+    scene.check_textures(|_| false).expect("it can be read");
+    assert_color(&scene, [0.25, 0.75], linear(0, 1) * DVec4::new(0.5, 0.25, 1.0, 1.0));
+    scene.warn_of_unhonoured(|_| false);
+    assert!(scene.warnings.len() == 1 && scene.warnings[0].contains("glossinessFactor"), "{:?}", scene.warnings);
+    asset.json["materials"][0]["extensions"]["KHR_materials_pbrSpecularGlossiness"]["diffuseFactor"] = json!(["red"]);
+    assert!(fault(&asset).contains("baseColorFactor"));
 }

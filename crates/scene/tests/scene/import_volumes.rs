@@ -1,6 +1,6 @@
 //! Import of the medium below a surface: both drafts, both spellings, every default.
 
-use scene::{DVec3, ImportOptions, Material, Scatter, ScatterExtension, Volume};
+use scene::{DVec3, ImportOptions, Material, Scatter, ScatterExtension, StatedMedium, Volume};
 use serde_json::{Value, json};
 use test_support::glb::{Asset, OPTIONS, fault, import_bytes, tetrahedron};
 
@@ -65,6 +65,65 @@ fn both_drafts_with_their_defaults_and_spellings() {
     assert_eq!(white.map(|s| s.color), Some(DVec3::ONE));
 }
 
+/// What light enters without a volume, or in one that absorbs nothing.
+const CLEAR: Volume = Volume { extinction: DVec3::ZERO, ior: 1.5, scatter: None };
+
+/// Each of these marks a material as translucent; light enters all of them. Glass is clear where nothing absorbs.
+///
+/// Seen to catch: diffuse transmission, or transmission without a volume, taken as opaque beside a marked one.
+#[test]
+fn what_marks_a_material_as_translucent() {
+    let transmission = |factor: f64| json!({ "KHR_materials_transmission": { "transmissionFactor": factor } });
+    let diffuse = |fields: Value| json!({ "KHR_materials_diffuse_transmission": fields });
+    let mut ball = transmission(1.0);
+    ball["KHR_materials_volume"] = json!({ "thicknessFactor": 0.1 });
+    let cases = [
+        (transmission(1.0), true, Some(CLEAR)),
+        (transmission(0.1), true, Some(CLEAR)),
+        (transmission(0.0), false, None),
+        (ball, true, Some(CLEAR)),
+        (diffuse(json!({ "diffuseTransmissionFactor": 0.5 })), true, None),
+        (diffuse(json!({ "diffuseTransmissionFactor": 0, "diffuseTransmissionColorFactor": [1, 0, 0] })), false, None),
+        (diffuse(json!({})), false, None),
+        (json!({ "KHR_materials_volume": { "thicknessFactor": 1 } }), true, None),
+        (json!({ "KHR_materials_volume": {} }), false, None),
+        (json!({ "KHR_materials_scatter": {} }), true, None),
+        (json!({ "KHR_materials_volume_scatter": {} }), true, None),
+    ];
+    for (extensions, marked, medium) in cases {
+        let (material, _) = material(extensions.clone());
+        assert_eq!((material.volume, material.medium), (marked, medium), "{extensions}");
+    }
+}
+
+/// A medium in the extras, as Blender exports custom properties; anything else there has no effect, or is named.
+///
+/// Seen to catch: a text of JSON taken as a name.
+#[test]
+fn extras_state_a_medium() {
+    let stated = |extras: Value| {
+        let mut asset = tetrahedron();
+        asset.set("/materials/0/extras", extras);
+        let scene = asset.import().expect("a good file");
+        (scene.materials[0].stated.clone(), scene.materials[0].volume, scene.warnings.join("; "))
+    };
+    let marble = Some(StatedMedium::Name("marble".into()));
+    assert_eq!(stated(json!({ "medium": " marble", "other": [1] })), (marble, true, String::new()));
+    let own = r#"{"name":"own"}"#;
+    let object = serde_json::from_str::<Value>(own).expect("JSON");
+    for medium in [json!(own), object] {
+        assert_eq!(stated(json!({ "medium": medium })), (Some(StatedMedium::Json(own.into())), true, String::new()));
+    }
+    for nothing in [json!({}), json!([1]), json!("medium"), json!({ "medium": null }), json!({ "Medium": "marble" })] {
+        assert_eq!(stated(nothing), (None, false, String::new()));
+    }
+    for wrong in [json!(3), json!(["marble"]), json!("  "), json!("x".repeat(1 << 17))] {
+        let (none, volume, warning) = stated(json!({ "medium": wrong }));
+        assert!(none.is_none() && !volume && warning.contains("`wax`: extras.medium is neither"), "{warning}");
+        assert!(warning.len() < 300, "{warning}");
+    }
+}
+
 /// Absorption alone is a medium if light enters.
 #[test]
 fn transmission_lets_light_in() {
@@ -82,7 +141,7 @@ fn transmission_lets_light_in() {
     let thin = json!({ "attenuationDistance": 2, "attenuationColor": [0.5, 0.25, 1] });
     let walls = json!({ "KHR_materials_volume": thin, "KHR_materials_transmission": transmission });
     let (walls, _) = material(walls);
-    assert_eq!((walls.medium, walls.volume), (None, false));
+    assert_eq!((walls.medium, walls.volume), (Some(CLEAR), true));
     // The newer draft needs transmission, the older does not.
     for (draft, has_medium) in [(ScatterExtension::Scatter, false), (ScatterExtension::VolumeScatter, true)] {
         let scatter = json!({ "multiscatterColorFactor": [1, 1, 1], "scatterStrengthFactor": 1 });

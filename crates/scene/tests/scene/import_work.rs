@@ -34,6 +34,12 @@ fn of_images(asset: &mut Asset, images: Vec<Value>) {
     asset.json["images"] = json!(images);
     asset.json["textures"] = json!(textures);
     asset.json["materials"] = json!(materials);
+    let mut primitive = asset.json["meshes"][0]["primitives"][0].take();
+    let mut with = |k: usize| {
+        primitive["material"] = json!(k);
+        primitive.clone()
+    };
+    asset.json["meshes"][0]["primitives"] = (0..images.len()).map(&mut with).collect();
 }
 
 /// Seen to catch: equal images that are each decoded, and hashed once more for each material.
@@ -75,13 +81,34 @@ fn pictures_do_not_overlap() {
     view["byteLength"] = json!(png.len() + 1);
     let second = asset.push("bufferViews", view.clone());
     of_images(&mut asset, vec![json!({ "bufferView": first }), json!({ "bufferView": second })]);
-    assert!(png.len() > 500 && fault(&asset).contains("images[1]: the bufferViews of the images overlap"));
+    let overlap = asset.import().expect("a good file").check_textures(|_| false).expect_err("they overlap").to_string();
+    assert!(png.len() > 500 && overlap.contains("images[1]: the bufferViews of the images overlap"), "{overlap}");
     // A copy is another picture.
     let copy = asset.binary[start as usize..start as usize + png.len()].to_vec();
     asset.json["bufferViews"][second]["byteOffset"] = json!(asset.binary.len());
     asset.json["bufferViews"][second]["byteLength"] = json!(png.len());
     asset.binary.extend(copy);
-    assert!(asset.import().is_ok());
+    asset.import().expect("a good file").check_textures(|_| false).expect("they are apart");
+}
+
+/// Pictures that fail at their end, where all work is done: each is tried once, and not many are.
+///
+/// Seen to catch: failures that are tried again for each material; no limit of failures.
+#[test]
+fn damaged_pictures_are_tried_once() {
+    let png = encoded(&RgbaImage::new(4096, 4096), ImageFormat::Png);
+    let cut = &png[..png.len() - 30];
+    let mut asset = with_picture(cut, textured(json!({})), json!({}));
+    let first = asset.json["images"][0]["bufferView"].clone();
+    let other = |asset: &mut Asset| {
+        let view = json!({ "buffer": 0, "byteOffset": asset.binary.len(), "byteLength": cut.len() });
+        asset.binary.extend(cut);
+        json!({ "bufferView": asset.push("bufferViews", view) })
+    };
+    let others: Vec<Value> = (0..200).map(|_| other(&mut asset)).collect();
+    of_images(&mut asset, [vec![json!({ "bufferView": first }); 200], others].concat());
+    let scene = import_soon(&asset);
+    assert!(scene.check_textures(|k| k < 399).expect_err("it is damaged").to_string().contains("8 others cannot be"));
 }
 
 /// A short accessor with many changes, which many primitives share, is quickly stored and slowly read.

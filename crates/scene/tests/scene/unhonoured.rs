@@ -137,8 +137,8 @@ fn what_changes_no_picture_is_not_named() {
 fn what_is_not_drawn_is_not_named() {
     let mut asset = asset();
     asset.set("/materials/2/normalTexture", json!({ "index": 0 }));
-    asset.set("/textures/0/extensions", json!({ "EXT_texture_webp": { "source": 0 } }));
-    asset.set("/extensionsUsed", json!(["EXT_texture_webp", "ACME_wings"]));
+    asset.set("/textures/0/extensions", json!({ "ACME_texture": { "source": 0 } }));
+    asset.set("/extensionsUsed", json!(["ACME_texture", "ACME_wings"]));
     asset.push("nodes", json!({ "mesh": 2, "camera": 1, "extensions": { "ACME_wings": {} } }));
     asset.push("cameras", json!({ "type": "perspective", "perspective": { "yfov": 1, "znear": 1, "shutter": 1 } }));
     asset.mesh(json!({ "attributes": { "POSITION": 0 }, "material": 2, "extensions": { "ACME_wings": {} } }));
