@@ -62,6 +62,6 @@ pub use progress::Progress;
 pub use scene_args::SceneArgs;
 pub use scene_settings::{SceneSettings, normal_kind};
 pub use seconds::Seconds;
-pub use tables::{camera_names, camera_table, material_names, material_table};
+pub use tables::{bounds_line, camera_names, camera_table, made_camera_names, material_names, material_table};
 pub use terminal::printable;
 pub use values::{one_of, parse_relative_error, parse_rgb};

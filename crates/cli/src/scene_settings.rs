@@ -1,8 +1,11 @@
 //! How a scene is read. Sampling and gathering must agree on it.
 
-use crate::{Common, Failure, Files, SceneArgs, environment::EnvironmentSource};
+use crate::{
+    Common, Failure, Files, SceneArgs,
+    environment::{BuiltIn, EnvironmentSource},
+};
 use formats::cloud::{LightUnit, Normals};
-use scene::{ImportOptions, MeshDefects, NormalKind, Scene, SceneError};
+use scene::{ImportOptions, LostVolumes, MeshDefects, NormalKind, Scene, SceneError};
 use std::path::PathBuf;
 
 /// The file of a scene, and how to read it.
@@ -29,17 +32,62 @@ impl SceneSettings {
 
     /// Reads the scene and its environment, and prints the warnings of the import.
     pub fn import(&self, common: &Common) -> Result<Scene, Failure> {
-        let options = ImportOptions {
-            metres_per_unit: self.how.metres_per_unit,
-            light_unit: of_scene(self.how.light_unit),
-            emission_unit: of_scene(self.emission_unit()),
-        };
+        let options = self.options(self.how.metres_per_unit);
         let mut scene = Scene::import(&self.path, &options).map_err(with_option)?;
         self.warn(&scene.warnings, common);
-        if let Some(source) = &self.how.environment {
+        let studio = self.studio(&scene).then_some(EnvironmentSource::BuiltIn(BuiltIn::Studio));
+        if let Some(source) = self.how.environment.as_ref().or(studio.as_ref()) {
             scene.environment = source.read(self.how.environment_scale, self.how.environment_rotation, common)?;
         }
         Ok(scene)
+    }
+
+    /// Whether the scene is lit by the built-in studio because neither its file nor the arguments have a light.
+    fn studio(&self, scene: &Scene) -> bool {
+        self.how.environment.is_none() && scene.file_lights.is_empty()
+    }
+
+    /// Says so if it is. The first program that reads a scene says it, and those that follow do not.
+    pub fn say_light(&self, scene: &Scene, common: &Common) {
+        if self.studio(scene) {
+            common.say(format_args!(
+                "{}: no light in the file: it is lit by --environment studio (give sky, a picture or R,G,B; 0,0,0 is none)",
+                self.path.display()
+            ));
+        }
+    }
+
+    /// The same settings with the size of a unit that gives the translucent surfaces of the scene their `--size`.
+    /// `translucent` are those of the arguments or the cloud; where it gives none, those of the file count.
+    pub fn sized(
+        &self,
+        translucent: impl FnOnce(&Scene) -> Result<Vec<u16>, Failure>,
+    ) -> Result<SceneSettings, Failure> {
+        let Some(size) = self.how.size else { return Ok(self.clone()) };
+        let scene = Scene::import(&self.path, &self.options(1.0)).map_err(with_option)?;
+        let materials = translucent(&scene)?;
+        let (low, high) = scene.bounds_of(|material| materials.contains(&material));
+        let extent = (high - low).max_element();
+        let metres_per_unit = size / extent;
+        if !(extent > 0.0 && metres_per_unit.is_finite() && metres_per_unit > 0.0) {
+            let path = self.path.display();
+            return Err(Failure::usage(format!("--size: the translucent surfaces of {path} have no extent")));
+        }
+        Ok(SceneSettings { path: self.path.clone(), how: SceneArgs { metres_per_unit, ..self.how.clone() } })
+    }
+
+    /// The same by the surfaces that are translucent by the scene's file.
+    pub fn sized_by_file(&self) -> Result<SceneSettings, Failure> {
+        let lost = |e: LostVolumes| Failure::usage(format!("{}: {e}", self.path.display()));
+        self.sized(|scene| scene.translucent().map(|(materials, _)| materials).map_err(lost))
+    }
+
+    fn options(&self, metres_per_unit: f64) -> ImportOptions {
+        ImportOptions {
+            metres_per_unit,
+            light_unit: of_scene(self.how.light_unit),
+            emission_unit: of_scene(self.emission_unit()),
+        }
     }
 
     /// Warns of what the scene's file asks for and the programs do not honor, of colors that the surfaces of
@@ -75,7 +123,7 @@ impl SceneSettings {
 fn with_option(error: SceneError) -> Failure {
     let is_too_large = matches!(error, SceneError::TooLarge { .. });
     let failure = Failure::from(error);
-    if is_too_large { Failure::usage(format!("{}; set --metres-per-unit", failure.message)) } else { failure }
+    if is_too_large { Failure::usage(format!("{}; set --metres-per-unit or --size", failure.message)) } else { failure }
 }
 
 /// The unit of the same name in the terms of the importer.

@@ -4,7 +4,7 @@ use crate::{
     error::LostVolumes,
     light::{contract::Light, environment::Environment},
     material::Material,
-    mesh::Mesh,
+    mesh::{Mesh, bounds},
     unhonoured::Unhonoured,
     view::Camera,
 };
@@ -72,6 +72,17 @@ impl Scene {
         lost.retain(|k| self.materials.get(usize::from(*k)).is_some_and(|m| m.volume));
         self.mesh.triangles.iter().for_each(|t| _ = lost.remove(&t.material));
         lost.into_iter().collect()
+    }
+
+    /// The box around the triangles of these materials, m from the origin; empty if there are none.
+    pub fn bounds_of(&self, is_of: impl Fn(u16) -> bool) -> (DVec3, DVec3) {
+        bounds(self.corners_of(is_of))
+    }
+
+    /// The corners of the triangles of these materials, m from the origin.
+    pub(crate) fn corners_of(&self, is_of: impl Fn(u16) -> bool) -> impl Iterator<Item = DVec3> {
+        let own = self.mesh.triangles.iter().enumerate().filter(move |(_, t)| is_of(t.material));
+        own.flat_map(|(k, _)| self.mesh.corners(k))
     }
 
     /// Area of the triangles of each material, m².

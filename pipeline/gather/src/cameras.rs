@@ -1,8 +1,8 @@
 //! The cameras that images are rendered from. They come from a view file or from the scene.
 
 use crate::settings::{CameraSource, Request};
-use cli::{Failure, camera_names, the_one, word_for};
-use scene::{Camera, DVec3, Scene, View, ViewFile};
+use cli::{Candidate, Failure, camera_names, made_camera_names, the_one, word_for};
+use scene::{Camera, DVec3, Framing, Placed, Scene, View, ViewFile};
 use std::path::Path;
 
 /// A camera with its name, its turntable's axis, and the size of its image.
@@ -23,12 +23,58 @@ pub fn tag(name: Option<&str>, index: usize) -> String {
     name.map_or_else(|| format!("{index:04}"), str::to_owned)
 }
 
-/// The cameras of the view file, or the chosen camera of the scene, which turns about the `middle` of what it shows.
-pub fn viewpoints(request: &Request, scene: &Scene, middle: impl Fn() -> DVec3) -> Result<Vec<Viewpoint>, Failure> {
+/// The cameras of the view file, the chosen camera of the scene, which turns about the middle of the translucent surfaces,
+/// or one that is made to frame them if the scene has none.
+pub fn viewpoints(request: &Request, scene: &Scene, surfaces: &Framing) -> Result<Vec<Viewpoint>, Failure> {
     match &request.camera {
         CameraSource::View(path) => of_view_file(path, request.orbit.is_some()),
-        CameraSource::Scene(word) => Ok(vec![of_scene(word.as_deref(), scene, &request.scene.path, middle())?]),
+        CameraSource::Scene(word) if scene.cameras.is_empty() => Ok(vec![made(word.as_deref(), request, surfaces)?]),
+        CameraSource::Scene(word) => {
+            Ok(vec![of_scene(word.as_deref(), scene, &request.scene.path, surfaces.middle())?])
+        }
     }
+}
+
+/// Side of an image, pixels, unless another is asked for.
+pub const SIDE: u32 = 512;
+
+/// A camera that is made, and said as a view file that repeats it.
+fn made(word: Option<&str>, request: &Request, surfaces: &Framing) -> Result<Viewpoint, Failure> {
+    let path = request.scene.path.display();
+    let names = made_camera_names();
+    let index = chosen(
+        word,
+        &names,
+        &format!("{path} has no camera, and none called `{}` is made; there are", word.unwrap_or_default()),
+        "camera",
+    )?;
+    let placed = Placed::ALL[index];
+    let [width, height] = request.size;
+    let aspect = f64::from(width.or(height).unwrap_or(SIDE)) / f64::from(height.or(width).unwrap_or(SIDE));
+    let framed = surfaces.view(placed, aspect, request.orbit.is_some());
+    let (view, camera) = framed
+        .ok_or_else(|| Failure::usage(format!("{path}: nothing to frame; give a camera with --view FILE.json")))?;
+    let [width, height] = [width.or(height), height.or(width)].map(|side| side.or(Some(SIDE)));
+    let view = View { width, height, ..view };
+    request.common.say(format_args!(
+        "{path}: no camera in the file: --camera {} is made; to keep it: echo '{}' > {name}.json, and --view {name}.json",
+        placed.name(),
+        view.json(),
+        name = placed.name()
+    ));
+    Ok(Viewpoint {
+        tag: None,
+        camera,
+        target: DVec3::from_array(view.target),
+        argument: format!("--view {}", view.json()),
+        size: [width, height],
+    })
+}
+
+/// The index of the camera that a word means, or the first.
+fn chosen(word: Option<&str>, names: &[Candidate], missing: &str, kind: &str) -> Result<usize, Failure> {
+    let Some(word) = word else { return Ok(0) };
+    the_one(word, names, true).map_err(|unclear| Failure::usage(unclear.message("--camera", word, missing, kind)))
 }
 
 fn of_view_file(path: &Path, turns: bool) -> Result<Vec<Viewpoint>, Failure> {
@@ -56,17 +102,9 @@ fn of_view_file(path: &Path, turns: bool) -> Result<Vec<Viewpoint>, Failure> {
 /// The camera of the scene that a word on the command line names, or the first camera.
 fn of_scene(word: Option<&str>, scene: &Scene, path: &Path, middle: DVec3) -> Result<Viewpoint, Failure> {
     let path = path.display();
-    if scene.cameras.is_empty() {
-        return Err(Failure::usage(format!("{path}: no camera; give one with --view FILE.json")));
-    }
     let names = camera_names(scene);
-    let index = match word {
-        None => 0,
-        Some(word) => the_one(word, &names, true).map_err(|unclear| {
-            let missing = format!("{path} has no `{word}`; it has");
-            Failure::usage(unclear.message("--camera", word, &missing, &format!("camera of {path}")))
-        })?,
-    };
+    let missing = format!("{path} has no `{}`; it has", word.unwrap_or_default());
+    let index = chosen(word, &names, &missing, &format!("camera of {path}"))?;
     Ok(Viewpoint {
         tag: None,
         camera: scene.cameras[index].clone(),

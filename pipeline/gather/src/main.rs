@@ -4,6 +4,7 @@ mod adaptive;
 mod arguments;
 mod calibrated;
 mod cameras;
+mod exposed;
 mod holes;
 mod image_jobs;
 mod inputs;
@@ -51,12 +52,13 @@ struct Prepared {
 /// Renders all images of a request.
 fn render(request: &Request) -> Result<(), Failure> {
     let mut seconds = Seconds::start();
-    let Prepared { inputs, model, kept, jobs } = seconds.time("open", || prepare(request))?;
+    let Prepared { inputs, model, kept, mut jobs } = seconds.time("open", || prepare(request))?;
     let rays = seconds.time("ray_tree", || request.common.in_pool(|| inputs.rays()))?;
     let calibration = match kept {
         Some(kept) => Some(kept),
         None => seconds.time("calibrate", || calibrated::make(request, &inputs, &rays, model))?,
     };
+    seconds.time("exposure", || exposed::expose(request, &inputs, &rays, &mut jobs))?;
     for job in &jobs {
         render_image(request, &inputs, &rays, calibration.as_ref(), job, seconds)?;
         seconds = Seconds::start();

@@ -41,7 +41,7 @@ fn write_image(facts: &Facts, mut output: Output, group: &mut Group) -> Result<(
     output.write_all(&bytes).map_err(|source| formats::Error::write(&path, source))?;
     group.add(output);
     if let Some(path) = &outputs.preview {
-        let png = preview::png(&facts.rendered.pixels, part.width, part.height, outputs.exposure)?;
+        let png = preview::png(&facts.rendered.pixels, part.width, part.height, facts.job.stops)?;
         group.write(&facts.job.file(path), &png)?;
     }
     Ok(())

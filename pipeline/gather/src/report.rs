@@ -137,6 +137,7 @@ impl<'a> Facts<'a> {
             "walks_absorbed_by_opaque_surfaces": counts.walks_absorbed_inside,
             "estimated_relative_error": film::relative_error(&rendered.pixels),
             "estimated_relative_error_covers": self.covers(),
+            "preview_stops": self.request.outputs.preview.as_ref().map(|_| self.job.stops),
             "negative_pixels": film::negative_count(&rendered.pixels),
             "mesh": self.inputs.defects.counts().into_iter().collect::<BTreeMap<_, _>>(),
             "non_finite": rendered.non_finite_count,

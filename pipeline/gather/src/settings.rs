@@ -53,6 +53,8 @@ pub struct Request {
     pub target_error: Option<f64>,
     pub filter: Filter,
     pub max_depth: u32,
+    /// Whether the camera sees a plain backdrop in place of the environment.
+    pub backdrop: bool,
     pub outputs: Outputs,
     pub common: Common,
 }
@@ -77,8 +79,9 @@ pub enum CameraSource {
 pub struct Outputs {
     pub image: PathBuf,
     pub preview: Option<PathBuf>,
-    /// Exposure of the preview, in powers of two.
+    /// Exposure of the preview, in powers of two: added to that of the cloud and its media, unless it is fixed.
     pub exposure: f64,
+    pub exposure_fixed: bool,
     pub stats: Option<PathBuf>,
     /// Whether the files may hold times, which differ from run to run.
     pub timings: bool,
@@ -146,10 +149,12 @@ fn request(arguments: Arguments, scene: PathBuf, image: PathBuf) -> Result<Reque
         target_error: arguments.target_error,
         filter: arguments.filter,
         max_depth: arguments.max_depth,
+        backdrop: arguments.backdrop,
         outputs: Outputs {
             image,
             preview: arguments.preview,
             exposure: arguments.exposure,
+            exposure_fixed: arguments.exposure_fixed,
             stats: arguments.stats,
             timings: !arguments.no_timings,
         },
