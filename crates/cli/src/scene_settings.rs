@@ -5,7 +5,7 @@ use crate::{
     environment::{BuiltIn, EnvironmentSource},
 };
 use formats::cloud::{LightUnit, Normals};
-use scene::{ImportOptions, LostVolumes, MeshDefects, NormalKind, Scene, SceneError};
+use scene::{ImportOptions, LostVolumes, MeshDefects, NormalKind, Placed, Scene, SceneError};
 use std::path::PathBuf;
 
 /// The file of a scene, and how to read it.
@@ -37,7 +37,7 @@ impl SceneSettings {
         self.warn(&scene.warnings, common);
         let studio = self.studio(&scene).then_some(EnvironmentSource::BuiltIn(BuiltIn::Studio));
         if let Some(source) = self.how.environment.as_ref().or(studio.as_ref()) {
-            scene.environment = source.read(self.how.environment_scale, self.how.environment_rotation, common)?;
+            scene.environment = source.read(self.how.environment_scale, self.rotation(&scene), common)?;
         }
         Ok(scene)
     }
@@ -47,11 +47,20 @@ impl SceneSettings {
         self.how.environment.is_none() && scene.file_lights.is_empty()
     }
 
+    /// Rotation of the environment, degrees: a studio that nobody asked for has its front where the file's first camera is.
+    fn rotation(&self, scene: &Scene) -> f64 {
+        let first = scene.cameras.first().filter(|_| self.studio(scene) && self.how.environment_rotation == 0.0);
+        first.map_or(self.how.environment_rotation, |camera| Placed::turned_to(-camera.forward).round())
+    }
+
     /// Says so if it is. The first program that reads a scene says it, and those that follow do not.
     pub fn say_light(&self, scene: &Scene, common: &Common) {
         if self.studio(scene) {
+            let rotation = self.rotation(scene);
+            let rotated = if rotation == 0.0 { "".into() } else { format!(" --environment-rotation {rotation}") };
             common.say(format_args!(
-                "{}: no light in the file: it is lit by --environment studio (give sky, a picture or R,G,B; 0,0,0 is none)",
+                "{}: no light in the file: it is lit by --environment studio{rotated} (others: sky, a picture, R,G,B; none: \
+                 0,0,0)",
                 self.path.display()
             ));
         }

@@ -7,6 +7,11 @@ use crate::{
     view::{Camera, View},
 };
 use glam::{DMat3, DVec3};
+use std::{
+    borrow::Cow,
+    collections::BTreeMap,
+    f64::consts::{PI, TAU},
+};
 
 /// A camera that is made for a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,6 +32,13 @@ impl Placed {
             Placed::Backlit => "backlit",
         }
     }
+
+    /// The degrees about +Y, counter-clockwise seen from above, by which the front is turned to `away`, a direction from the
+    /// surfaces; 0 if that is vertical.
+    pub fn turned_to(away: DVec3) -> f64 {
+        let degrees = away.x.atan2(away.z).to_degrees() - FRONT_DEGREES;
+        if away.x == 0.0 && away.z == 0.0 { 0.0 } else { degrees }
+    }
 }
 
 /// Vertical field of view, degrees.
@@ -39,8 +51,12 @@ const FILLED: [f64; 2] = [0.9, 0.8];
 const ELEVATION_DEGREES: f64 = 15.0;
 const FRONT_DEGREES: f64 = 30.0;
 
-/// Steps of a turn in all of which the surfaces must be framed.
+/// Steps of a turn in all of which the surfaces must be framed, and the heights that are told apart.
 const TURNS: u32 = 36;
+const RINGS: f64 = 256.0;
+
+/// Steps in which a camera is fitted.
+const STEPS: u32 = 5;
 
 /// Light whose horizontal part is less than this comes from above or from all around.
 const UPRIGHT: f64 = 0.1;
@@ -94,29 +110,14 @@ impl Framing<'_> {
         let elevation = ELEVATION_DEGREES.to_radians();
         let away = DVec3::new(azimuth.sin(), elevation.tan(), azimuth.cos()).normalize();
         let right = DVec3::Y.cross(away).normalize();
-        let up = away.cross(right);
+        let axes = [right, away.cross(right), away];
         let tangent = (0.5 * YFOV_DEGREES).to_radians().tan();
-        let [across, upwards] = [FILLED[0] * tangent * aspect, FILLED[1] * tangent];
-        let mut farthest = [[f64::NEG_INFINITY; 2]; 2];
-        for turn in (0..if turns { TURNS } else { 1 }).map(|k| f64::from(k) / f64::from(TURNS)) {
-            let turn = DMat3::from_rotation_y(turn * std::f64::consts::TAU);
-            for p in self.corners.iter().map(|p| turn * *p) {
-                let (at, towards) = ([p.dot(right), p.dot(up)], p.dot(away));
-                for (k, slope) in [across, upwards].into_iter().enumerate() {
-                    let [plus, minus] = &mut farthest[k];
-                    (*plus, *minus) = (plus.max(at[k] + slope * towards), minus.max(slope * towards - at[k]));
-                }
-            }
-        }
-        // The eye is in the middle of what it sees: no point is beyond the slopes, and the nearest of both distances at
-        // which that is so is the one.
-        let distance = |k: usize, slope: f64| 0.5 * (farthest[k][0] + farthest[k][1]) / slope;
-        let distance = distance(0, across).max(distance(1, upwards));
-        let aside = |k: usize| 0.5 * (farthest[k][0] - farthest[k][1]);
-        let beside = if turns { 0.0 } else { aside(0) };
-        let eye = beside * right + aside(1) * up + distance * away;
+        let slopes = [FILLED[0] * tangent * aspect, FILLED[1] * tangent];
+        let [beside, above, distance] = fitted(&self.turned(turns), axes, slopes);
+        let beside = if turns { 0.0 } else { beside };
+        let eye = beside * axes[0] + above * axes[1] + distance * away;
         // The target is on the vertical axis through the middle, about which an orbit turns.
-        let target = eye - away * (distance - aside(1) * elevation.tan());
+        let target = eye - away * (distance - above * elevation.tan());
         let decimals = DIGITS - distance.log10().ceil();
         let rounded = |p: DVec3| (self.middle() + p).to_array().map(|x| round(x, decimals));
         let view = View {
@@ -131,11 +132,28 @@ impl Framing<'_> {
         view.with_camera(placed.name()).ok()
     }
 
+    /// The points that must be seen, m from the middle: the corners or, of surfaces that turn, those that are farthest out
+    /// at their heights, wherever they are turned to.
+    fn turned(&self, turns: bool) -> Cow<'_, [DVec3]> {
+        if !turns {
+            return Cow::Borrowed(&self.corners);
+        }
+        let mut rings: BTreeMap<i64, DVec3> = BTreeMap::new();
+        for p in &self.corners {
+            let ring = rings.entry((RINGS * p.y / self.size.max_element()).floor() as i64).or_insert(*p);
+            let radius = |q: &DVec3| q.x.hypot(q.z);
+            *ring =
+                DVec3::new(radius(ring).max(radius(p)), if p.y < 0.0 { ring.y.min(p.y) } else { ring.y.max(p.y) }, 0.0);
+        }
+        let turns = (0..TURNS).map(|k| DMat3::from_rotation_y(TAU * f64::from(k) / f64::from(TURNS)));
+        turns.flat_map(|turn| rings.values().map(move |p| turn * *p)).collect()
+    }
+
     /// The azimuth from which most of the light is behind the surfaces, from +Z towards +X, rad.
     fn opposite_of_light(&self) -> f64 {
         let light = self.light();
         if light.length() == 0.0 || light.x.hypot(light.z) < UPRIGHT * light.length() {
-            return FRONT_DEGREES.to_radians() + std::f64::consts::PI;
+            return FRONT_DEGREES.to_radians() + PI;
         }
         (-light.x).atan2(-light.z)
     }
@@ -160,6 +178,32 @@ impl Framing<'_> {
         };
         self.scene.lights().map(of_light).sum()
     }
+}
+
+/// Where the eye sees all points within these slopes to both sides of its axis, across and upwards, and fills one of them:
+/// its position along the axes to the right, upwards and towards it, m.
+///
+/// A point at `x` beside an eye at `e` is within a slope `s` if `|x - e| <= s (d - z)` at its depth `z` and the distance
+/// `d` of the eye, so that two points decide `e` and `d` for each slope. The larger distance is the one; the other slope
+/// is then reduced to what its points fill, in a few steps, so that these are in the middle too.
+fn fitted(points: &[DVec3], [right, up, away]: [DVec3; 3], mut slopes: [f64; 2]) -> [f64; 3] {
+    let mut eye = [0.0; 2];
+    let mut distance = None;
+    for _ in 0..STEPS {
+        let mut farthest = [[f64::NEG_INFINITY; 2]; 2];
+        for p in points {
+            let (at, towards) = ([p.dot(right), p.dot(up)], p.dot(away));
+            for (k, [plus, minus]) in farthest.iter_mut().enumerate() {
+                let depth = slopes[k] * towards;
+                (*plus, *minus) = (plus.max(depth + at[k]), minus.max(depth - at[k]));
+            }
+        }
+        let distances = [0, 1].map(|k| 0.5 * (farthest[k][0] + farthest[k][1]) / slopes[k]);
+        let distance = *distance.get_or_insert(distances[0].max(distances[1]));
+        eye = farthest.map(|[plus, minus]| 0.5 * (plus - minus));
+        slopes.iter_mut().zip(distances).for_each(|(slope, own)| *slope *= own / distance);
+    }
+    [eye[0], eye[1], distance.unwrap_or_default()]
 }
 
 /// Rounded to so many decimals, fewer than none included.

@@ -1,7 +1,7 @@
 //! The cameras that images are rendered from. They come from a view file or from the scene.
 
 use crate::settings::{CameraSource, Request};
-use cli::{Candidate, Failure, camera_names, made_camera_names, the_one, word_for};
+use cli::{Candidate, Failure, Unclear, camera_names, made_camera_names, the_one, word_for};
 use scene::{Camera, DVec3, Framing, Placed, Scene, View, ViewFile};
 use std::path::Path;
 
@@ -28,11 +28,23 @@ pub fn tag(name: Option<&str>, index: usize) -> String {
 pub fn viewpoints(request: &Request, scene: &Scene, surfaces: &Framing) -> Result<Vec<Viewpoint>, Failure> {
     match &request.camera {
         CameraSource::View(path) => of_view_file(path, request.orbit.is_some()),
-        CameraSource::Scene(word) if scene.cameras.is_empty() => Ok(vec![made(word.as_deref(), request, surfaces)?]),
+        CameraSource::Scene(word) if is_made(word.as_deref(), scene) => {
+            Ok(vec![made(word.as_deref(), request, surfaces)?])
+        }
         CameraSource::Scene(word) => {
             Ok(vec![of_scene(word.as_deref(), scene, &request.scene.path, surfaces.middle())?])
         }
     }
+}
+
+/// Whether a word means a camera that is made: that of its name unless the scene has one of that name, or any if the scene
+/// has none.
+fn is_made(word: Option<&str>, scene: &Scene) -> bool {
+    let named = |word: &str| {
+        let own = matches!(the_one(word, &camera_names(scene), true), Ok(_) | Err(Unclear::Several { .. }));
+        !own && Placed::ALL.into_iter().any(|placed| placed.name() == word)
+    };
+    scene.cameras.is_empty() || word.is_some_and(named)
 }
 
 /// Side of an image, pixels, unless another is asked for.
@@ -41,33 +53,25 @@ pub const SIDE: u32 = 512;
 /// A camera that is made, and said as a view file that repeats it.
 fn made(word: Option<&str>, request: &Request, surfaces: &Framing) -> Result<Viewpoint, Failure> {
     let path = request.scene.path.display();
-    let names = made_camera_names();
-    let index = chosen(
-        word,
-        &names,
-        &format!("{path} has no camera, and none called `{}` is made; there are", word.unwrap_or_default()),
-        "camera",
-    )?;
-    let placed = Placed::ALL[index];
+    let missing = format!("{path} has no camera, and none called `{}` is made; there are", word.unwrap_or_default());
+    let placed = Placed::ALL[chosen(word, &made_camera_names(), &missing, "camera")?];
+    let name = placed.name();
     let [width, height] = request.size;
-    let aspect = f64::from(width.or(height).unwrap_or(SIDE)) / f64::from(height.or(width).unwrap_or(SIDE));
-    let framed = surfaces.view(placed, aspect, request.orbit.is_some());
-    let (view, camera) = framed
-        .ok_or_else(|| Failure::usage(format!("{path}: nothing to frame; give a camera with --view FILE.json")))?;
-    let [width, height] = [width.or(height), height.or(width)].map(|side| side.or(Some(SIDE)));
-    let view = View { width, height, ..view };
+    let [width, height] = [width.or(height), height.or(width)].map(|side| side.unwrap_or(SIDE));
+    let framed = surfaces.view(placed, f64::from(width) / f64::from(height), request.orbit.is_some());
+    let nothing = || Failure::usage(format!("{path}: nothing to frame; give a camera with --view FILE.json"));
+    let (view, camera) = framed.ok_or_else(nothing)?;
+    let view = View { width: Some(width), height: Some(height), ..view };
+    let json = view.json();
     request.common.say(format_args!(
-        "{path}: no camera in the file: --camera {} is made; to keep it: echo '{}' > {name}.json, and --view {name}.json",
-        placed.name(),
-        view.json(),
-        name = placed.name()
+        "{path}: seen by --camera {name}, which is made; to keep it: echo '{json}' > {name}.json, then --view {name}.json"
     ));
     Ok(Viewpoint {
         tag: None,
         camera,
         target: DVec3::from_array(view.target),
-        argument: format!("--view {}", view.json()),
-        size: [width, height],
+        argument: format!("--view {json}"),
+        size: [view.width, view.height],
     })
 }
 

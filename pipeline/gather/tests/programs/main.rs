@@ -1,6 +1,7 @@
 //! The programs as users start them.
 
 mod bad_input;
+mod bare;
 mod crops;
 mod environment;
 mod faults;
