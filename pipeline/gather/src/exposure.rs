@@ -143,3 +143,38 @@ fn look(renderer: &Renderer, (origin, direction): (DVec3, DVec3), index: u64) ->
     let light = renderer.trace(path, origin, direction, &mut context);
     Some(strength(light.layers.iter().sum()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Neither a few highlights nor a dark side decide. Seen to fail when the unlit values counted.
+    #[test]
+    fn the_bright_part_is_that_of_what_is_lit() {
+        let values = |dark: usize| {
+            let lit = (0..1000).map(|k| 1.0 + 0.001 * f64::from(k));
+            lit.chain(vec![1e6; 20]).chain(vec![1e-9; dark]).chain([0.0, f64::NAN]).collect::<Vec<f64>>()
+        };
+        for dark in [0, 3000] {
+            let bright = bright_part(values(dark)).expect("some are lit");
+            assert!((bright - 1.8).abs() < 0.05, "{dark}: {bright}");
+        }
+        assert_eq!((bright_part(Vec::new()), bright_part(vec![0.0; 9])), (None, None));
+        assert!((stops(0.4) - 1.0).abs() < 1e-12 && stops(0.2 * BRIGHT) > stops(BRIGHT));
+    }
+
+    /// Rays come from all around and above, and cover the ball.
+    #[test]
+    fn rays_cover_the_ball() {
+        let around = Around { middle: DVec3::new(1.0, 2.0, 3.0), radius: 0.5 };
+        let rays: Vec<(DVec3, DVec3)> = (0..4096).map(|k| around.ray(k)).collect();
+        let mean: DVec3 = rays.iter().map(|(_, direction)| *direction).sum::<DVec3>() / 4096.0;
+        assert!(mean.x.abs() < 0.01 && mean.z.abs() < 0.01 && (mean.y + 0.35).abs() < 0.01, "{mean}");
+        let nearest = |(origin, direction): &(DVec3, DVec3)| {
+            let to = around.middle - *origin;
+            (to - direction.dot(to) * *direction).length() / around.radius
+        };
+        let inside = rays.iter().filter(|ray| nearest(ray) < 1.0).count() as f64 / 4096.0;
+        assert!((inside - PI / 4.0).abs() < 0.01, "{inside}");
+    }
+}
