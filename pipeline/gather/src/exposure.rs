@@ -23,7 +23,7 @@ const BRIGHT: f64 = 0.8;
 const PERCENTILE: f64 = 0.8;
 
 /// A surface that sends back less than this share of the light that falls on it on average is shown as dark.
-const DARK: f64 = 0.35;
+const DARK: f64 = 0.2;
 
 /// What is darker than this share of the bright part of all points is not lit.
 const UNLIT: f64 = 0.02;
