@@ -28,7 +28,7 @@ struct SoftBox {
 const BOXES: [SoftBox; 3] = [
     SoftBox { middle: DVec3::new(-0.27, 0.62, 0.74), half: [0.42, 0.36], radiance: DVec3::new(4.4, 4.2, 3.9) },
     SoftBox { middle: DVec3::new(-0.79, 0.58, -0.21), half: [0.2, 0.34], radiance: DVec3::new(4.2, 4.5, 5.0) },
-    SoftBox { middle: DVec3::new(0.93, 0.36, 0.1), half: [0.45, 0.35], radiance: DVec3::new(0.34, 0.36, 0.4) },
+    SoftBox { middle: DVec3::new(0.82, 0.57, 0.09), half: [0.45, 0.3], radiance: DVec3::new(0.34, 0.36, 0.4) },
 ];
 
 /// The backdrop, and the ceiling straight above.
