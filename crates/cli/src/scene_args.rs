@@ -31,7 +31,8 @@ pub struct SceneArgs {
     /// Size of one unit of SCENE, m
     #[arg(long, value_name = "M", default_value_t = 1.0, value_parser = parse_positive)]
     pub metres_per_unit: f64,
-    /// Largest extent of the translucent surfaces along X, Y or Z, m: the whole scene is scaled, positions of lights included
+    /// Largest extent of the translucent surfaces along X, Y or Z, m: the whole scene is scaled, positions of lights
+    /// included
     #[arg(long, value_name = "M", value_parser = parse_positive, conflicts_with = "metres_per_unit")]
     pub size: Option<f64>,
     /// Take the numbers of the file's lights as W, or as lm and divide them by 683 lm/W

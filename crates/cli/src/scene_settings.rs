@@ -47,7 +47,8 @@ impl SceneSettings {
         self.how.environment.is_none() && scene.file_lights.is_empty()
     }
 
-    /// Rotation of the environment, degrees: a studio that nobody asked for has its front where the file's first camera is.
+    /// Rotation of the environment, degrees: a studio that nobody asked for has its front where the file's first camera
+    /// is.
     fn rotation(&self, scene: &Scene) -> f64 {
         let first = scene.cameras.first().filter(|_| self.studio(scene) && self.how.environment_rotation == 0.0);
         first.map_or(self.how.environment_rotation, |camera| Placed::turned_to(-camera.forward).round())

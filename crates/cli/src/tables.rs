@@ -29,8 +29,8 @@ impl Table {
     }
 }
 
-/// The cameras of a scene, which `--camera` may name, with their fields of view and positions. If the file has none, they
-/// are those that are made.
+/// The cameras of a scene, which `--camera` may name, with their fields of view and positions. If the file has none,
+/// they are those that are made.
 pub fn camera_table(scene: &Scene) -> String {
     let mut table = Table::new(&["index", "name", "kind", "field of view", "aspect", "position, m", "node"]);
     let made = if scene.cameras.is_empty() { made_cameras(scene) } else { Vec::new() };
@@ -64,8 +64,8 @@ fn translucent(scene: &Scene) -> Framing<'_> {
     Framing::new(scene, |material| materials.contains(&material))
 }
 
-/// The middle and the size of the box around the surfaces that are translucent by the scene's file; nothing if there are
-/// none.
+/// The middle and the size of the box around the surfaces that are translucent by the scene's file; nothing if there
+/// are none.
 pub fn bounds_line(scene: &Scene) -> String {
     let surfaces = translucent(scene);
     let size = surfaces.size();

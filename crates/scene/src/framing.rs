@@ -33,8 +33,8 @@ impl Placed {
         }
     }
 
-    /// The degrees about +Y, counter-clockwise seen from above, by which the front is turned to `away`, a direction from the
-    /// surfaces; 0 if that is vertical.
+    /// The degrees about +Y, counter-clockwise seen from above, by which the front is turned to `away`, a direction
+    /// from the surfaces; 0 if that is vertical.
     pub fn turned_to(away: DVec3) -> f64 {
         let degrees = away.x.atan2(away.z).to_degrees() - FRONT_DEGREES;
         if away.x == 0.0 && away.z == 0.0 { 0.0 } else { degrees }
@@ -97,8 +97,8 @@ impl Framing<'_> {
         self.size
     }
 
-    /// The view of a made camera for an image of this aspect; none if there are no surfaces. If it `turns`, it shows them
-    /// wherever it is turned to about the vertical axis through its target.
+    /// The view of a made camera for an image of this aspect; none if there are no surfaces. If it `turns`, it shows
+    /// them wherever it is turned to about the vertical axis through its target.
     pub fn view(&self, placed: Placed, aspect: f64, turns: bool) -> Option<(View, Camera)> {
         if self.corners.is_empty() {
             return None;
@@ -132,8 +132,8 @@ impl Framing<'_> {
         view.with_camera(placed.name()).ok()
     }
 
-    /// The points that must be seen, m from the middle: the corners or, of surfaces that turn, those that are farthest out
-    /// at their heights, wherever they are turned to.
+    /// The points that must be seen, m from the middle: the corners or, of surfaces that turn, those that are farthest
+    /// out at their heights, wherever they are turned to.
     fn turned(&self, turns: bool) -> Cow<'_, [DVec3]> {
         if !turns {
             return Cow::Borrowed(&self.corners);
@@ -158,8 +158,8 @@ impl Framing<'_> {
         (-light.x).atan2(-light.z)
     }
 
-    /// The sum of the directions towards light, each times its irradiance, in the middle of the surfaces if nothing is in
-    /// the way.
+    /// The sum of the directions towards light, each times its irradiance, in the middle of the surfaces if nothing is
+    /// in the way.
     fn light(&self) -> DVec3 {
         let normals = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
         let points = normals.map(|normal| SurfacePoint {
@@ -180,12 +180,12 @@ impl Framing<'_> {
     }
 }
 
-/// Where the eye sees all points within these slopes to both sides of its axis, across and upwards, and fills one of them:
-/// its position along the axes to the right, upwards and towards it, m.
+/// Where the eye sees all points within these slopes to both sides of its axis, across and upwards, and fills one of
+/// them: its position along the axes to the right, upwards and towards it, m.
 ///
-/// A point at `x` beside an eye at `e` is within a slope `s` if `|x - e| <= s (d - z)` at its depth `z` and the distance
-/// `d` of the eye, so that two points decide `e` and `d` for each slope. The larger distance is the one; the other slope
-/// is then reduced to what its points fill, in a few steps, so that these are in the middle too.
+/// A point at `x` beside an eye at `e` is within a slope `s` if `|x - e| <= s (d - z)` at its depth `z` and the
+/// distance `d` of the eye, so that two points decide `e` and `d` for each slope. The larger distance is the one; the
+/// other slope is then reduced to what its points fill, in a few steps, so that these are in the middle too.
 fn fitted(points: &[DVec3], [right, up, away]: [DVec3; 3], mut slopes: [f64; 2]) -> [f64; 3] {
     let mut eye = [0.0; 2];
     let mut distance = None;

@@ -54,8 +54,8 @@ pub struct Arguments {
     #[arg(long, value_name = "MODEL", default_value_if("note", "true", "directional-dipole"),
         value_parser = one_of(&Model::ALL, Model::name))]
     pub bssrdf: Option<Model>,
-    /// Calibration of `calibrate`, which brings its media along, or none [default: with --bssrdf half-space the shape is
-    /// calibrated in memory first; other models are used as they were published]
+    /// Calibration of `calibrate`, which brings its media along, or none [default: with --bssrdf half-space the shape
+    /// is calibrated in memory first; other models are used as they were published]
     #[arg(long, value_name = "FILE|none", value_parser = file_name())]
     pub calibration: Option<PathBuf>,
     /// Sum over the cloud: hierarchical (cut), by the note's roulette, or over all samples (exhaustive)
@@ -96,8 +96,8 @@ pub struct Arguments {
     /// Also write a tone-mapped picture
     #[arg(long, value_name = "FILE.png", value_parser = file_name())]
     pub preview: Option<PathBuf>,
-    /// Brighten the preview by powers of two, beyond the exposure that it gives itself, which is the same for all views of
-    /// the cloud in these media
+    /// Brighten the preview by powers of two, beyond the exposure that it gives itself, which is the same for all views
+    /// of the cloud in these media
     #[arg(long, value_name = "STOPS", default_value_t = 0.0, value_parser = parse_stops, allow_hyphen_values = true)]
     pub exposure: f64,
     /// The preview does not expose itself: with 0 stops, a radiance of 0.18 is middle gray

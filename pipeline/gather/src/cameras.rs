@@ -23,8 +23,8 @@ pub fn tag(name: Option<&str>, index: usize) -> String {
     name.map_or_else(|| format!("{index:04}"), str::to_owned)
 }
 
-/// The cameras of the view file, the chosen camera of the scene, which turns about the middle of the translucent surfaces,
-/// or one that is made to frame them if the scene has none.
+/// The cameras of the view file, the chosen camera of the scene, which turns about the middle of the translucent
+/// surfaces, or one that is made to frame them if the scene has none.
 pub fn viewpoints(request: &Request, scene: &Scene, surfaces: &Framing) -> Result<Vec<Viewpoint>, Failure> {
     match &request.camera {
         CameraSource::View(path) => of_view_file(path, request.orbit.is_some()),
@@ -37,8 +37,8 @@ pub fn viewpoints(request: &Request, scene: &Scene, surfaces: &Framing) -> Resul
     }
 }
 
-/// Whether a word means a camera that is made: that of its name unless the scene has one of that name, or any if the scene
-/// has none.
+/// Whether a word means a camera that is made: that of its name unless the scene has one of that name, or any if the
+/// scene has none.
 fn is_made(word: Option<&str>, scene: &Scene) -> bool {
     let named = |word: &str| {
         let own = matches!(the_one(word, &camera_names(scene), true), Ok(_) | Err(Unclear::Several { .. }));

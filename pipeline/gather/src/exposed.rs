@@ -8,8 +8,8 @@ use scene::{DVec3, Rays};
 /// Radiance of the backdrop times the exposure: a dark gray, before which both light and dark edges show.
 const BACKDROP: f64 = 0.06;
 
-/// Gives all images of a request one exposure: that of the translucent surfaces as they are seen from all around, unless
-/// it is fixed. Says by how much the previews are brightened.
+/// Gives all images of a request one exposure: that of the translucent surfaces as they are seen from all around,
+/// unless it is fixed. Says by how much the previews are brightened.
 pub fn expose(request: &Request, inputs: &LitScene, rays: &Rays, jobs: &mut [ImageJob]) -> Result<(), Failure> {
     let outputs = &request.outputs;
     let Some(first) = jobs.first().filter(|_| outputs.preview.is_some() || request.backdrop) else {

@@ -43,8 +43,9 @@ const ACCURACY: f64 = 0.05;
 const STEPS: [f64; 4] =
     [0.856_674_883_854_502_9, 0.733_891_856_627_126_1, 0.628_706_721_037_808_6, 0.538_597_257_223_61];
 
-/// The brightness of translucent surfaces as they are seen from all around, W/(m² sr): that of their bright part, or of a
-/// dark gray in the same light if they are darker. None if no light leaves them, or if there are none. Neither the camera nor a calibration of the input counts.
+/// The brightness of translucent surfaces as they are seen from all around, W/(m² sr): that of their bright part, or of
+/// a dark gray in the same light if they are darker. None if no light leaves them, or if there are none. Neither the
+/// camera nor a calibration of the input counts.
 pub fn brightness(input: &Input) -> Option<f64> {
     let sampled: Vec<u16> = match input.clouds {
         [] => Vec::new(),
