@@ -1,10 +1,12 @@
-# Your own scene: `make SCENE=path.glb MEDIUM=marble` renders one image for each camera of the file. Offers the target
-# own, and the variables
+# Your own scene: `make SCENE=path.glb MEDIUM=marble` renders one image for each camera of the file or, if it has none, one
+# from the front and one against the light. Offers the target own, and the variables
 #   VIEWS='path/*.json'       one image for each of these view files, or several for one that holds a list of views
 #   MEDIUM=name|file.json     the medium of all translucent surfaces; with an empty MEDIUM= the file's own media
-#   ENVIRONMENT=sky.exr|R,G,B light from all around
+#   ENVIRONMENT=studio|sky|sky.exr|R,G,B  light from all around; a scene without any light has the studio
+#   SIZE=0.1                  the largest extent of the translucent surfaces, m
+#   BACKDROP=yes              the camera sees a plain dark gray instead of the light from all around
 #   TRANSLUCENT='Wax Skin'    the translucent materials, by name
-#   EXPOSURE=1                brightness of the previews, in stops
+#   EXPOSURE=1                stops by which the previews are brightened beyond their own exposure
 # and to truth.mk the rules of its pictures.
 
 .PHONY: own
@@ -16,8 +18,12 @@ OWN_MEDIUM := $(or $(notdir $(basename $(MEDIUM))),own)
 OWN_IMAGES := $(OWN)/$(OWN_MEDIUM)-$(MODEL)
 # A medium may be one of the built-in media, which are those of data/media.
 OWN_MEDIA  := $(wildcard $(MEDIUM) data/media/$(MEDIUM).json)
-own_light   = $(if $(MEDIUM),--medium $(MEDIUM)) $(if $(ENVIRONMENT),--environment $(ENVIRONMENT))
-$(eval $(call settings,$(OWN),$$(strip $$(ENVIRONMENT) $$(TRANSLUCENT)),$(SCENE) $(wildcard $(ENVIRONMENT))))
+own_scene   = $(if $(ENVIRONMENT),--environment $(ENVIRONMENT)) $(if $(SIZE),--size $(SIZE))
+own_seen    = $(if $(filter yes,$(BACKDROP)),--backdrop)
+$(eval $(call settings,$(OWN),$$(strip $$(own_scene) $$(TRANSLUCENT)),$(SCENE) $(wildcard $(ENVIRONMENT))))
+
+MADE_CAMERAS := front backlit
+camera_of   = $(if $(filter $(MADE_CAMERAS),$(1)),$(1),camera$(1))
 
 ifdef VIEWS
 VIEW_FILES := $(foreach v,$(VIEWS),$(or $(wildcard $(v)),$(error no view at $(v))))
@@ -41,7 +47,8 @@ OWN_PICTURES := $(foreach v,$(VIEW_FILES),$(call picture_of,$(v)))
 else
 # gather lists the cameras of the file. Make writes that list first, and then reads it.
 include $(OWN).cameras
-OWN_PICTURES := $(CAMERAS:%=camera%.exr)
+# Cameras of the file are known by their index, those that are made by their name.
+OWN_PICTURES := $(foreach c,$(CAMERAS),$(call camera_of,$(c)).exr)
 endif
 
 own: $(OWN_PICTURES:%=$(OWN_IMAGES)/%)
@@ -50,13 +57,13 @@ own: $(OWN_PICTURES:%=$(OWN_IMAGES)/%)
 
 $(OWN).cameras: $(SCENE) $(OWN).settings | $(GATHER)
 	@$(GATHER) --list-cameras --quiet '$<' > $@.list
-	@sed -e 1d -e 's/ .*//' -e 's/^/CAMERAS += /' $@.list > $@
+	@sed -n -e 's/^[0-9][0-9]* *\([a-z]*\) .*  - (made)$$/CAMERAS += \1/p' -e t -e 's/^\([0-9][0-9]*\) .*/CAMERAS += \1/p' $@.list > $@
 	@rm $@.list
-	@test -s $@ || { echo "$<: it has no camera; give VIEWS='path/*.json'" >&2; exit 2; }
+	@test -s $@ || { echo "$<: it has no camera, and nothing to see; give VIEWS='path/*.json'" >&2; exit 2; }
 
 $(OWN).cloud: $(SCENE) $(OWN).settings crates/formats/cloud-version | $(SAMPLE)
 	$(SUBMIT) $(SAMPLE) --threads $(THREADS) --seed $(SEED) --samples $(SAMPLES) $(foreach t,$(TRANSLUCENT),--translucent $(call quoted,$(t))) \
-	  $(if $(ENVIRONMENT),--environment $(ENVIRONMENT)) '$<' -o $@
+	  $(own_scene) '$<' -o $@
 
 # $(call lost_of_list,NAME.views) remakes a list of which an image or a preview is missing.
 lost_of_list = $(shell cd $(dir $(1)) 2>/dev/null && while IFS= read -r image; do [ -e "$$image" ] && [ -e "$${image%.exr}.png" ] || \
@@ -68,7 +75,7 @@ ifneq ($(CALIBRATED),)
 OWN_CALIBRATION := $(OWN_IMAGES).calibration
 $(eval $(call settings,$(OWN_IMAGES),--walks $$(WALKS) --medium $$(MEDIUM),$(OWN_MEDIA)))
 $(OWN_CALIBRATION): $(OWN).cloud $(OWN).settings $(OWN_IMAGES).settings crates/formats/calibration-version | $(CALIBRATOR)
-	$(SUBMIT) $(CALIBRATOR) --threads $(THREADS) --seed $(SEED) --walks $(WALKS) --bssrdf $(MODEL) $(own_light) $< '$(SCENE)' -o $@ || \
+	$(SUBMIT) $(CALIBRATOR) --threads $(THREADS) --seed $(SEED) --walks $(WALKS) --bssrdf $(MODEL) $(if $(MEDIUM),--medium $(MEDIUM)) $(own_scene) $< '$(SCENE)' -o $@ || \
 	  { code=$$?; [ $$code = 2 ] || exit $$code; : > $@; }
 own_calibrated = $$([ -s $(OWN_CALIBRATION) ] && echo --calibration $(OWN_CALIBRATION) || echo --calibration none $(if $(MEDIUM),--medium $(MEDIUM)))
 say_if_refused = [ -s $(OWN_CALIBRATION) ] || echo "They are not calibrated: $(SCENE) was refused, as was said when $(OWN_CALIBRATION) was made."
@@ -83,15 +90,15 @@ own_reference = --reference --target-error $(ERROR) $(if $(MEDIUM),--medium $(ME
 # $(1) image, or the .views file of a list; $(2) view file, if it has one; $(3) options that choose camera and size;
 # $(4) own_model or own_reference.
 define own_picture
-$(call settings,$(basename $(1)),--exposure $$(EXPOSURE) --medium $$(MEDIUM) $$($(4)) $(3),$(OWN_MEDIA) $(2))
+$(call settings,$(basename $(1)),--exposure $$(EXPOSURE) $$(own_seen) --medium $$(MEDIUM) $$($(4)) $(3),$(OWN_MEDIA) $(2))
 $(1): $(OWN).cloud $(OWN).settings $(basename $(1)).settings $(if $(filter own_model,$(4)),$(OWN_CALIBRATION)) $(if $(filter \
   %.views,$(1)),$(call lost_of_list,$(1)),$(call unless_there,$(basename $(1)).png)) | $(GATHER)
 	$$(SUBMIT) $(GATHER) --threads $$(THREADS) --seed $$(SEED) $$($(4)) $(3) \
-	  $$(if $$(ENVIRONMENT),--environment $$(ENVIRONMENT)) --preview $$(basename $$@).png --exposure $$(or $$(EXPOSURE),0) $$< '$$(SCENE)' -o $$(basename $$@).exr
+	  $$(own_scene) $$(own_seen) --preview $$(basename $$@).png --exposure $$(or $$(EXPOSURE),0) $$< '$$(SCENE)' -o $$(basename $$@).exr
 	$(if $(filter %.views,$(1)),@$(GATHER) --list-images --quiet $(3) -o $$(basename $$(@F)).exr > $$@)
 endef
 # $(call own_pictures,FOLDER,OPTIONS OF SIZE,own_model or own_reference)
-own_pictures = $(foreach c,$(CAMERAS),$(eval $(call own_picture,$(1)/camera$(c).exr,,--camera index:$(c) $(2),$(3))))$(foreach \
+own_pictures = $(foreach c,$(CAMERAS),$(eval $(call own_picture,$(1)/$(call camera_of,$(c)).exr,,--camera $(if $(filter $(MADE_CAMERAS),$(c)),$(c),index:$(c)) $(2),$(3))))$(foreach \
   v,$(VIEW_FILES),$(eval $(call own_picture,$(1)/$(call picture_of,$(v)),$(v),--view $(v) $(2),$(3))))
 $(call own_pictures,$(OWN_IMAGES),,own_model)
 endif

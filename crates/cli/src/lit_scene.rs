@@ -3,7 +3,7 @@
 use crate::{CloudFiles, Common, Failure, Files, SceneSettings, assign_media, is_file};
 use bssrdf::Medium;
 use formats::cloud::{Cloud, shards};
-use scene::{DVec3, MeshDefects, Rays, Scene};
+use scene::{Framing, MeshDefects, Rays, Scene};
 use std::path::{Path, PathBuf};
 
 /// A scene with its clouds and media.
@@ -38,7 +38,8 @@ impl LitScene {
     ) -> Result<LitScene, Failure> {
         let cloud_files = CloudFiles::open(clouds)?;
         let about_scene = Common { quiet: common.quiet || !repeats, ..common.clone() };
-        let settings = &settings.with_units_of(&cloud_files.clouds[0].meta().options);
+        let settings = settings.with_units_of(&cloud_files.clouds[0].meta().options);
+        let settings = &sized(&settings, &cloud_files)?;
         let mut scene = import(settings, &about_scene)?;
         scene.files.iter().try_for_each(|path| files.reads("a file that SCENE names", path))?;
         cloud_files.check_fit(&scene, settings, common)?;
@@ -65,28 +66,29 @@ impl LitScene {
         shards::materials(self.clouds()).iter().any(|m| m.index == material)
     }
 
-    /// The middle of the box around the translucent surfaces, world, m.
-    pub fn middle(&self) -> DVec3 {
-        let (low, high) = self.bounds(|material| self.is_sampled(material));
-        self.scene.origin + 0.5 * (low + high)
+    /// The translucent surfaces as cameras frame them.
+    pub fn framing(&self) -> Framing<'_> {
+        Framing::new(&self.scene, |material| self.is_sampled(material))
     }
+}
 
-    /// The box around the triangles of these materials, m from the scene's origin.
-    pub fn bounds(&self, of: impl Fn(u16) -> bool) -> (DVec3, DVec3) {
-        let mesh = &self.scene.mesh;
-        let own = (0..mesh.triangles.len()).filter(|k| of(mesh.triangles[*k].material));
-        let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        own.flat_map(|k| mesh.corners(k)).fold(start, |(low, high), p| (low.min(p), high.max(p)))
-    }
+/// The settings with the `--size` of the surfaces that the clouds sampled.
+fn sized(settings: &SceneSettings, clouds: &CloudFiles) -> Result<SceneSettings, Failure> {
+    let materials = shards::materials(&clouds.clouds).iter().map(|m| m.index).collect();
+    settings.sized(|_| Ok(materials)).map_err(|failure| instead_of_cloud(settings, failure))
 }
 
 /// Reads SCENE. If the last argument is another cloud instead, the message says that SCENE is missing.
 fn import(settings: &SceneSettings, common: &Common) -> Result<Scene, Failure> {
+    settings.import(common).map_err(|failure| instead_of_cloud(settings, failure))
+}
+
+fn instead_of_cloud(settings: &SceneSettings, failure: Failure) -> Failure {
     let path: &Path = &settings.path;
-    settings.import(common).map_err(|failure| match Cloud::open(path) {
+    match Cloud::open(path) {
         Ok(_) => Failure::usage(format!("{}: this is a cloud; give SCENE after all clouds", path.display())),
         Err(_) => failure,
-    })
+    }
 }
 
 /// Declares the clouds, the scene and the files of media that a run reads, as far as the arguments name them.

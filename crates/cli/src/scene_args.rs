@@ -13,8 +13,8 @@ use scene::Pose;
 #[derive(Args, Clone, Debug)]
 pub struct SceneArgs {
     /// Radiance of the environment, W/(m² sr): an equirectangular picture, its middle towards +X and its top towards
-    /// +Y, or a constant
-    #[arg(long, value_name = "FILE.exr|FILE.hdr|R,G,B", value_parser = parse_environment)]
+    /// +Y, or a constant; studio and sky are built in [default: studio for a scene without light, none otherwise]
+    #[arg(long, value_name = "studio|sky|FILE.exr|FILE.hdr|R,G,B", value_parser = parse_environment)]
     pub environment: Option<EnvironmentSource>,
     /// Factor on the environment's radiance
     #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = parse_non_negative)]
@@ -33,6 +33,10 @@ pub struct SceneArgs {
     /// Size of one unit of SCENE, m
     #[arg(long, value_name = "M", default_value_t = 1.0, value_parser = parse_positive)]
     pub metres_per_unit: f64,
+    /// Largest extent of the translucent surfaces along X, Y or Z, m: the whole scene is scaled, positions of lights
+    /// included
+    #[arg(long, value_name = "M", value_parser = parse_positive, conflicts_with = "metres_per_unit")]
+    pub size: Option<f64>,
     /// Take the numbers of the file's lights as W, or as lm and divide them by 683 lm/W, or as the program that wrote
     /// the file means them
     #[arg(long, value_name = "UNIT", default_value = "auto", value_parser = one_of(UnitChoice::ALL, UnitChoice::name))]
@@ -60,17 +64,15 @@ impl SceneArgs {
 
     /// The arguments that differ from the defaults, as they are typed.
     pub fn words(&self) -> Vec<String> {
-        let environment = self.environment.as_ref().map(|source| match source {
-            EnvironmentSource::File(path) => path.display().to_string(),
-            EnvironmentSource::Constant(c) => format!("{},{},{}", c.x, c.y, c.z),
-        });
+        let environment = self.environment.as_ref().map(|source| source.to_string());
         let unless = |value: f64, default: f64| (value != default).then(|| value.to_string());
         let options = [
             ("--environment", environment),
             ("--environment-scale", unless(self.environment_scale, 1.0)),
             ("--environment-rotation", unless(self.environment_rotation, 0.0)),
             ("--normals", (self.normals != Normals::Shading).then(|| self.normals.to_string())),
-            ("--metres-per-unit", unless(self.metres_per_unit, 1.0)),
+            ("--size", self.size.map(|size| size.to_string())),
+            ("--metres-per-unit", unless(self.metres_per_unit, 1.0).filter(|_| self.size.is_none())),
             ("--light-unit", (self.light_unit != UnitChoice::Auto).then(|| self.light_unit.name().to_owned())),
             ("--emission-unit", self.emission_unit.map(|unit| unit.name().to_owned())),
             ("--time", self.time.map(|seconds| seconds.to_string())),
@@ -101,6 +103,8 @@ mod tests {
         let posed = ["--time", "1.25", "--animation", "walk on"];
         let all: Vec<String> = typed.iter().chain(&more).chain(&posed).map(|word| word.to_string()).collect();
         assert_eq!(parse(&all), all);
+        let sized = ["--environment", "studio", "--size", "0.1"].map(String::from);
+        assert_eq!(parse(&sized), sized);
         assert!(parse(&[]).is_empty());
     }
 }

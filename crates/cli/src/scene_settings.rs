@@ -1,8 +1,11 @@
 //! How a scene is read. Sampling and gathering must agree on it.
 
-use crate::{Common, Failure, Files, SceneArgs, environment::EnvironmentSource};
+use crate::{
+    Common, Failure, Files, SceneArgs,
+    environment::{BuiltIn, EnvironmentSource},
+};
 use formats::cloud::{Normals, Options};
-use scene::{ImportOptions, MeshDefects, NormalKind, Scene, SceneError};
+use scene::{ImportOptions, LostVolumes, MeshDefects, NormalKind, Placed, Scene, SceneError};
 use std::path::PathBuf;
 
 /// The file of a scene, and how to read it.
@@ -33,19 +36,74 @@ impl SceneSettings {
 
     /// Reads the scene and its environment, and prints the warnings of the import.
     pub fn import(&self, common: &Common) -> Result<Scene, Failure> {
-        let options = ImportOptions {
-            metres_per_unit: self.how.metres_per_unit,
-            light_unit: self.how.light_unit.of_scene(),
-            emission_unit: self.how.emission_unit.unwrap_or(self.how.light_unit).of_scene(),
-            pose: self.how.pose(),
-        };
+        let options = self.options(self.how.metres_per_unit);
         let mut scene = Scene::import(&self.path, &options).map_err(with_option)?;
         scene.units.note.iter().for_each(|note| common.say(format_args!("{}: {note}", self.path.display())));
         self.warn(&scene.warnings, common);
-        if let Some(source) = &self.how.environment {
-            scene.environment = source.read(self.how.environment_scale, self.how.environment_rotation, common)?;
+        let studio = self.studio(&scene).then_some(EnvironmentSource::BuiltIn(BuiltIn::Studio));
+        if let Some(source) = self.how.environment.as_ref().or(studio.as_ref()) {
+            scene.environment = source.read(self.how.environment_scale, self.rotation(&scene), common)?;
         }
         Ok(scene)
+    }
+
+    /// Whether the scene is lit by the built-in studio because neither its file nor the arguments have a light.
+    fn studio(&self, scene: &Scene) -> bool {
+        self.how.environment.is_none() && scene.file_lights.is_empty()
+    }
+
+    /// Rotation of the environment, degrees: a studio that nobody asked for has its front where the file's first camera
+    /// is.
+    fn rotation(&self, scene: &Scene) -> f64 {
+        let first = scene.cameras.first().filter(|_| self.studio(scene) && self.how.environment_rotation == 0.0);
+        first.map_or(self.how.environment_rotation, |camera| Placed::turned_to(-camera.forward).round())
+    }
+
+    /// Says so if it is. The first program that reads a scene says it, and those that follow do not.
+    pub fn say_light(&self, scene: &Scene, common: &Common) {
+        if self.studio(scene) {
+            let rotation = self.rotation(scene);
+            let rotated = if rotation == 0.0 { "".into() } else { format!(" --environment-rotation {rotation}") };
+            common.say(format_args!(
+                "{}: no light in the file: it is lit by --environment studio{rotated} (others: sky, a picture, R,G,B; none: \
+                 0,0,0)",
+                self.path.display()
+            ));
+        }
+    }
+
+    /// The same settings with the size of a unit that gives the translucent surfaces of the scene their `--size`.
+    /// `translucent` are those of the arguments or the cloud; where it gives none, those of the file count.
+    pub fn sized(
+        &self,
+        translucent: impl FnOnce(&Scene) -> Result<Vec<u16>, Failure>,
+    ) -> Result<SceneSettings, Failure> {
+        let Some(size) = self.how.size else { return Ok(self.clone()) };
+        let scene = Scene::import(&self.path, &self.options(1.0)).map_err(with_option)?;
+        let materials = translucent(&scene)?;
+        let (low, high) = scene.bounds_of(|material| materials.contains(&material));
+        let extent = (high - low).max_element();
+        let metres_per_unit = size / extent;
+        if !(extent > 0.0 && metres_per_unit.is_finite() && metres_per_unit > 0.0) {
+            let path = self.path.display();
+            return Err(Failure::usage(format!("--size: the translucent surfaces of {path} have no extent")));
+        }
+        Ok(SceneSettings { path: self.path.clone(), how: SceneArgs { metres_per_unit, ..self.how.clone() } })
+    }
+
+    /// The same by the surfaces that are translucent by the scene's file.
+    pub fn sized_by_file(&self) -> Result<SceneSettings, Failure> {
+        let lost = |e: LostVolumes| Failure::usage(format!("{}: {e}", self.path.display()));
+        self.sized(|scene| scene.translucent().map(|(materials, _)| materials).map_err(lost))
+    }
+
+    fn options(&self, metres_per_unit: f64) -> ImportOptions {
+        ImportOptions {
+            metres_per_unit,
+            light_unit: self.how.light_unit.of_scene(),
+            emission_unit: self.how.emission_unit.unwrap_or(self.how.light_unit).of_scene(),
+            pose: self.how.pose(),
+        }
     }
 
     /// Warns of what the scene's file asks for and the programs do not honor, of colors that the surfaces of
@@ -81,7 +139,7 @@ impl SceneSettings {
 /// The failure of an import, with the option that helps.
 fn with_option(error: SceneError) -> Failure {
     let option = match error {
-        SceneError::TooLarge { .. } => "set --metres-per-unit",
+        SceneError::TooLarge { .. } => "set --metres-per-unit or --size",
         SceneError::Pose { .. } => "set --animation NAME and --time SECONDS",
         _ => return Failure::from(error),
     };

@@ -2,7 +2,7 @@
 
 use crate::{Candidate, Failure, printable, scene_medium};
 use bssrdf::Medium;
-use scene::{Camera, Projection, Scene};
+use scene::{Camera, DVec3, Framing, Placed, Projection, Scene};
 
 /// Rows of cells, the first of which are headers.
 struct Table(Vec<Vec<String>>);
@@ -29,10 +29,12 @@ impl Table {
     }
 }
 
-/// The cameras of a scene, which `--camera` may name, with their fields of view and positions.
+/// The cameras of a scene, which `--camera` may name, with their fields of view and positions. If the file has none,
+/// they are those that are made.
 pub fn camera_table(scene: &Scene) -> String {
     let mut table = Table::new(&["index", "name", "kind", "field of view", "aspect", "position, m", "node"]);
-    for (index, camera) in scene.cameras.iter().enumerate() {
+    let made = if scene.cameras.is_empty() { made_cameras(scene) } else { Vec::new() };
+    for (index, camera) in scene.cameras.iter().chain(&made).enumerate() {
         let (kind, view) = match camera.projection {
             Projection::Perspective { tangent } => {
                 ("perspective", format!("yfov {:.2} degrees", 2.0 * tangent.atan().to_degrees()))
@@ -44,6 +46,40 @@ pub fn camera_table(scene: &Scene) -> String {
         table.0.push(vec![index.to_string(), name.clone(), kind.into(), view, aspect, position(camera), node.clone()]);
     }
     table.text()
+}
+
+/// The cameras that are made for a scene without one, for a square image.
+fn made_cameras(scene: &Scene) -> Vec<Camera> {
+    let surfaces = translucent(scene);
+    let made = |placed: Placed| {
+        let (_, camera) = surfaces.view(placed, 1.0, false)?;
+        Some(Camera { node: "- (made)".into(), ..camera })
+    };
+    Placed::ALL.into_iter().filter_map(made).collect()
+}
+
+/// The surfaces that are translucent by the scene's file.
+fn translucent(scene: &Scene) -> Framing<'_> {
+    let materials = scene.translucent().map_or(Vec::new(), |(materials, _)| materials);
+    Framing::new(scene, |material| materials.contains(&material))
+}
+
+/// The middle and the size of the box around the surfaces that are translucent by the scene's file; nothing if there
+/// are none.
+pub fn bounds_line(scene: &Scene) -> String {
+    let surfaces = translucent(scene);
+    let size = surfaces.size();
+    if size.min_element() < 0.0 {
+        return String::new();
+    }
+    let three = |v: DVec3| v.to_array().map(|x| format!("{x:.4e}"));
+    format!("translucent surfaces: {} m around {}\n", three(size).join(" x "), three(surfaces.middle()).join(" "))
+}
+
+/// The cameras that are made for a scene without one as a word may mean them.
+pub fn made_camera_names() -> Vec<Candidate<'static>> {
+    let made = Placed::ALL.into_iter().enumerate();
+    made.map(|(index, placed)| Candidate { index, names: vec![placed.name()], detail: String::new() }).collect()
 }
 
 fn position(camera: &Camera) -> String {

@@ -49,7 +49,8 @@ impl Panorama {
         size.map_err(|what| Error::invalid(path, what))
     }
 
-    fn decode(bytes: &[u8]) -> Result<Panorama, String> {
+    /// The picture of a file's bytes.
+    pub fn decode(bytes: &[u8]) -> Result<Panorama, String> {
         if bytes.starts_with(b"#?") {
             return radiance::decode(bytes);
         }

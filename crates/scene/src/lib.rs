@@ -36,6 +36,7 @@
 mod cutouts;
 mod digest;
 mod error;
+mod framing;
 pub mod import;
 pub mod light;
 mod material;
@@ -53,6 +54,7 @@ mod warnings;
 pub mod warp;
 
 pub use error::{LostVolumes, SceneError};
+pub use framing::{Framing, Placed};
 pub use glam::{DVec3, DVec4, Vec3};
 pub use import::{FileUnits, ImportOptions, LightUnit, Pose};
 pub use material::{Alpha, Material, Scatter, ScatterExtension, StatedMedium, Volume};

@@ -5,7 +5,7 @@ use crate::{
     import::FileUnits,
     light::{contract::Light, environment::Environment},
     material::Material,
-    mesh::Mesh,
+    mesh::{Mesh, bounds},
     unhonoured::Unhonoured,
     view::Camera,
 };
@@ -87,6 +87,17 @@ impl Scene {
     /// is sampled as translucent.
     pub fn is_pane(&self, material: u16) -> bool {
         self.panes.get(usize::from(material)).is_some_and(Option::is_some)
+    }
+
+    /// The box around the triangles of these materials, m from the origin; empty if there are none.
+    pub fn bounds_of(&self, is_of: impl Fn(u16) -> bool) -> (DVec3, DVec3) {
+        bounds(self.corners_of(is_of))
+    }
+
+    /// The corners of the triangles of these materials, m from the origin.
+    pub(crate) fn corners_of(&self, is_of: impl Fn(u16) -> bool) -> impl Iterator<Item = DVec3> {
+        let own = self.mesh.triangles.iter().enumerate().filter(move |(_, t)| is_of(t.material));
+        own.flat_map(|(k, _)| self.mesh.corners(k))
     }
 
     /// Area of the triangles of each material, m².

@@ -101,7 +101,23 @@ impl View {
         ViewFile::parse(&text, &stem).map_err(|what| SceneError::Invalid { path: path.to_owned(), what })
     }
 
-    fn with_camera(self, name: &str) -> Result<(View, Camera), String> {
+    /// The text of a view file, in one line.
+    pub fn json(&self) -> String {
+        let three = |v: [f64; 3]| v.map(|x| x.to_string()).join(",");
+        let size = |name: &str, pixels: Option<u32>| pixels.map_or(String::new(), |n| format!(",\"{name}\":{n}"));
+        let name = self.name.as_ref().map_or(String::new(), |name| format!("\"name\":{},", Value::from(name.as_str())));
+        format!(
+            "{{{name}\"eye\":[{}],\"target\":[{}],\"up\":[{}],\"yfov\":{}{}{}}}",
+            three(self.eye),
+            three(self.target),
+            three(self.up),
+            self.yfov,
+            size("width", self.width),
+            size("height", self.height)
+        )
+    }
+
+    pub(crate) fn with_camera(self, name: &str) -> Result<(View, Camera), String> {
         let name = self.name.as_deref().unwrap_or(name).to_owned();
         let [eye, target, up] = [self.eye, self.target, self.up].map(DVec3::from_array);
         if !(eye.is_finite() && target.is_finite() && up.is_finite()) {

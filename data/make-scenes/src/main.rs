@@ -1,11 +1,12 @@
-//! `make-scenes DIR` writes `DIR/scenes/<scene>.glb`, `DIR/views/<scene>/<view>.json` and `DIR/environments/sky.hdr`.
+//! `make-scenes DIR` writes `DIR/scenes/<scene>.glb`, `DIR/views/<scene>/<view>.json`,
+//! `DIR/environments/sky.hdr` and `DIR/environments/studio.hdr`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 const USAGE: &str = "usage: make-scenes DIR
-Writes DIR/scenes/<scene>.glb, DIR/views/<scene>/<view>.json and DIR/environments/sky.hdr, the same bytes on every run.";
+Writes DIR/scenes/<scene>.glb, DIR/views/<scene>/<view>.json and DIR/environments/{sky,studio}.hdr, the same bytes on every run.";
 
 fn main() -> ExitCode {
     let arguments: Vec<_> = std::env::args_os().skip(1).collect();
@@ -39,7 +40,9 @@ fn run(directory: &Path) -> Result<(), String> {
             write(&path, view.to_json().as_bytes())?;
         }
     }
-    write(&directory.join("environments").join("sky.hdr"), &make_scenes::sky::encode())
+    let environments = directory.join("environments");
+    write(&environments.join("sky.hdr"), &make_scenes::sky::encode())?;
+    write(&environments.join("studio.hdr"), &make_scenes::soft_boxes::encode())
 }
 
 fn write(path: &PathBuf, bytes: &[u8]) -> Result<(), String> {

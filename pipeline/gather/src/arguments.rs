@@ -54,8 +54,8 @@ pub struct Arguments {
     #[arg(long, value_name = "MODEL", default_value_if("note", "true", "directional-dipole"),
         value_parser = one_of(&Model::ALL, Model::name))]
     pub bssrdf: Option<Model>,
-    /// Calibration of `calibrate`, which brings its media along, or none [default: with --bssrdf half-space the shape is
-    /// calibrated in memory first; other models are used as they were published]
+    /// Calibration of `calibrate`, which brings its media along, or none [default: with --bssrdf half-space the shape
+    /// is calibrated in memory first; other models are used as they were published]
     #[arg(long, value_name = "FILE|none", value_parser = file_name())]
     pub calibration: Option<PathBuf>,
     /// Sum over the cloud: hierarchical (cut), by the note's roulette, or over all samples (exhaustive)
@@ -99,6 +99,9 @@ pub struct Arguments {
     /// Interface events that a path may have; paths that are cut off are counted
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub max_depth: u32,
+    /// Show the camera a plain dark gray in place of the environment; surfaces still reflect and refract it
+    #[arg(long)]
+    pub backdrop: bool,
     #[command(flatten)]
     pub scene_args: SceneArgs,
     /// Layers to add to the image: albedo (color of the first surface), id (number of its material); separated by commas
@@ -110,9 +113,13 @@ pub struct Arguments {
     /// Also write a tone-mapped picture
     #[arg(long, value_name = "FILE.png", value_parser = file_name())]
     pub preview: Option<PathBuf>,
-    /// Brighten the preview by powers of two
+    /// Brighten the preview by powers of two, beyond the exposure that it gives itself, which is the same for all views
+    /// of the cloud in these media
     #[arg(long, value_name = "STOPS", default_value_t = 0.0, value_parser = parse_stops, allow_hyphen_values = true)]
     pub exposure: f64,
+    /// The preview does not expose itself: with 0 stops, a radiance of 0.18 is middle gray
+    #[arg(long)]
+    pub exposure_fixed: bool,
     /// Write statistics as JSON
     #[arg(long, value_name = "FILE", value_parser = file_name())]
     pub stats: Option<PathBuf>,

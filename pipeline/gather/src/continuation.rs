@@ -101,6 +101,11 @@ fn settings(request: &Request, inputs: &LitScene, calibration: Option<&Calibrati
     };
     let view = (camera.position, camera.right, camera.up, camera.forward, &camera.projection);
     let crop = crop.map_or("none".into(), |c| format!("{},{},{},{}", c.x, c.y, c.width, c.height));
+    let backdrop = match (request.backdrop, request.outputs.exposure_fixed) {
+        (false, _) => "none",
+        (true, false) => "exposed",
+        (true, true) => "fixed",
+    };
     let mut all = vec![
         format!("gather {}", env!("CARGO_PKG_VERSION")),
         format!("CLOUD {}", hex(&shards::identity(clouds))),
@@ -110,6 +115,7 @@ fn settings(request: &Request, inputs: &LitScene, calibration: Option<&Calibrati
         format!("--crop {crop}"),
         format!("--filter {}", filter.name()),
         format!("--max-depth {max_depth}"),
+        format!("--backdrop {backdrop}"),
         format!("--seed {seed}"),
         format!("--normals {}", request.scene.how.normals),
         format!("--reference {reference}"),

@@ -3,7 +3,7 @@
 use crate::{counts::Counts, crop::Crop, estimator::Estimator, film::Pixel};
 use bssrdf::{Medium, Model};
 use formats::{calibration::Calibration, cloud::Cloud};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use scene::{Camera, NormalKind, Rays, Scene};
 
 /// How paths are spread over a pixel.
@@ -60,6 +60,8 @@ pub struct Settings {
     pub normals: NormalKind,
     pub max_depth: u32,
     pub seed: u64,
+    /// Radiance that the camera sees in place of the environment, W/(m² sr), if it does not see that itself.
+    pub backdrop: Option<DVec3>,
 }
 
 impl Settings {

@@ -2,7 +2,7 @@
 //! its own.
 
 use crate::{
-    cameras::{Viewpoint, tag, viewpoints},
+    cameras::{SIDE, Viewpoint, tag, viewpoints},
     settings::{ImageNames, Request},
 };
 use bssrdf::Model;
@@ -36,6 +36,8 @@ pub struct ImageJob {
     pub degrees: f64,
     /// The argument that chose the camera.
     pub argument: String,
+    /// The exposure of its preview, in powers of two.
+    pub stops: f64,
     /// The tag in the names of its files, before their extensions; none if there is only one image.
     tag: Option<String>,
 }
@@ -43,7 +45,7 @@ pub struct ImageJob {
 /// All images of a request. Refuses those that cannot be rendered, before any work is done.
 pub fn image_jobs(request: &Request, inputs: &LitScene, model: Model) -> Result<Vec<ImageJob>, Failure> {
     let mut jobs = Vec::new();
-    for viewpoint in viewpoints(request, &inputs.scene, || inputs.middle())? {
+    for viewpoint in viewpoints(request, &inputs.scene, &inputs.framing())? {
         jobs.extend(turntable(request, &viewpoint, model)?);
     }
     warn_of_aspects(&jobs, &request.common);
@@ -60,7 +62,8 @@ fn turntable(request: &Request, viewpoint: &Viewpoint, model: Model) -> Result<V
         let degrees = 360.0 * f64::from(index) / f64::from(count);
         let camera = turned(&viewpoint.camera, viewpoint.target, degrees);
         let tag = viewpoint.tag.clone().or_else(|| request.orbit.map(|_| tag(None, index as usize)));
-        ImageJob { camera, settings: settings.clone(), degrees, argument: viewpoint.argument.clone(), tag }
+        let (argument, stops) = (viewpoint.argument.clone(), request.outputs.exposure);
+        ImageJob { camera, settings: settings.clone(), degrees, argument, stops, tag }
     };
     Ok((0..count).map(job).collect())
 }
@@ -100,6 +103,7 @@ fn settings(request: &Request, viewpoint: &Viewpoint, model: Model) -> Result<Se
         normals: cli::normal_kind(request.scene.how.normals),
         max_depth: request.max_depth,
         seed: request.common.seed,
+        backdrop: None,
     })
 }
 
@@ -111,7 +115,7 @@ fn size(request: &Request, viewpoint: &Viewpoint) -> Result<(usize, usize), Fail
         (Some(width), Some(height)) => (width, height),
         (Some(width), None) => (width, (width / aspect).round()),
         (None, Some(height)) => ((height * aspect).round(), height),
-        (None, None) => (512.0, (512.0 / aspect).round()),
+        (None, None) => (f64::from(SIDE), (f64::from(SIDE) / aspect).round()),
     };
     let refused = |why: &str| Failure::usage(format!("--width, --height: {width} x {height} {why}"));
     if ![width, height].iter().all(|side| (1.0..=65536.0).contains(side)) {

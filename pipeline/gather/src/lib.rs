@@ -31,6 +31,7 @@
 //!     normals: NormalKind::Shading,
 //!     max_depth: 16,
 //!     seed: 0,
+//!     backdrop: None,
 //! };
 //! let input = Input { scene: &scene, rays: &rays, clouds: &[], media: &[], calibration: None, camera: &scene.cameras[0] };
 //! let rendered = render(&input, &settings, |_| ());
@@ -42,6 +43,7 @@ pub mod counts;
 mod crop;
 mod cut_correction;
 mod edge;
+pub mod exposure;
 pub mod film;
 mod freedom;
 mod image;

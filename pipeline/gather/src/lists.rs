@@ -2,7 +2,7 @@
 
 use crate::settings::SceneLists;
 use bssrdf::{Medium, built_in, built_in_names};
-use cli::{Failure, camera_table, material_table, printable};
+use cli::{Failure, bounds_line, camera_table, material_table, printable};
 use std::{fmt::Write, path::PathBuf};
 
 /// Prints the built-in media.
@@ -28,7 +28,7 @@ fn citation(medium: &Medium) -> String {
 
 /// Prints the cameras or the materials of a scene, or both.
 pub fn scene(lists: &SceneLists) -> Result<(), Failure> {
-    let scene = lists.scene.import(&lists.common)?;
+    let scene = lists.scene.sized_by_file()?.import(&lists.common)?;
     let mut text = String::new();
     if lists.cameras {
         text += &camera_table(&scene);
@@ -36,6 +36,7 @@ pub fn scene(lists: &SceneLists) -> Result<(), Failure> {
     if lists.materials {
         text += &material_table(&scene)?;
     }
+    text += &bounds_line(&scene);
     cli::print(&text)
 }
 

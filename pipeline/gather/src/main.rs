@@ -6,6 +6,7 @@ mod calibrated;
 mod cameras;
 mod continuation;
 mod display;
+mod exposed;
 mod holes;
 mod image_jobs;
 mod inputs;
@@ -59,12 +60,13 @@ pub struct Prepared {
 /// Renders all images of a request.
 fn render(request: &Request) -> Result<(), Failure> {
     let (asked, mut seconds, clock) = (Asked::listen(), Seconds::start(), Clock::start(request.time_limit));
-    let prepared = seconds.time("open", || prepare(request))?;
+    let mut prepared = seconds.time("open", || prepare(request))?;
     let rays = seconds.time("ray_tree", || request.common.in_pool(|| prepared.inputs.rays()))?;
     let made = match prepared.kept {
         Some(_) => None,
         None => seconds.time("calibrate", || calibrated::make(request, &prepared.inputs, &rays, prepared.model))?,
     };
+    seconds.time("exposure", || exposed::expose(request, &prepared.inputs, &rays, &mut prepared.jobs))?;
     let calibration = prepared.kept.as_ref().or(made.as_ref());
     for (index, job) in prepared.jobs.iter().enumerate() {
         let deadline = clock.deadline(job, prepared.jobs.len() - index, request.common.thread_count());

@@ -54,7 +54,7 @@ fn write_image(facts: &Facts, mut output: Output, group: &mut Group) -> Result<(
         group.write(&sums_file::path_of(&path), &sums)?;
     }
     if let Some(path) = &outputs.preview {
-        let png = preview::png(&facts.rendered.pixels, part.width, part.height, outputs.exposure)?;
+        let png = preview::png(&facts.rendered.pixels, part.width, part.height, facts.job.stops)?;
         group.write(&facts.job.file(path), &png)?;
     }
     Ok(())

@@ -96,6 +96,11 @@ impl<'a> Passes<'a> {
         passes
     }
 
+    /// What the paths of the image share.
+    pub(crate) fn renderer(&self) -> &Renderer<'a> {
+        &self.renderer
+    }
+
     /// Finds edge pixels by the transmittance at the corners of all pixels. There are none with one path per pixel,
     /// which has no second half to estimate the factor of the control variate from, nor with rays through pixel
     /// centers, which are all the same.

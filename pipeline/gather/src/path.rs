@@ -116,6 +116,9 @@ impl Renderer<'_> {
 
     /// Adds the environment for a ray that meets no further surface.
     fn escape(&self, state: &PathState, light: &mut PathLight, counts: &mut Counts) {
+        if let Some(backdrop) = self.settings.backdrop.filter(|_| state.layer.is_none() && state.inside.is_none()) {
+            return light.add(state, Layer::Emission, backdrop);
+        }
         let mut seen = self.lights.distant_radiance(state.origin, state.direction);
         if let Some(object) = state.inside.and_then(|m| self.objects[m as usize].as_ref()) {
             counts.escaped_inside += 1;

@@ -179,6 +179,7 @@ impl<'a> Facts<'a> {
                 c.materials.iter().map(|m| (m.name.clone(), m.errors.map(|e| e.after))).collect::<BTreeMap<_, _>>()
             }),
         });
+        value["preview_stops"] = self.request.outputs.preview.as_ref().map(|_| self.job.stops).into();
         if self.request.outputs.timings {
             let rate = seconds.of("render").map(|s| counts.evaluations as f64 / s.max(1e-9));
             value["seconds"] = serde_json::json!(seconds.table());

@@ -11,14 +11,25 @@ const SPARSE: f64 = 3.0;
 /// Rounding of positions by more than this share of a reduced mean free path is visible.
 const ROUGH: f64 = 0.01;
 
-/// A reduced mean free path below this share of the object's size looks opaque.
-const OPAQUE: f64 = 1e-5;
+/// An object looks opaque if light travels less far in it than this share of its diagonal: a fraction of a pixel.
+const OPAQUE: f64 = 1e-3;
+
+/// Light that is not absorbed travels about so many reduced mean free paths before it leaves.
+const UNABSORBED: f64 = 30.0;
+
+/// An object whose diagonal is so many times as long as light travels shows both its shape and its translucence.
+const SHOWN: f64 = 12.0;
+
+/// Larger sizes are not recommended: a medium that needs them is clear.
+const LARGEST_M: f64 = 10.0;
 
 /// Measures of the surface of a material, m.
 struct Object<'a> {
     material: &'a str,
     /// Diagonal of the box around it.
     diagonal: f64,
+    /// Largest extent of all translucent surfaces along an axis, which `--size` gives.
+    extent: f64,
     /// Mean distance of its samples that carry light; infinite if none does.
     spacing: f64,
     /// Whether no sample of any material carries light, of which `sample-surface` warned.
@@ -33,11 +44,13 @@ struct Object<'a> {
 /// material, unless all are asked for.
 pub fn show(request: &Request, inputs: &LitScene, model: Model) {
     let (common, clouds) = (&request.common, inputs.clouds());
+    let extent = inputs.framing().size().max_element();
     for (slot, (material, medium)) in shards::materials(clouds).iter().zip(&inputs.media).enumerate() {
-        let (low, high) = inputs.bounds(|index| index == material.index);
+        let (low, high) = inputs.scene.bounds_of(|index| index == material.index);
         let object = Object {
             material: &material.name,
             diagonal: (high - low).length(),
+            extent,
             spacing: (material.area_m2 / shards::count(clouds, slot) as f64).sqrt(),
             is_known_dark: clouds.iter().all(Cloud::is_empty) && !request.verbose,
             drawn: shards::drawn(clouds),
@@ -50,9 +63,10 @@ pub fn show(request: &Request, inputs: &LitScene, model: Model) {
                 "  {model} reflects {r} {g} {b} % more than {medium} does (red, green, blue; docs/reports/accuracy.md)"
             )
         });
-        let warnings = warnings(&object, medium, request);
+        let transport = model.of(medium).transport();
+        let warnings = warnings(&object, medium, transport, request);
         if request.verbose {
-            lines(&object, medium, model.of(medium).transport()).iter().for_each(|line| common.say(line));
+            lines(&object, medium, transport).iter().for_each(|line| common.say(line));
         } else {
             common.say(line(&object, medium));
         }
@@ -91,23 +105,24 @@ fn lines(object: &Object, medium: &Medium, transport: [f64; 3]) -> [String; 6] {
     ]
 }
 
-fn warnings(object: &Object, medium: &Medium, request: &Request) -> Vec<String> {
-    let Object { material, diagonal, spacing, drawn, rounding, is_known_dark } = *object;
+fn warnings(object: &Object, medium: &Medium, transport: [f64; 3], request: &Request) -> Vec<String> {
+    let Object { material, diagonal, spacing, drawn, rounding, is_known_dark, .. } = *object;
     let shortest = |lengths: [f64; 3]| lengths.into_iter().fold(f64::INFINITY, f64::min);
     let free_path = shortest(medium.mean_free_path());
     let reduced = shortest(medium.map(|c| 1.0 / c.reduced_extinction()));
+    let travels = travels(medium, transport);
     let [size, path, depth, apart, rounded] = [diagonal, free_path, reduced, spacing, rounding].map(length);
+    let way_out = way_out(object, travels);
     let mut warnings = Vec::new();
     // Clear glass is meant so.
     if free_path > diagonal && free_path < f64::INFINITY {
         warnings.push(format!(
-            "`{material}`: light crosses the object ({size}) without scattering (mean free path {path}); are the medium's \
-             unit and --metres-per-unit right?"
+            "`{material}`: light crosses the object ({size}) without scattering (mean free path {path}); {way_out}"
         ));
-    } else if reduced < OPAQUE * diagonal {
+    } else if travels < OPAQUE * diagonal {
         warnings.push(format!(
-            "`{material}`: light scatters within {depth} of an object of {size}: it will look opaque; are the medium's unit \
-             and --metres-per-unit right?"
+            "`{material}`: light travels {} in an object of {size}: it will look opaque; {way_out}",
+            length(travels)
         ));
     } else if request.reference {
         // The samples do not count.
@@ -129,6 +144,27 @@ fn warnings(object: &Object, medium: &Medium, request: &Request) -> Vec<String> 
         ));
     }
     warnings
+}
+
+/// How far light travels in a medium before it leaves, in the channel in which it travels farthest, m.
+fn travels(medium: &Medium, transport: [f64; 3]) -> f64 {
+    let scattered = medium.map(|c| UNABSORBED / c.reduced_extinction());
+    let channels = transport.iter().zip(scattered).map(|(sigma, scattered)| scattered.min(1.0 / sigma));
+    channels.fold(0.0, f64::max)
+}
+
+/// What to do about an object of a size at which the medium makes no sense.
+fn way_out(object: &Object, travels: f64) -> String {
+    let size = object.extent * (SHOWN * travels / object.diagonal);
+    let unit = 10f64.powf(size.log10().floor());
+    if size > 0.0 && size <= LARGEST_M && unit > 0.0 {
+        // One digit is typed: division by a power of ten gives the nearest number to it.
+        let (digit, exponent) = ((size / unit).round(), unit.log10().round());
+        let typed = digit * 10f64.powf(exponent.max(0.0)) / 10f64.powf((-exponent).max(0.0));
+        format!("--size {typed} (m, its largest extent) would show it, unless the medium's unit is wrong")
+    } else {
+        "are the medium's unit and --metres-per-unit right?".into()
+    }
 }
 
 fn coefficients(sigma: [f64; 3]) -> String {

@@ -61,6 +61,8 @@ pub struct Request {
     pub continued: Option<PathBuf>,
     pub filter: Filter,
     pub max_depth: u32,
+    /// Whether the camera sees a plain backdrop in place of the environment.
+    pub backdrop: bool,
     pub outputs: Outputs,
     /// Where a viewer listens.
     pub display: Option<String>,
@@ -88,8 +90,9 @@ pub enum CameraSource {
 pub struct Outputs {
     pub image: PathBuf,
     pub preview: Option<PathBuf>,
-    /// Exposure of the preview, in powers of two.
+    /// Exposure of the preview, in powers of two: added to that of the cloud and its media, unless it is fixed.
     pub exposure: f64,
+    pub exposure_fixed: bool,
     pub stats: Option<PathBuf>,
     /// Whether the sums are kept beside the image, so that it can be continued.
     pub keeps_sums: bool,
@@ -165,10 +168,12 @@ fn request(arguments: Arguments, scene: PathBuf, image: PathBuf) -> Result<Reque
         time_limit: arguments.time_limit,
         filter: arguments.filter,
         max_depth: arguments.max_depth,
+        backdrop: arguments.backdrop,
         outputs: Outputs {
             image,
             preview: arguments.preview,
             exposure: arguments.exposure,
+            exposure_fixed: arguments.exposure_fixed,
             stats: arguments.stats,
             keeps_sums: arguments.keep_sums || arguments.continued.is_some(),
             layers: arguments.layers,

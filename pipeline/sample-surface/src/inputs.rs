@@ -39,6 +39,7 @@ impl Inputs {
         let target = request.target.as_ref().map(medium).transpose()?;
         let mut scene = request.scene.import(common)?;
         scene.files.iter().try_for_each(|path| files.reads("a file that SCENE names", path))?;
+        request.scene.say_light(&scene, common);
         let settings = request.settings(&scene);
         let surfaces = surfaces(request, &scene)?;
         let plan = Plan::new(&scene, &settings, surfaces).map_err(|e| failure(request, &e))?;

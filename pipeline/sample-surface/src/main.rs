@@ -9,17 +9,21 @@ mod settings;
 mod surfaces;
 
 use arguments::Arguments;
-use cli::{Failure, Seconds, material_table};
+use cli::{Failure, Seconds, bounds_line, material_table};
 use formats::{atomic::Group, write_ply};
 use inputs::Inputs;
 use settings::{Request, Task};
+use surfaces::sized;
 
 fn main() {
     let arguments: Arguments = cli::parse();
     cli::run("sample-surface", || {
         match Task::of(arguments)? {
-            Task::ListMaterials { scene, common } => cli::print(&material_table(&scene.import(&common)?)?)?,
-            Task::Sample(request) => sample(&request)?,
+            Task::ListMaterials { scene, common } => {
+                let scene = scene.sized_by_file()?.import(&common)?;
+                cli::print(&(material_table(&scene)? + &bounds_line(&scene)))?;
+            }
+            Task::Sample(request) => sample(&sized(*request)?)?,
         }
         Ok(0)
     });

@@ -38,6 +38,16 @@ pub fn failure(request: &Request, error: &SampleError) -> Failure {
     }
 }
 
+/// The request with the size of a unit that `--size` means for these surfaces.
+pub fn sized(mut request: Request) -> Result<Request, Failure> {
+    let words = &request.translucent;
+    request.scene = match words.is_empty() {
+        true => request.scene.sized_by_file()?,
+        false => request.scene.sized(|scene| translucent(words, scene))?,
+    };
+    Ok(request)
+}
+
 /// The materials that the words of `--translucent` mean, in ascending order; one without triangles is none.
 fn translucent(words: &[String], scene: &Scene) -> Result<Vec<u16>, Failure> {
     let used: BTreeSet<u16> = scene.mesh.triangles.iter().map(|t| t.material).collect();

@@ -67,7 +67,8 @@ fn scenes_without_what_is_needed() {
             node.as_object_mut().expect("an object").remove("extensions");
         }
     });
-    refuses(&bench, &scene, &["scene.glb", "no light", "--environment"]);
+    let dark = [&scene, "-n", "10", "-o", "out.cloud", "--environment", "0,0,0"];
+    bench.refuses(PROGRAM, &dark, &["scene.glb", "no light", "--environment"]);
     let scene = bench.slab("scene.glb", |_| {});
     let named = [&scene, "-n", "10", "-o", "out.cloud", "--translucent", "Glass"];
     bench.refuses(PROGRAM, &named, &["--translucent", "`Glass`", "`Slab`"]);

@@ -128,6 +128,7 @@ pub fn settings(model: Model, width: usize, height: usize) -> gather::Settings {
         normals: NormalKind::Geometric,
         max_depth: 16,
         seed: 1,
+        backdrop: None,
     }
 }
 

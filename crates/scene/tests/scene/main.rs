@@ -5,6 +5,7 @@ mod copies;
 mod cutouts;
 mod environment;
 mod exactness;
+mod framing;
 mod glow;
 mod identity;
 mod import;

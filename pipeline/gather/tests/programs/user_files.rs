@@ -145,13 +145,13 @@ fn light_color_and_cone() {
     }
 }
 
-/// Emitting triangles light the scene; a scene without light is refused. Details: `lights`, `import_lights`.
+/// Emitting triangles light the scene; a scene without light is refused if it shall have none. Details: `lights`, `import_lights`.
 #[test]
 fn area_lights_and_scenes_without_light() {
     let bench = Bench::new();
     let dark = |root: &mut Value| root["nodes"][1]["extensions"] = json!({});
     let scene = bench.slab("dark.gltf", dark);
-    let arguments = [&scene, "-n", "500", "-o", "user.cloud"];
+    let arguments = [&scene, "-n", "500", "-o", "user.cloud", "--environment", "0,0,0"];
     bench.refuses("sample-surface", &arguments, &["dark.gltf", "no light", "--environment"]);
     let scene = bench.slab("lit.gltf", |root| {
         dark(root);

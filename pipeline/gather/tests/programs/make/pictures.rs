@@ -139,3 +139,27 @@ fn the_gallery_is_of_what_it_was_made_from() {
     tree.make(&["clean", "GALLERY=thing:m"]);
     assert_eq!(tree.files(), before);
 }
+
+/// A scene without cameras has a picture from the front and one against the light, of the size that was asked for.
+#[test]
+fn a_scene_without_cameras_is_seen_by_those_that_are_made() {
+    let tree = Tree::new();
+    tree.scene("thing.gltf", 1.0);
+    let mut root: serde_json::Value =
+        serde_json::from_slice(&fs::read(tree.path("thing.gltf")).expect("reads")).expect("JSON");
+    root.as_object_mut().expect("an object").remove("cameras");
+    for node in root["nodes"].as_array_mut().expect("nodes") {
+        node.as_object_mut().expect("an object").remove("camera");
+    }
+    tree.write("thing.gltf", root.to_string());
+    let arguments = ["SCENE=thing.gltf", "MEDIUM=marble", "CALIBRATE=no", "SPP=1", "SIZE=0.01"];
+    assert_eq!(tree.make(&arguments).made(), ["sample-surface", "gather", "gather"]);
+    for name in ["front.exr", "front.png", "backlit.exr", "backlit.png"] {
+        assert!(tree.path(IMAGES).join(name).exists(), "{name}");
+    }
+    assert!(tree.make(&arguments).made().is_empty());
+    let larger = ["SCENE=thing.gltf", "MEDIUM=marble", "CALIBRATE=no", "SPP=1", "SIZE=0.02"];
+    assert_eq!(tree.make(&larger).made(), ["sample-surface", "gather", "gather"]);
+    let backdrop = [&larger[..], &["BACKDROP=yes"]].concat();
+    assert_eq!(tree.make(&backdrop).made(), ["gather", "gather"]);
+}
