@@ -109,7 +109,7 @@ fn features_that_are_not_supported_are_named() {
     let scene = bench.slab("scene.glb", |_| {});
     let posed = [&scene, "-n", "10", "-o", "out.cloud", "--animation", "Spin"];
     bench.refuses(PROGRAM, &posed, &["scene.glb", "no animation `Spin`", "has none", "--animation NAME", "--time"]);
-    bench.refuses(PROGRAM, &[&scene, "-n", "10", "-o", "out.cloud", "--time", "-1"], &["--time", "zero or more"]);
+    bench.refuses(PROGRAM, &[&scene, "-n", "10", "-o", "out.cloud", "--time=-1"], &["--time", "zero or more"]);
 }
 
 #[test]

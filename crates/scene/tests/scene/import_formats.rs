@@ -10,7 +10,7 @@ fn stl() -> Vec<u8> {
 
 /// Formats are told by their first bytes or, without such, by the name; the message says how to convert them.
 ///
-/// Seen to catch: a parser's "expected value at line 1 column 1" for each of these; a .glb named `.stl` that is refused.
+/// Seen to catch: a parser's "expected value at line 1 column 1" for each of these; a binary STL that is not known.
 #[test]
 fn other_formats_are_named_with_the_way_to_gltf() {
     let stl = stl();

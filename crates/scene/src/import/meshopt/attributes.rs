@@ -164,8 +164,7 @@ mod tests {
         (0..20).flat_map(vertex).collect()
     }
 
-    /// Seen to catch: the baseline read from the start of its padding; a turned channel not turned; words taken for
-    /// bytes.
+    /// Seen to catch: a turned channel turned the other way; differences of a byte in the other order.
     #[test]
     fn streams_of_both_versions() {
         for stream in STREAMS {
@@ -175,7 +174,7 @@ mod tests {
 
     /// The specification's example of a group.
     ///
-    /// Seen to catch: the second of two differences in a byte taken for the first.
+    /// Seen to catch: differences of a byte in the other order.
     #[test]
     fn a_group_of_four_bits() {
         let mut data = &[0x17, 0x5f, 0xf0, 0xbc, 0x77, 0xa9, 0x21, 0x00, 0x34, 0xb5][..];
@@ -188,7 +187,7 @@ mod tests {
     /// A stream that is cut, too long, of an unknown version or with an unknown channel is damaged, and so is one of
     /// too many vertices, before memory is taken for them.
     ///
-    /// Seen to catch: bytes left over; no least length.
+    /// Seen to catch: bytes left over.
     #[test]
     fn damaged_streams() {
         for stream in STREAMS.map(bytes) {

@@ -68,7 +68,7 @@ pub(super) fn color(bytes: &mut [u8], stride: usize) {
 mod tests {
     use super::*;
 
-    /// Seen to catch: the lower hemisphere not folded; the fourth component lost; 10 bits taken for 16.
+    /// Seen to catch: the lower hemisphere not folded.
     #[test]
     fn octahedral_vectors() {
         let mut bytes = [127, 0, 127, 5, 0, 0, 127, 6, (-64i8) as u8, 0, 64, 0, 127, 127, 127, 0];
@@ -99,7 +99,7 @@ mod tests {
         }
     }
 
-    /// Seen to catch: the sign of the mantissa or of the exponent ignored.
+    /// Seen to catch: the sign of the mantissa ignored.
     #[test]
     fn exponents() {
         for (exponent, mantissa, value) in [(0, 5, 5.0), (-2, -3, -0.75), (10, 1, 1024.0), (-100, 1, 2f32.powi(-100))] {

@@ -29,7 +29,7 @@ mod tests {
 
     /// The numbers of the specification's examples: 0x7f, 0x201 and 0x1fd005 as differences to the two baselines.
     ///
-    /// Seen to catch: one baseline for both; the sign of a difference ignored.
+    /// Seen to catch: one baseline for both.
     #[test]
     fn differences_to_two_baselines() {
         let stream = |data: &[u8]| [&[0xd1][..], data, &[0; 4]].concat();

@@ -133,8 +133,7 @@ mod tests {
 
     /// Each kind of code, followed by hand along the specification.
     ///
-    /// Seen to catch: the edges of a triangle pushed in another order; a vertex of the first nibble pushed though it is
-    /// a recent one; an index one less than the last one taken for one more.
+    /// Seen to catch: the edges of a triangle pushed in another order.
     #[test]
     fn every_kind_of_code() {
         let mut table = [0; 16];
