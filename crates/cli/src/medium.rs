@@ -87,29 +87,4 @@ mod tests {
         let message = read_medium("/dev/zero").expect_err("refused").to_string();
         assert!(message.contains("/dev/zero: cannot read: not a regular file"), "{message}");
     }
-
-    /// A name or JSON in the extras of a material; a name is never a path.
-    ///
-    /// Seen to catch: the extensions of the material taken before its extras.
-    #[test]
-    fn extras_of_a_material_state_its_medium() {
-        let bench = test_support::Bench::new();
-        let medium = |medium: serde_json::Value| {
-            let mut asset = test_support::glb::tetrahedron();
-            asset.set("/materials/0/extras", serde_json::json!({ "medium": medium }));
-            let transmission = serde_json::json!({ "KHR_materials_transmission": { "transmissionFactor": 1 } });
-            asset.set("/materials/0/extensions", transmission);
-            let path = bench.write("wax.glb", asset.glb());
-            let scene = scene::Scene::import(&path, &test_support::glb::OPTIONS).expect("imports");
-            scene_medium(&scene.materials[0]).map_err(|e| e.to_string())
-        };
-        let marble = built_in("marble").expect("it is built in");
-        assert_eq!(medium("marble".into()), Ok(Some(marble)));
-        let own = r#"{"name":"own","unit":"1/m","sigma_a":[1,1,1],"sigma_s":[9,9,9]}"#;
-        assert_eq!(medium(own.into()), Ok(Some(Medium::from_json(own).expect("a medium"))));
-        for wrong in ["marbel", "/etc/passwd", "data/media/marble.json", "{"] {
-            let message = medium(wrong.into()).expect_err("it is no medium");
-            assert!(message.contains("`wax` of SCENE: extras.medium") && message.contains("--medium"), "{message}");
-        }
-    }
 }
