@@ -18,7 +18,8 @@ impl Scene {
         let mut found: Vec<(String, Vec<&Holder>)> = Vec::new();
         let mut known = HashMap::new();
         for one in &self.unhonoured {
-            let is_translucent = matches!(&one.holder, Some(Holder::Material(k)) if translucent(*k));
+            let is_translucent =
+                matches!(&one.holder, Some(Holder::Material(k)) if translucent(*k) || self.is_pane(*k));
             let Some(taken) = one.on[usize::from(is_translucent)] else { continue };
             let property = format!("{}{}", one.property, taken_as(taken));
             let index = *known.entry(property).or_insert_with_key(|property| {

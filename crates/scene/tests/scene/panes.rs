@@ -58,6 +58,9 @@ fn light_passes_a_pane_with_fresnels_transmittance() {
             let found = passing(&rays, &scene, degrees, up);
             assert!((found - expected).abs() < 0.008, "{degrees}: {found}, not {expected}");
         }
+        let mut scene = scene;
+        scene.warn_of_unhonoured(|k| k == 0);
+        assert_eq!(scene.warnings, Vec::<String>::new());
         let solid = Rays::of_scene(&scene, |_| true);
         assert_eq!(passing(&solid, &scene, degrees, 1.0), 0.0, "sampled as translucent");
     }

@@ -1,6 +1,7 @@
 //! Bad input of every kind is refused with exit code 2 and one message that names the file, the field and the way out;
 //! no file is written.
 
+use serde_json::json;
 use std::path::Path;
 use test_support::{Bench, data};
 
@@ -23,7 +24,13 @@ fn media_and_cameras() {
         let arguments = [&["slab.cloud", &slab, "-o", "out.exr", "--quiet"], more].concat();
         bench.refuses("gather", &arguments, words);
     };
-    refuses(&[], &["--medium", "--list-media"]);
+    // A volume that no light enters is no medium; with transmission it would be clear glass.
+    let closed = bench.slab("closed.gltf", |root| {
+        root["materials"][0]["extensions"]["KHR_materials_transmission"] = json!({ "transmissionFactor": 0 });
+    });
+    bench.succeed("sample-surface", &[&closed, "-n", "1000", "-o", "closed.cloud", "--quiet"]);
+    let arguments = ["closed.cloud", &closed, "-o", "out.exr", "--quiet"];
+    bench.refuses("gather", &arguments, &["--medium", "--list-media"]);
     refuses(&["--medium", "marbel"], &["--medium", "`marbel`", "--list-media"]);
     refuses(&["--medium", "skim"], &["skimmilk"]);
     refuses(&["--medium", "Wax=marble"], &["`Wax`", "`Slab`"]);

@@ -122,6 +122,8 @@ fn make_renders_each_camera_by_its_index() {
 
 /// The slab, and another of twice its size below it, whose materials have the same name.
 fn two_of_one_name(root: &mut Value) {
+    // With transmission the file would give both a medium, clear glass.
+    root["materials"][0]["extensions"]["KHR_materials_transmission"] = json!({ "transmissionFactor": 0 });
     let material = root["materials"][0].clone();
     root["materials"].as_array_mut().expect("a list").push(material);
     let mut mesh = root["meshes"][0].clone();
