@@ -2,7 +2,7 @@
 
 use crate::user_files::{gather, sample, text_attribute};
 use serde_json::{Value, json};
-use test_support::{Bench, data};
+use test_support::Bench;
 
 /// Gives the first material a medium of the older draft.
 pub fn with_medium(root: &mut Value) {
@@ -38,12 +38,11 @@ fn subsurface_parameters() {
     assert!(said.contains("`Slab`: marble") && !said.contains("`Slab`: KHR"), "{said}");
     assert!(text_attribute(&bench, "pcsss/media").starts_with("Slab=marble"));
     // Neither file nor command line; and an index that no model knows, unless it is not asked for.
-    sample(&bench, &data("scenes/slab.glb"), &[]);
-    bench.refuses(
-        "gather",
-        &["user.cloud", &data("scenes/slab.glb"), "-o", "no.exr"],
-        &["--medium", "SCENE gives no medium"],
-    );
+    let closed = bench.slab("closed.gltf", |root| {
+        root["materials"][0]["extensions"]["KHR_materials_transmission"] = json!({ "transmissionFactor": 0 });
+    });
+    sample(&bench, &closed, &[]);
+    bench.refuses("gather", &["user.cloud", &closed, "-o", "no.exr"], &["--medium", "SCENE gives no medium"]);
     let legacy = bench.slab("legacy.gltf", |root| {
         with_medium(root);
         root["materials"][0]["extensions"]["KHR_materials_ior"]["ior"] = json!(0);
