@@ -23,7 +23,7 @@ define remove
     case $$name in check/*/image) rm -f "$$folder"/[0-9]*.exr; esac; \
     if [ $(1) = all ]; then \
       case $$name in check/*/cloud) rm -f "$$folder"/[0-9]*.cloud "$$folder.json"; esac; \
-      rm -f "$$folder/.$${name##*/}".*.tmp "$$name.cloud" "$$name.calibration" "$$name.views" "$$name.cameras" "$$name.cameras.list" "$$file"; \
+      rm -f "$$folder/.$${name##*/}".*.tmp "$$name.cloud" "$$name.calibration" "$$name.views" "$$name.media" "$$name.cameras" "$$name.cameras.list" "$$file"; \
     fi; \
     while [ "$$folder" != . ] && rmdir "$$folder" 2>/dev/null; do \
       case $$folder in */*) folder=$${folder%/*} ;; *) folder=. ;; esac; done; \

@@ -1,7 +1,8 @@
 # Your own scene: `make SCENE=path.glb MEDIUM=marble` renders one image for each camera of the file or, if it has none, one
 # from the front and one against the light. Offers the target own, and the variables
 #   VIEWS='path/*.json'       one image for each of these view files, or several for one that holds a list of views
-#   MEDIUM=name|file.json     the medium of all translucent surfaces; with an empty MEDIUM= the file's own media
+#   MEDIUM=name|file.json     the medium of all translucent surfaces: marble, unless the file gives all of them media, of which
+#                             one scatters; with an empty MEDIUM= the file's own media
 #   ENVIRONMENT=studio|sky|sky.exr|R,G,B  light from all around; a scene without any light has the studio
 #   SIZE=0.1                  the largest extent of the translucent surfaces, m
 #   BACKDROP=yes              the camera sees a plain dark gray instead of the light from all around
@@ -12,15 +13,21 @@
 .PHONY: own
 
 ifneq ($(and $(SCENE),$(CHECKED)),)
-MEDIUM ?= marble
 OWN := $(OUT)/$(notdir $(basename $(SCENE)))/$(RUN_NAME)
+own_scene   = $(if $(ENVIRONMENT),--environment $(ENVIRONMENT)) $(if $(SIZE),--size $(SIZE))
+$(eval $(call settings,$(OWN),$$(strip $$(own_scene) $$(TRANSLUCENT)),$(SCENE) $(wildcard $(ENVIRONMENT))))
+# Without MEDIUM, the media of a file are taken that gives all translucent surfaces media of which one scatters.
+ifeq ($(origin MEDIUM)$(if $(filter all own truth,$(or $(MAKECMDGOALS),all)),,: not a picture),undefined)
+include $(OWN).media
+$(OWN).media: $(SCENE) $(OWN).settings | $(GATHER)
+	@if $(GATHER) --list-materials --quiet '$<' 2>/dev/null | grep -q "^media: the file's own"; then echo 'MEDIUM ?='; fi > $@
+endif
+MEDIUM ?= marble
 OWN_MEDIUM := $(or $(notdir $(basename $(MEDIUM))),own)
 OWN_IMAGES := $(OWN)/$(OWN_MEDIUM)-$(MODEL)
 # A medium may be one of the built-in media, which are those of data/media.
 OWN_MEDIA  := $(wildcard $(MEDIUM) data/media/$(MEDIUM).json)
-own_scene   = $(if $(ENVIRONMENT),--environment $(ENVIRONMENT)) $(if $(SIZE),--size $(SIZE))
 own_seen    = $(if $(filter yes,$(BACKDROP)),--backdrop)
-$(eval $(call settings,$(OWN),$$(strip $$(own_scene) $$(TRANSLUCENT)),$(SCENE) $(wildcard $(ENVIRONMENT))))
 
 MADE_CAMERAS := front backlit
 camera_of   = $(if $(filter $(MADE_CAMERAS),$(1)),$(1),camera$(1))

@@ -69,7 +69,9 @@ pub use scene_args::SceneArgs;
 pub use scene_settings::{SceneSettings, normal_kind};
 pub use seconds::Seconds;
 pub use shell::quoted;
-pub use tables::{bounds_line, camera_names, camera_table, made_camera_names, material_names, material_table};
+pub use tables::{
+    bounds_line, camera_names, camera_table, made_camera_names, material_names, material_table, media_line,
+};
 pub use terminal::printable;
 pub use units::{UnitChoice, stored_unit};
 pub use values::{one_of, parse_duration, parse_relative_error, parse_rgb};

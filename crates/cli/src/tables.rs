@@ -76,6 +76,20 @@ pub fn bounds_line(scene: &Scene) -> String {
     format!("translucent surfaces: {} m around {}\n", three(size).join(" x "), three(surfaces.middle()).join(" "))
 }
 
+/// Whether the file gives its translucent materials media; nothing if there are none.
+pub fn media_line(scene: &Scene) -> String {
+    let (materials, _) = scene.translucent().unwrap_or_default();
+    let of = |k: &u16| scene_medium(&scene.materials[usize::from(*k)]).ok().flatten();
+    let given: Vec<Medium> = materials.iter().filter_map(of).collect();
+    let scatters = given.iter().filter(|medium| medium.channels.iter().any(|channel| channel.scatters())).count();
+    let (all, given) = (materials.len(), given.len());
+    match all {
+        0 => String::new(),
+        _ if given == all && scatters > 0 => format!("media: the file's own, of which {scatters} of {all} scatter\n"),
+        _ => format!("media: the file has {given} for {all} translucent materials, of which {scatters} scatter\n"),
+    }
+}
+
 /// The cameras that are made for a scene without one as a word may mean them.
 pub fn made_camera_names() -> Vec<Candidate<'static>> {
     let made = Placed::ALL.into_iter().enumerate();

@@ -2,7 +2,7 @@
 
 use crate::settings::SceneLists;
 use bssrdf::{Medium, built_in, built_in_names};
-use cli::{Failure, bounds_line, camera_table, material_table, printable};
+use cli::{Failure, bounds_line, camera_table, material_table, media_line, printable};
 use std::{fmt::Write, path::PathBuf};
 
 /// Prints the built-in media.
@@ -37,6 +37,9 @@ pub fn scene(lists: &SceneLists) -> Result<(), Failure> {
         text += &material_table(&scene)?;
     }
     text += &bounds_line(&scene);
+    if lists.materials {
+        text += &media_line(&scene);
+    }
     cli::print(&text)
 }
 

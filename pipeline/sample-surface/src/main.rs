@@ -9,7 +9,7 @@ mod settings;
 mod surfaces;
 
 use arguments::Arguments;
-use cli::{Failure, Seconds, bounds_line, material_table};
+use cli::{Failure, Seconds, bounds_line, material_table, media_line};
 use formats::{atomic::Group, write_ply};
 use inputs::Inputs;
 use settings::{Request, Task};
@@ -21,7 +21,7 @@ fn main() {
         match Task::of(arguments)? {
             Task::ListMaterials { scene, common } => {
                 let scene = scene.sized_by_file()?.import(&common)?;
-                cli::print(&(material_table(&scene)? + &bounds_line(&scene)))?;
+                cli::print(&(material_table(&scene)? + &bounds_line(&scene) + &media_line(&scene)))?;
             }
             Task::Sample(request) => sample(&sized(*request)?)?,
         }

@@ -163,3 +163,26 @@ fn a_scene_without_cameras_is_seen_by_those_that_are_made() {
     let backdrop = [&larger[..], &["BACKDROP=yes"]].concat();
     assert_eq!(tree.make(&backdrop).made(), ["gather", "gather"]);
 }
+
+/// Without MEDIUM, a file that states the media of its surfaces is rendered in these, and another one in marble.
+///
+/// Seen to catch: marble for every file.
+#[test]
+fn media_of_the_file_need_no_medium() {
+    let tree = Tree::new();
+    tree.scene("thing.gltf", 1.0);
+    let arguments = ["SCENE=thing.gltf", "CALIBRATE=no", "SPP=1"];
+    tree.make(&arguments);
+    assert!(tree.path(IMAGES).join("camera0.exr").exists());
+    let mut root: serde_json::Value =
+        serde_json::from_slice(&fs::read(tree.path("thing.gltf")).expect("reads")).expect("JSON");
+    for material in root["materials"].as_array_mut().expect("materials") {
+        material["extras"] = json!({ "medium": "skin1" });
+    }
+    tree.write("thing.gltf", root.to_string());
+    tree.make(&arguments);
+    let own = tree.path("out/thing/k500-s0/own-half-space/camera0.exr");
+    let image = formats::Image::decode(&fs::read(own).expect("reads")).expect("an image");
+    let text = format!("{:?}", image.attributes);
+    assert!(text.contains("skin1") && !text.contains("marble"), "{text}");
+}
