@@ -47,9 +47,9 @@ impl SceneSettings {
         Ok(scene)
     }
 
-    /// Whether the scene is lit by the built-in studio because neither its file nor the arguments have a light.
+    /// Whether the scene is lit by the built-in studio because neither its file nor the arguments have a lamp.
     fn studio(&self, scene: &Scene) -> bool {
-        self.how.environment.is_none() && scene.file_lights.is_empty()
+        self.how.environment.is_none() && !scene.has_lamp()
     }
 
     /// Rotation of the environment, degrees: a studio that nobody asked for has its front where the file's first camera
@@ -65,7 +65,7 @@ impl SceneSettings {
             let rotation = self.rotation(scene);
             let rotated = if rotation == 0.0 { "".into() } else { format!(" --environment-rotation {rotation}") };
             common.say(format_args!(
-                "{}: no light in the file: it is lit by --environment studio{rotated} (others: sky, a picture, R,G,B; none: \
+                "{}: no lamp in the file: it is lit by --environment studio{rotated} (others: sky, a picture, R,G,B; none: \
                  0,0,0)",
                 self.path.display()
             ));

@@ -89,6 +89,12 @@ impl Scene {
         self.panes.get(usize::from(material)).is_some_and(Option::is_some)
     }
 
+    /// Whether the file has a light that is meant to light the scene. A surface with a few glowing spots is none.
+    pub fn has_lamp(&self) -> bool {
+        let is_lamp = |material: &Material| !self.file_lights.is_empty() && material.is_lamp();
+        self.file_lights.iter().any(|light| light.delta().is_some()) || self.materials.iter().any(is_lamp)
+    }
+
     /// The box around the triangles of these materials, m from the origin; empty if there are none.
     pub fn bounds_of(&self, is_of: impl Fn(u16) -> bool) -> (DVec3, DVec3) {
         bounds(self.corners_of(is_of))

@@ -9,18 +9,14 @@ use scene::{
     random::{Purpose, Stream},
     sequence::Sequence,
 };
-use std::ops::RangeInclusive;
 use sums::{
     estimator::{CutCorrection, Sum},
     samples::Exit,
 };
 
 /// Points for each material, and the camera rays that are traced to find them.
-const POINTS: RangeInclusive<usize> = 16..=128;
+const POINTS: usize = 128;
 const RAYS: u32 = 8192;
-
-/// A small image has fewer points, one for so many of its pixels: measuring then takes no longer than rendering.
-const PIXELS_FOR_EACH: usize = 128;
 
 /// The points are grouped by the predicted sum; each group has a factor.
 const GROUPS: usize = 8;
@@ -74,11 +70,9 @@ fn fit(measured: &[Measured]) -> CutCorrection {
 /// For each material, points that the camera sees.
 fn points(renderer: &Renderer, stream: Stream) -> Vec<Vec<SurfacePoint>> {
     let (input, size) = (&renderer.input, renderer.settings.size());
-    let pixels = size.x as usize * size.y as usize;
-    let wanted = (pixels / PIXELS_FOR_EACH).clamp(*POINTS.start(), *POINTS.end());
     let mut points = vec![Vec::new(); renderer.objects.len()];
     let spread = Sequence::new(stream.item(0), stream);
-    let mut missing = renderer.objects.iter().flatten().count() * wanted;
+    let mut missing = renderer.objects.iter().flatten().count() * POINTS;
     for index in 0..RAYS {
         if missing == 0 {
             break;
@@ -91,7 +85,7 @@ fn points(renderer: &Renderer, stream: Stream) -> Vec<Vec<SurfacePoint>> {
         let point = input.scene.mesh.point(hit.triangle, hit.weights, renderer.settings.normals);
         let own: &mut Vec<_> = &mut points[point.material as usize];
         let is_translucent = renderer.objects[point.material as usize].is_some();
-        if is_translucent && own.len() < wanted && point.normal.dot(direction) < 0.0 {
+        if is_translucent && own.len() < POINTS && point.normal.dot(direction) < 0.0 {
             own.push(point);
             missing -= 1;
         }
@@ -118,7 +112,7 @@ fn measure(renderer: &Renderer, material: usize, points: &[SurfacePoint], stream
     let summation = &object.summation;
     let at = |(index, point): (usize, &SurfacePoint)| {
         let mut context = ThreadContext::new(renderer.objects.len());
-        let item = stream.item(1 + (material * POINTS.end() + index) as u64);
+        let item = stream.item(1 + (material * POINTS + index) as u64);
         let nearby = renderer.nearby_at(object, point, item, &mut context);
         let sum = |replicate: u64| {
             let exit = Exit::new(point.position, point.normal, item.bits(round * REPLICATES + replicate));

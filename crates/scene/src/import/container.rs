@@ -6,7 +6,7 @@ use super::{
     files::{self, Files},
     foreign, meshopt,
     survey::Survey,
-    text::{Animation, Text},
+    text::{Animation, OF_VERSION_1, Text},
     transform::NodeTransform,
 };
 use crate::error::SceneError;
@@ -208,7 +208,8 @@ fn locate(k: usize, buffer: &json::Buffer, chunk: Option<Range<usize>>, files: &
 fn split_glb(bytes: &[u8]) -> Result<(Range<usize>, Option<Range<usize>>)> {
     let version = word(bytes, 4)?;
     if version != 2 {
-        return Err(format!("the .glb has version {version}; only version 2 is supported"));
+        let way_out = if version == 1 { format!("; {OF_VERSION_1}") } else { String::new() };
+        return Err(format!("the .glb has version {version}; only version 2 is supported{way_out}"));
     }
     let length = word(bytes, 8)? as usize;
     let Some(bytes) = bytes.get(..length) else {

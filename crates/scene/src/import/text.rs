@@ -10,7 +10,8 @@ use gltf::json::{
     extensions::root,
     scene::{Node, Scene},
 };
-use serde::Deserialize;
+use serde::{Deserialize, de::IgnoredAny};
+use std::collections::BTreeMap;
 
 /// The content of the JSON. Indices and numbers are not checked yet.
 pub(super) struct Text {
@@ -85,9 +86,22 @@ struct Transforms {
     nodes: Vec<NodeTransform>,
 }
 
+/// A file of glTF 1, whose meshes have names for keys.
+#[derive(Deserialize)]
+struct Old {
+    #[serde(rename = "meshes")]
+    _meshes: BTreeMap<String, IgnoredAny>,
+}
+
+/// The way out for a file of glTF 1.
+pub(super) const OF_VERSION_1: &str = "convert it with `gltf-pipeline -i OLD.gltf -o NEW.glb`";
+
 impl Text {
     pub fn parse(text: &[u8]) -> Result<Text> {
-        let not_gltf = |e: json::Error| format!("not a glTF file (.glb or .gltf): {e}");
+        let not_gltf = |e: json::Error| match json::deserialize::from_slice::<Old>(text) {
+            Ok(_) => format!("glTF 1, and only version 2 is read; {OF_VERSION_1}"),
+            Err(_) => format!("not a glTF file (.glb or .gltf): {e}"),
+        };
         let read: RootText = json::deserialize::from_slice(text).map_err(not_gltf)?;
         let transforms: Transforms = json::deserialize::from_slice(text).map_err(not_gltf)?;
         let survey: Survey = json::deserialize::from_slice(text).map_err(not_gltf)?;

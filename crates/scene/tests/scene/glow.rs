@@ -152,3 +152,17 @@ fn the_identity_of_a_light_depends_on_its_texture() {
         assert!(!all[..k].contains(one), "{k}");
     }
 }
+
+/// A picture that glows on half of its texels or more is a lamp, and one with a few spots is none.
+///
+/// Seen to catch: every surface that emits taken for a lamp.
+#[test]
+fn a_few_spots_are_no_lamp() {
+    let lit = |bright: u32| {
+        let picture = RgbaImage::from_fn(8, 8, |x, y| Rgba(if 8 * y + x < bright { [255; 4] } else { [0, 0, 0, 255] }));
+        let scene = import(&glowing(&picture, [1.0; 3], json!({ "magFilter": NEAREST })));
+        assert!(!scene.file_lights.is_empty());
+        scene.has_lamp()
+    };
+    assert!(!lit(3) && !lit(31) && lit(32) && lit(64));
+}

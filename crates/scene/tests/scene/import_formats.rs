@@ -106,3 +106,15 @@ fn the_cause_comes_before_the_symptom() {
     let message = import_bytes("a.glb", &bytes, &OPTIONS).err().expect("it is not supported");
     assert!(message.contains("ACME_squeezed") && !message.contains("uri"), "{message}");
 }
+
+/// Seen to catch: "invalid type: map" for the meshes of glTF 1.
+#[test]
+fn files_of_version_1_are_named() {
+    let text = json!({ "asset": { "version": "1.0" }, "meshes": { "box": { "primitives": [] } } }).to_string();
+    let message = import_bytes("a.gltf", text.as_bytes(), &OPTIONS).err().expect("it is not supported");
+    assert!(message.contains("glTF 1") && message.contains("gltf-pipeline"), "{message}");
+    let mut bytes = container(&[(b"JSON", text.as_bytes())]);
+    bytes[4] = 1;
+    let message = import_bytes("a.glb", &bytes, &OPTIONS).err().expect("it is not supported");
+    assert!(message.contains("version 1") && message.contains("gltf-pipeline"), "{message}");
+}

@@ -1,7 +1,7 @@
 //! Bad input of every kind is refused with exit code 2 and one message; no file is written.
 
 use crate::{bench, quick, slab};
-use serde_json::Value;
+use serde_json::{Value, json};
 use test_support::{Bench, data};
 
 #[test]
@@ -11,7 +11,13 @@ fn arguments_that_cannot_be_used() {
         let own = [&["slab.cloud", &slab, "-o", "a.calibration", "--quiet"], more].concat();
         bench.refuses("calibrate", &own, words);
     };
-    refuses(&[], &["--medium", "gather --list-media"]);
+    // A volume that no light enters is no medium; with transmission it would be clear glass.
+    let closed = bench.slab("closed.gltf", |root| {
+        root["materials"][0]["extensions"]["KHR_materials_transmission"] = json!({ "transmissionFactor": 0 });
+    });
+    bench.succeed("sample-surface", &[&closed, "-n", "1000", "-o", "closed.cloud", "--quiet"]);
+    let arguments = ["closed.cloud", &closed, "-o", "a.calibration", "--quiet"];
+    bench.refuses("calibrate", &arguments, &["--medium", "gather --list-media"]);
     refuses(&["--medium", "marbel"], &["--medium", "`marbel`"]);
     refuses(&["--medium", "Wax=marble"], &["`Wax`", "`Slab`"]);
     refuses(&["--medium", "none.json"], &["none.json", "No such file"]);

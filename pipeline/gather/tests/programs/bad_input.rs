@@ -125,7 +125,7 @@ fn lists_are_printed_to_stdout() {
     for program in ["gather", "sample-surface"] {
         let materials = bench.succeed(program, &["--list-materials", &data("scenes/figure.glb")]);
         let rows: Vec<Vec<&str>> = materials.lines().map(|l| l.split_whitespace().collect()).collect();
-        assert_eq!((rows.len(), rows[3][0]), (4, "translucent"), "{materials}");
+        assert_eq!((rows.len(), rows[3][0], rows[4][0]), (5, "translucent", "media:"), "{materials}");
         assert_eq!(rows[1][..4], ["0", "Figure", "translucent", "38036"]);
         assert_eq!(rows[2], ["1", "Floor", "opaque", "2", "1.6000e1", "-"]);
     }
