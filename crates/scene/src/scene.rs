@@ -2,7 +2,7 @@
 
 use crate::{
     error::{LostVolumes, SceneError},
-    import::FileUnits,
+    import::units::FileUnits,
     light::{contract::Light, environment::Environment},
     material::Material,
     mesh::{Mesh, bounds},

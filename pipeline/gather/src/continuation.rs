@@ -3,7 +3,7 @@
 use crate::{
     image_jobs::ImageJob,
     report::describe,
-    settings::{CalibrationSource, Request, balanced},
+    settings::{CalibrationSource, Request, accuracy_of_gather, balanced},
     sums_file::{self, About},
 };
 use cli::{Failure, LitScene};
@@ -59,13 +59,8 @@ pub fn about(
     paths: u32,
 ) -> About {
     let paths = if request.target_error.is_some() { paths } else { job.settings.paths_per_pixel };
-    let accuracy = of_gather(&job.settings, paths).unwrap_or(0.0);
+    let accuracy = accuracy_of_gather(&job.settings, paths).unwrap_or(0.0);
     About { settings: settings(request, inputs, calibration, job), accuracy }
-}
-
-/// The relative error that the cut may add to one gather of a pixel of so many paths.
-pub fn of_gather(settings: &Settings, paths: u32) -> Option<f64> {
-    Some(settings.estimator.accuracy()? * f64::from(paths).sqrt())
 }
 
 /// The accuracy of a pixel of so many paths whose gathers have that of the image that is continued.

@@ -2,74 +2,10 @@
 
 use crate::{
     crop::Crop,
-    edge::Edge,
-    freedom::{self, Cells},
-    path_state::{Guide, LAYERS, Layer, Layers},
-    pixel_sum::PixelSum,
+    path_state::{Guide, LAYERS, Layers},
 };
 use formats::{Channel, Image, Window};
 use scene::DVec3;
-use sums::confidence::Estimate;
-
-/// Relative standard errors of an image: the root mean square of the pixels' errors over that of their values.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Errors {
-    /// The error of cloud and paths together.
-    pub total: f64,
-    /// The error of the paths if they were independent; stratified ones have less.
-    pub paths: f64,
-    /// A lower bound of the error that more paths cannot remove.
-    pub cloud: f64,
-    /// Degrees of freedom of the estimate of the cloud's error.
-    pub cloud_freedom: f64,
-    /// Degrees of freedom of the estimate of the paths' error.
-    pub paths_freedom: f64,
-    /// Number of paths in one half of a pixel.
-    pub half: f64,
-    /// Root mean square of the scattered light, relative to that of all light.
-    pub scattered: f64,
-}
-
-impl Errors {
-    /// The errors of an image of this size from its pixels, row by row; none for a black image.
-    pub fn of<'a>(size: [usize; 2], pixels: impl Iterator<Item = (&'a PixelSum, Option<&'a Edge>)>) -> Option<Errors> {
-        let (mut power, mut scattered, mut half) = (0.0, 0.0, 1.0);
-        let (mut total, mut paths, mut squares) = (0.0, 0.0, 0.0);
-        let mut cells = Cells::new(size);
-        for (pixel, (sum, edge)) in pixels.enumerate() {
-            let layers = sum.layers(edge);
-            let [between, within] = sum.variances(edge).map(DVec3::element_sum);
-            power += layers.iter().sum::<DVec3>().length_squared();
-            scattered += layers[Layer::Subsurface as usize].length_squared();
-            total += between;
-            paths += within;
-            squares += within * within;
-            half = sum.counts[1];
-            cells.add(pixel, sum.difference(edge));
-        }
-        let relative = |variance: f64| (variance.max(0.0) / power).sqrt();
-        // The channels of a pixel are correlated and count as one value.
-        let paths_freedom = if squares > 0.0 { (paths * paths / squares).max(1.0) } else { 1.0 };
-        let cloud_freedom = cells.freedom();
-        let [total, paths, cloud, scattered] = [total, paths, total - paths, scattered].map(relative);
-        (power > 0.0).then_some(Errors { total, paths, cloud, cloud_freedom, paths_freedom, half, scattered })
-    }
-
-    /// The error that is compared with a target. With few degrees of freedom the halves may agree by chance; then the
-    /// error is at least that of stratified paths, whose variance falls with their number to the power 3/2 where edges
-    /// cross a pixel. None if all paths agree, which gives no estimate.
-    pub fn estimate(&self) -> Option<Estimate> {
-        let (paths, cloud) = (self.paths.min(self.total), self.cloud);
-        let parts = [(paths * paths, self.paths_freedom), (cloud * cloud, self.cloud_freedom)];
-        let freedom = freedom::of_sum(parts);
-        let floor = self.paths / self.half.max(1.0).powf(0.25);
-        let error = if freedom < MIN_FREEDOM { self.total.max(floor) } else { self.total };
-        (error > 0.0).then_some(Estimate { error, freedom })
-    }
-}
-
-/// Degrees of freedom that give an error a relative uncertainty of an eighth.
-const MIN_FREEDOM: f64 = 32.0;
 
 /// The largest variance in a file.
 const MAX_VARIANCE: DVec3 = DVec3::splat(f32::MAX as f64);
@@ -214,7 +150,7 @@ mod tests {
     fn positions_relative_to_an_origin() {
         let position = DVec3::new(1e6 + 0.25, 2.0, 3.0);
         let met = Guide { normal: DVec3::Y, position, depth: 1.0, ..Guide::default() };
-        let pixels = [met, Guide::default()].map(|guide| PixelSum::default().pixel(None, guide));
+        let pixels = [met, Guide::default()].map(|guide| Pixel { guide, ..Pixel::default() });
         let crop = Crop { x: 0, y: 0, width: 2, height: 1 };
         let image = part(&pixels, crop, [2, 1], DVec3::new(1e6, 0.0, 1.0));
         let plane = |name: &str| &image.channels.iter().find(|c| c.name == name).expect("a channel").samples;

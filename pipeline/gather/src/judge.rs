@@ -2,7 +2,7 @@
 
 use cli::count_up;
 use formats::cloud::{Cloud, Pattern, shards};
-use gather::{Input, Settings, estimator::Estimator, film::Errors};
+use gather::{Input, Settings, errors::Errors, estimator::Estimator};
 use sums::confidence::Estimate;
 
 /// The state after a pass.

@@ -43,6 +43,7 @@ pub mod counts;
 mod crop;
 mod cut_correction;
 mod edge;
+pub mod errors;
 pub mod exposure;
 pub mod film;
 mod freedom;

@@ -5,12 +5,13 @@ use crate::{
     crop::Crop,
     cut_correction,
     edge::{self, Edge},
-    film::{Errors, Pixel},
+    errors::Errors,
+    film::Pixel,
     image::{Filter, Input, Rendered, Settings},
     objects::objects,
     path_state::{PathIndex, ThreadContext},
     pixel_numbers::{PixelNumbers, halves},
-    pixel_sum::PixelSum,
+    pixel_sum::{PixelSum, Sums},
     reference::{Walks, meets_light},
     renderer::Renderer,
     state::State,
@@ -49,9 +50,6 @@ pub struct Passes<'a> {
     near_streams: [Stream; 2],
     edge_stream: Stream,
 }
-
-/// The sums of one pixel, and those of an edge pixel.
-pub(crate) type Sums = (PixelSum, Option<Box<Edge>>);
 
 impl<'a> Passes<'a> {
     /// Prepares an image; the cut is as accurate as `settings.paths_per_pixel` paths need.

@@ -7,6 +7,9 @@ use crate::{
 };
 use scene::DVec3;
 
+/// The sums of one pixel, and those of an edge pixel.
+pub(crate) type Sums = (PixelSum, Option<Box<Edge>>);
+
 /// Sums over the paths of one pixel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PixelSum {

@@ -4,9 +4,8 @@ use crate::{
     Prepared,
     adaptive::{End, Outcome},
     arguments::ExtraLayer,
-    continuation,
     image_jobs::ImageJob,
-    settings::Request,
+    settings::{Request, accuracy_of_gather},
 };
 use bssrdf::Medium;
 use cli::{LitScene, Seconds};
@@ -47,7 +46,7 @@ impl<'a> Facts<'a> {
         let mut settings = Settings { paths_per_pixel: paths, ..job.settings.clone() };
         if request.target_error.is_none() && paths != planned {
             // What the cut may add to a gather is that of the planned paths.
-            let accuracy = continuation::of_gather(&job.settings, planned).map(|x| x / f64::from(paths).sqrt());
+            let accuracy = accuracy_of_gather(&job.settings, planned).map(|x| x / f64::from(paths).sqrt());
             settings.estimator = settings.estimator.map_accuracy(|own| accuracy.unwrap_or(own));
         }
         let (inputs, kept, state) = (&prepared.inputs, prepared.kept.as_ref(), state.as_ref());

@@ -205,6 +205,11 @@ pub fn balanced(paths: u32) -> f64 {
     least.min(BALANCED / f64::from(paths).sqrt())
 }
 
+/// The relative error that the cut may add to one gather of a pixel of so many paths.
+pub fn accuracy_of_gather(settings: &gather::Settings, paths: u32) -> Option<f64> {
+    Some(settings.estimator.accuracy()? * f64::from(paths).sqrt())
+}
+
 /// The estimator of this name with the parameters that were given, for so many paths per pixel.
 fn estimator(arguments: &Arguments, paths: u32) -> Result<Estimator, Failure> {
     match arguments.estimator {

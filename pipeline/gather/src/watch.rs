@@ -1,6 +1,6 @@
 //! What is told of a pass while it runs, from all of its threads.
 
-use crate::{crop::Crop, passes::Sums};
+use crate::{crop::Crop, pixel_sum::Sums};
 
 /// A listener of a pass.
 pub trait Watch: Sync {

@@ -1,7 +1,8 @@
 //! Features that are not supported: an error where the image would be wrong, else a warning.
 
-use super::{container::Document, fault::Result, honoured, text::Text};
+use super::{fault::Result, honoured, survey::Survey, text::Text};
 use crate::unhonoured::{Holder, Unhonoured};
+use gltf::json::Root;
 use std::collections::BTreeSet;
 
 /// Extensions that a file may require.
@@ -51,13 +52,13 @@ pub(super) fn check(text: &Text) -> Result<()> {
 
 /// Unknown extensions that the file declares but has no object of, so that their effect is unknown. Others are named
 /// where their objects are.
-pub(super) fn undeclared_effects(document: &Document) -> Vec<Unhonoured> {
-    let declared: BTreeSet<&String> = document.root.extensions_used.iter().collect();
+pub(super) fn undeclared_effects(root: &Root, survey: &Survey) -> Vec<Unhonoured> {
+    let declared: BTreeSet<&String> = root.extensions_used.iter().collect();
     let means_something = |name: &str| {
         let found = honoured::look_up(honoured::DOCUMENT, &format!("extensions.{name}"));
         !SUPPORTED.contains(&name) && found == honoured::Lookup::Unknown
     };
-    let unseen = declared.into_iter().filter(|name| !document.survey.extensions.contains(*name));
+    let unseen = declared.into_iter().filter(|name| !survey.extensions.contains(*name));
     let named = unseen.filter(|name| means_something(name)).map(|name| Unhonoured {
         property: "extensionsUsed[]".into(),
         holder: Some(Holder::Named(name.clone())),

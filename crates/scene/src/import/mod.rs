@@ -33,7 +33,7 @@ mod text;
 mod textures;
 mod transform;
 mod unhonoured;
-mod units;
+pub(crate) mod units;
 mod volumes;
 
 use crate::{
@@ -110,7 +110,7 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
     lights.extend(lights::emitters(&mesh, &materials));
     let cameras = cameras::read(root, &nodes, metres_per_unit)?;
     let parts = RenderedParts { mesh: &mesh, nodes: &nodes, cameras: &cameras, origin, metres_per_unit };
-    let unhonoured = [features::undeclared_effects(document), unhonoured::of(document, &parts)].concat();
+    let unhonoured = [features::undeclared_effects(root, &document.survey), unhonoured::of(document, &parts)].concat();
     let panes = panes::find(&mesh, &materials);
     Ok(Scene {
         panes,

@@ -18,6 +18,7 @@ mod import_poses;
 mod import_quantized;
 mod import_textures;
 mod import_volumes;
+mod import_webp;
 mod import_work;
 mod lights;
 mod many_lights;
