@@ -37,23 +37,32 @@ impl Writer {
     }
 }
 
-/// Decides what the options leave open, by the generator of the file and by whether it has lights at all. Without
-/// lights nothing tells how bright emission is meant, which viewers show as it is: it is taken as watts.
+/// Lamps of which none is as bright as this are in watts, whoever wrote them: sunlight is 10^5 lux and lamps of a room
+/// have hundreds of candela, and the same in watts are 683 times less. A sun of Blender's strength 1 is written as 683, or
+/// as 1 by its lighting mode "Unitless".
+const BRIGHT: f32 = 100.0;
+
+/// Decides what the options leave open, by the generator of the file and by how bright its lights are. Without lights
+/// nothing tells how bright emission is meant, which viewers show as it is: it is taken as watts.
 pub(super) fn decide(root: &Root, nodes: &[SceneNode], options: &ImportOptions) -> FileUnits {
     let has_light = |n: &SceneNode| n.node.extensions.as_ref().is_some_and(|e| e.khr_lights_punctual.is_some());
     let generator = root.asset.generator.as_deref();
-    let writer = if nodes.iter().any(has_light) { Writer::of(generator) } else { Writer::Watts };
+    let lights = root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
+    let is_bright = lights.is_some_and(|l| l.lights.iter().any(|light| light.intensity >= BRIGHT));
+    let named = if nodes.iter().any(has_light) { Writer::of(generator) } else { Writer::Watts };
+    let writer = if is_bright { named } else { Writer::Watts };
     let of_file = match writer {
         Writer::Watts => [LightUnit::Radiometric; 2],
         Writer::Blender => [LightUnit::Photometric, LightUnit::Radiometric],
         Writer::Specification => [LightUnit::Photometric; 2],
     };
     let [light, emission] = [options.light_unit.unwrap_or(of_file[0]), options.emission_unit.unwrap_or(of_file[1])];
-    let decided = writer != Writer::Watts && (options.light_unit.is_none() || options.emission_unit.is_none());
+    let decided = named != Writer::Watts && (options.light_unit.is_none() || options.emission_unit.is_none());
     let note = decided.then(|| {
         let why = match writer {
             Writer::Blender => "as the exporter of Blender writes them",
-            Writer::Watts | Writer::Specification => "as glTF says",
+            Writer::Watts => "since no light is as bright as lux and candela are",
+            Writer::Specification => "as glTF says",
         };
         let [lights, emitters] = [words(light, "lux and candela", "watts"), words(emission, "nits", "watts")];
         let by = quoted(generator.unwrap_or_default());

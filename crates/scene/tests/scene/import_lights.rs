@@ -123,10 +123,10 @@ fn emission_has_a_unit_of_its_own() {
 }
 
 /// What is left open is decided by the program that wrote the file, and by whether it has lights: Blender's lamps are
-/// multiplied by 683 lm/W and its emission is not, glTF says lux, candela and nits, and a file without a writer is in
-/// watts. One line says what was decided.
+/// multiplied by 683 lm/W and its emission is not, glTF says lux, candela and nits, and a file without a writer, or
+/// whose lamps are all weak, is in watts. One line says what was decided.
 ///
-/// Seen to catch: the emission of Blender divided too; a decision that overrides what is given.
+/// Seen to catch: the emission of Blender divided too; a decision that overrides what is given; weak lamps divided.
 #[test]
 fn the_writer_of_a_file_decides_its_units() {
     let (watts, lumens) = (LightUnit::Radiometric, LightUnit::Photometric);
@@ -157,6 +157,14 @@ fn the_writer_of_a_file_decides_its_units() {
         assert_eq!(units(generator, false, &open), ([watts; 2], None), "{generator:?} without lights");
         assert_eq!(units(generator, true, &OPTIONS), ([watts; 2], None), "{generator:?} with given units");
     }
+    let weak = |intensity: f64| {
+        let mut asset = lit(json!({ "type": "directional", "intensity": intensity }), json!({}));
+        asset.set("/asset/generator", json!("Khronos glTF Blender I/O v4.5.51"));
+        let units = asset.import_with(&open).expect("a good file").units;
+        assert!(units.note.is_some());
+        units.light
+    };
+    assert_eq!([99.0, 100.0].map(weak), [watts, lumens]);
     let half = ImportOptions { light_unit: Some(watts), ..open };
     assert_eq!(units(Some("COLLADA2GLTF"), true, &half).0, [watts, lumens]);
 }
