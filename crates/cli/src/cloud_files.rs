@@ -76,5 +76,6 @@ impl CloudFiles {
 /// The difference of two poses, with the options that set them.
 fn pose_difference(here: &str, there: &str) -> Option<String> {
     let name = |pose: &str| if pose.is_empty() { "at rest".to_owned() } else { format!("posed, {pose}") };
-    (here != there).then(|| format!("the scene is {}, the cloud's {} (--animation, --time)", name(here), name(there)))
+    (here != there)
+        .then(|| format!("the scene is {}, that of the cloud is {} (--animation, --time)", name(here), name(there)))
 }

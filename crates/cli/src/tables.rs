@@ -86,7 +86,8 @@ pub fn media_line(scene: &Scene) -> String {
     match all {
         0 => String::new(),
         _ if given == all && scatters > 0 => format!("media: the file's own, of which {scatters} of {all} scatter\n"),
-        _ => format!("media: the file has {given} for {all} translucent materials, of which {scatters} scatter\n"),
+        _ if given == 0 => "media: the file gives none; --medium does\n".into(),
+        _ => format!("media: the file gives {given} of {all} translucent materials one; {scatters} of these scatter\n"),
     }
 }
 

@@ -84,6 +84,9 @@ impl<'a> Facts<'a> {
         put("pcsss/metresPerUnit", Attribute::Double(first.options.metres_per_unit));
         put("pcsss/lightUnit", Attribute::Text(first.options.light_unit.to_string()));
         put("pcsss/emissionUnit", Attribute::Text(first.options.emission_unit.to_string()));
+        if !first.options.pose.is_empty() {
+            put("pcsss/pose", text(&first.options.pose));
+        }
         put("pcsss/originM", Attribute::Vector(first.exchange_origin_m()));
         put("pcsss/seed", Attribute::Text(self.settings.seed.to_string()));
         put("pcsss/bssrdf", text(self.model()));

@@ -61,7 +61,7 @@ pub(super) fn decide(root: &Root, nodes: &[SceneNode], options: &ImportOptions) 
     let note = decided.then(|| {
         let why = match writer {
             Writer::Blender => "as the exporter of Blender writes them",
-            Writer::Watts => "since no light is as bright as lux and candela are",
+            Writer::Watts => "since no light is as bright as 100, as those in lux or candela are",
             Writer::Specification => "as glTF says",
         };
         let [lights, emitters] = [words(light, "lux and candela", "watts"), words(emission, "nits", "watts")];
