@@ -23,6 +23,8 @@ pub enum Purpose {
     Edge,
     /// Points at which phase two corrects the error that the cut predicts.
     CutCorrection,
+    /// Pixels by which phase two chooses the accuracy of the cut, and their gathers.
+    Balance,
     /// Scrambles of the sequences of phase one.
     Scramble,
     /// Light that opaque surfaces reflect to the samples of phase one.
@@ -65,6 +67,7 @@ impl Purpose {
             Purpose::NearField => u64::MAX - 8,
             Purpose::NearLight => u64::MAX - 9,
             Purpose::NearPoint => u64::MAX - 10,
+            Purpose::Balance => u64::MAX - 11,
             Purpose::HalfSpaceTable => u64::MAX - 3,
             Purpose::Remainder(k) => 7 + k,
         }

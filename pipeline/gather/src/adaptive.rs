@@ -7,11 +7,13 @@ use crate::{
     steps::{Live, Steps},
 };
 use cli::{Common, Failure, Progress, count};
-use gather::{Input, Passes, Rendered, Settings, State};
+use gather::{Input, Passes, Rendered, Settings, State, estimator::Estimator};
 
 /// A rendered image, and why it has no more paths.
 pub struct Outcome {
     pub rendered: Rendered,
+    /// The estimator, with the accuracy of the planned paths.
+    pub estimator: Estimator,
     pub end: End,
     /// The sums of the image, if they are kept.
     pub state: Option<State>,
@@ -147,7 +149,8 @@ impl Work<'_> {
 
 /// The image of these passes, with its sums if they are kept.
 pub fn outcome(passes: &Passes, end: End, keeps_sums: bool) -> Outcome {
-    Outcome { rendered: passes.image(), end, state: keeps_sums.then(|| passes.state()) }
+    let estimator = passes.settings().estimator;
+    Outcome { rendered: passes.image(), estimator, end, state: keeps_sums.then(|| passes.state()) }
 }
 
 /// Paths of the first pass: two for each half of the cloud.

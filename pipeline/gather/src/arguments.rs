@@ -62,8 +62,8 @@ pub struct Arguments {
     #[arg(long, value_name = "HOW", default_value = "cut", default_value_if("note", "true", "roulette"),
         value_parser = one_of(&Estimator::ALL, Estimator::name))]
     pub estimator: Estimator,
-    /// Relative error that the cut may add to a pixel's scattered light [default: 0.02 over the root of the paths
-    /// per pixel, and 0.01 at most; half of a target error]
+    /// Relative error that the cut may add to a pixel's scattered light [default: by the measured noise of the paths;
+    /// half of a target error]
     #[arg(long, value_name = "X", value_parser = parse_relative_error)]
     pub accuracy: Option<f64>,
     /// Acceptance rule of the roulette; mean is the note's, and has unbounded variance in colored media

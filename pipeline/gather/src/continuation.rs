@@ -2,8 +2,8 @@
 
 use crate::{
     image_jobs::ImageJob,
-    report::describe,
-    settings::{CalibrationSource, Request, accuracy_of_gather, balanced},
+    report::{Facts, describe},
+    settings::{CalibrationSource, Request, accuracy_of_gather},
     sums_file::{self, About},
 };
 use cli::{Failure, LitScene};
@@ -39,6 +39,7 @@ pub fn prepare(
     if let (Estimator::Cut { .. }, None) = (job.settings.estimator, request.target_error) {
         let accuracy = accuracy(request, about.accuracy, all, &path)?;
         job.settings.estimator = Estimator::Cut { accuracy };
+        job.settings.balances = false;
     }
     Ok(())
 }
@@ -50,17 +51,11 @@ pub fn read(request: &Request, job: &ImageJob) -> Result<Option<State>, Failure>
     Ok(kept.map(|(state, _)| state))
 }
 
-/// What is kept beside the sums of an image of so many paths.
-pub fn about(
-    request: &Request,
-    inputs: &LitScene,
-    calibration: Option<&Calibration>,
-    job: &ImageJob,
-    paths: u32,
-) -> About {
-    let paths = if request.target_error.is_some() { paths } else { job.settings.paths_per_pixel };
-    let accuracy = accuracy_of_gather(&job.settings, paths).unwrap_or(0.0);
-    About { settings: settings(request, inputs, calibration, job), accuracy }
+/// What is kept beside the sums of an image.
+pub fn about(facts: &Facts) -> About {
+    let Facts { request, inputs, kept, job, .. } = facts;
+    let accuracy = accuracy_of_gather(facts.settings.estimator, facts.settings.paths_per_pixel).unwrap_or(0.0);
+    About { settings: settings(request, inputs, *kept, job), accuracy }
 }
 
 /// The accuracy of a pixel of so many paths whose gathers have that of the image that is continued.
@@ -74,7 +69,6 @@ fn accuracy(request: &Request, kept: f64, paths: u32, path: &Path) -> Result<f64
             path.display(),
             kept / root
         ))),
-        None if same(balanced(paths)) => Ok(balanced(paths)),
         None => Ok(kept / root),
     }
 }

@@ -11,7 +11,7 @@ use crate::path_state::{Layer, PathLight};
 use scene::DVec3;
 
 /// A pixel is at an edge if `g` differs by more than this between its corners.
-pub const MIN_SPREAD: f64 = 0.1;
+const MIN_SPREAD: f64 = 0.1;
 
 /// Number of rays for each path.
 pub const RAYS: u32 = 16;
@@ -32,6 +32,12 @@ struct Half {
     rays: f64,
     /// Sum of `g` over the rays.
     through_rays: f64,
+}
+
+/// The sums of a pixel if it is an edge pixel, by the transmittance at its corners.
+pub fn across(corners: [f64; 4]) -> Option<Box<Edge>> {
+    let spread = corners.into_iter().fold(0.0, f64::max) - corners.into_iter().fold(1.0, f64::min);
+    (spread > MIN_SPREAD).then(Box::default)
 }
 
 impl Edge {

@@ -102,6 +102,7 @@ fn settings() -> Settings {
         paths_per_pixel: 1,
         filter: Filter::Point,
         estimator: Estimator::Cut { accuracy: ACCURACY },
+        balances: false,
         model: Model::ALL[0],
         near_field: true,
         reference: false,

@@ -52,6 +52,8 @@ pub struct Settings {
     pub paths_per_pixel: u32,
     pub filter: Filter,
     pub estimator: Estimator,
+    /// Whether the noise of the paths decides the accuracy of the cut, if the image has enough pixels.
+    pub balances: bool,
     pub model: Model,
     /// Light that enters near an exitant point is sampled around it, if the samples are too far apart to carry it.
     pub near_field: bool,

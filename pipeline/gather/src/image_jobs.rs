@@ -96,6 +96,7 @@ fn settings(request: &Request, viewpoint: &Viewpoint, model: Model) -> Result<Se
         paths_per_pixel: request.paths,
         filter: request.filter,
         estimator: request.estimator,
+        balances: request.balances(),
         model,
         // The other estimators are the sum over the samples alone.
         near_field: request.estimator.is_hierarchical() && !request.reference,

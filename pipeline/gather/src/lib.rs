@@ -25,6 +25,7 @@
 //!     paths_per_pixel: 4,
 //!     filter: Filter::Box,
 //!     estimator: Estimator::Exhaustive,
+//!     balances: false,
 //!     model: Model::DirectionalDipole,
 //!     near_field: true,
 //!     reference: false,
@@ -39,6 +40,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod balance;
 pub mod counts;
 mod crop;
 mod cut_correction;
@@ -62,6 +64,7 @@ mod subsurface;
 mod walked;
 mod watch;
 
+pub use balance::unmeasured as accuracy_of_unknown_noise;
 pub use crop::Crop;
 pub use image::{Filter, Input, Rendered, Settings};
 pub use passes::{Passes, render};

@@ -48,9 +48,7 @@ fn write_image(facts: &Facts, mut output: Output, group: &mut Group) -> Result<(
     output.write_all(&bytes).map_err(|source| formats::Error::write(&path, source))?;
     group.add(output);
     if let Some(state) = facts.state {
-        let Facts { request, inputs, kept, job, .. } = facts;
-        let about = continuation::about(request, inputs, *kept, job, state.paths);
-        let sums = sums_file::encode(state, &about, part, &bytes, threads)?;
+        let sums = sums_file::encode(state, &continuation::about(facts), part, &bytes, threads)?;
         group.write(&sums_file::path_of(&path), &sums)?;
     }
     if let Some(path) = &outputs.preview {

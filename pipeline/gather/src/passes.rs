@@ -52,14 +52,14 @@ pub struct Passes<'a> {
 }
 
 impl<'a> Passes<'a> {
-    /// Prepares an image; the cut is as accurate as `settings.paths_per_pixel` paths need.
+    /// Prepares an image; the cut is as accurate as `settings.paths_per_pixel` paths need, or as their noise deserves.
     pub fn new(input: &Input<'a>, settings: &Settings) -> Self {
         let objects = objects(input, settings);
         let is_near = objects.iter().flatten().any(|object| object.near.is_some());
         let translucent = |material: u16| objects[material as usize].is_some();
         let surroundings = || Surroundings::new(input.scene, input.rays, settings.normals, translucent);
         let surroundings = is_near.then(surroundings);
-        let mut renderer = Renderer {
+        let renderer = Renderer {
             input: *input,
             meets_light: meets_light(input, |material| objects[material as usize].is_none()),
             settings: settings.clone(),
@@ -76,7 +76,6 @@ impl<'a> Passes<'a> {
             walk_starts: Stream::new(settings.seed, Purpose::WalkStart),
             near_points: Stream::new(settings.seed, Purpose::NearPoint),
         };
-        cut_correction::correct(&mut renderer);
         let mut passes = Passes {
             renderer,
             edges: vec![None; settings.part().pixels()],
@@ -91,7 +90,32 @@ impl<'a> Passes<'a> {
         let walks = passes.renderer.objects.iter().flatten().filter_map(|object| object.walks.as_ref());
         passes.counts.reflections_left_out = walks.map(Walks::incomplete).sum();
         passes.find_edges();
+        if settings.balances {
+            passes.balance();
+        }
+        cut_correction::correct(&mut passes.renderer);
         passes
+    }
+
+    /// The settings that the image is rendered with.
+    pub fn settings(&self) -> &Settings {
+        &self.renderer.settings
+    }
+
+    /// Sets the accuracy of the cut.
+    pub(crate) fn set_accuracy(&mut self, accuracy: f64) {
+        let settings = &mut self.renderer.settings;
+        settings.estimator = settings.estimator.map_accuracy(|_| accuracy);
+    }
+
+    /// What `work` makes of the first `paths` of pixels, which are planned together, whose gathers take their random
+    /// numbers from `gathers`.
+    pub(crate) fn trying<T>(&mut self, paths: u32, gathers: Stream, work: impl FnOnce(&Self) -> T) -> T {
+        let (planned, own) = (self.renderer.pass.clone(), self.renderer.gathers);
+        (self.renderer.pass, self.renderer.gathers) = (0..paths, gathers);
+        let made = work(self);
+        (self.renderer.pass, self.renderer.gathers) = (planned, own);
+        made
     }
 
     /// What the paths of the image share.
@@ -120,8 +144,7 @@ impl<'a> Passes<'a> {
         for index in 0..width * height {
             let (x, y) = (index % width, index / width);
             let corners = [rows[y].0[x], rows[y].0[x + 1], rows[y + 1].0[x], rows[y + 1].0[x + 1]];
-            let spread = corners.into_iter().fold(0.0, f64::max) - corners.into_iter().fold(1.0, f64::min);
-            self.edges[index] = (spread > edge::MIN_SPREAD).then(Box::default);
+            self.edges[index] = edge::across(corners);
         }
         rows.iter().for_each(|(_, counts)| self.counts.add(counts));
         self.counts.edge_pixels = self.edges.iter().flatten().count() as u64;
@@ -140,37 +163,41 @@ impl<'a> Passes<'a> {
         self.part.width.div_ceil(TILE) * self.part.height.div_ceil(TILE)
     }
 
-    /// The ray through a point of a pixel, `offset` pixels from its corner.
-    fn ray(&self, index: usize, offset: DVec2) -> (DVec3, DVec3) {
-        let [x, y] = self.part.pixel(index);
-        self.ray_at(DVec2::new(x as f64, y as f64) + offset)
-    }
-
     /// The ray through a point of the image, pixels.
-    fn ray_at(&self, point: DVec2) -> (DVec3, DVec3) {
+    pub(crate) fn ray_at(&self, point: DVec2) -> (DVec3, DVec3) {
         let Renderer { input, settings, .. } = &self.renderer;
         let (origin, direction) = input.camera.ray(point, settings.size());
         (origin - input.scene.origin, direction)
     }
 
-    /// The sums of a pixel with more paths.
+    /// The sums of a pixel of the part with more paths.
     fn add_paths(&self, index: usize, paths: Range<u32>, context: &mut ThreadContext) -> Sums {
         // The random numbers of a pixel do not depend on what part of the image is rendered.
-        let [x, y] = self.part.pixel(index);
+        self.add_to(self.part.pixel(index), (self.sums[index], self.edges[index].clone()), paths, context)
+    }
+
+    /// The sums of any pixel of the image, by its column and row, with more paths.
+    pub(crate) fn add_to(
+        &self,
+        [x, y]: [usize; 2],
+        (mut sum, edge): Sums,
+        paths: Range<u32>,
+        context: &mut ThreadContext,
+    ) -> Sums {
         let settings = &self.renderer.settings;
+        let corner = DVec2::new(x as f64, y as f64);
         let pixel = (y * settings.width + x) as u64;
         let walk_starts = settings.reference.then_some(self.renderer.walk_starts);
         let near_streams = self.renderer.surroundings.is_some().then_some(self.near_streams);
         let numbers = PixelNumbers::new(pixel, self.pixel_stream, walk_starts, near_streams);
-        let mut edge = self.edges[index].clone().map(|edge| (edge, halves(self.edge_stream, pixel)));
+        let mut edge = edge.map(|edge| (edge, halves(self.edge_stream, pixel)));
         let alone = settings.paths_per_pixel == 1;
-        let mut sum = self.sums[index];
         for path in paths {
             let offset = match settings.filter {
                 Filter::Point => DVec2::splat(0.5),
                 Filter::Box => DVec2::from_array(numbers.place(path)),
             };
-            let (origin, direction) = self.ray(index, offset);
+            let (origin, direction) = self.ray_at(corner + offset);
             let path_index = PathIndex { pixel, path, walks: numbers.walks(path), near: numbers.near(path) };
             let light = self.renderer.trace(path_index, origin, direction, context);
             sum.add(path, alone, &light);
@@ -179,7 +206,7 @@ impl<'a> Passes<'a> {
                 edge.add_path(half, &light);
                 for ray in 0..edge::RAYS {
                     let [x, y, ..] = spread[half].point(path / 2 * edge::RAYS + ray);
-                    let (origin, direction) = self.ray(index, DVec2::new(x, y));
+                    let (origin, direction) = self.ray_at(corner + DVec2::new(x, y));
                     edge.add_ray(half, self.renderer.through(origin, direction, &mut context.counts));
                 }
             }
@@ -188,7 +215,8 @@ impl<'a> Passes<'a> {
     }
 
     fn pixel(&self, index: usize) -> Pixel {
-        let (origin, direction) = self.ray(index, DVec2::splat(0.5));
+        let [x, y] = self.part.pixel(index);
+        let (origin, direction) = self.ray_at(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
         self.sums[index].pixel(self.edges[index].as_deref(), self.renderer.guide(origin, direction))
     }
 

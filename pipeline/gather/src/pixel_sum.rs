@@ -81,9 +81,14 @@ impl PixelSum {
             let rest = mean(half) - of_mean;
             (self.squares[half] / n - of_square - rest * rest).max(DVec3::ZERO) / (n - 1.0).max(1.0)
         });
-        // Each half of an edge takes its factor from the other, which correlates the two.
-        let together = edge.map_or(DVec3::ZERO, |e| e.correction(0) * e.correction(1));
-        [difference * difference / 4.0 + together, (within[0] + within[1]) / 4.0]
+        [difference * difference / 4.0 + covariance(edge), (within[0] + within[1]) / 4.0]
+    }
+
+    /// [`PixelSum::variances`], the first, without the part in which two images of the same paths differ; their mean
+    /// expects the pixel's variance without that part.
+    pub(crate) fn shared_variance(&self, edge: Option<&Edge>, other: &PixelSum, other_edge: Option<&Edge>) -> DVec3 {
+        let product = self.difference(edge) * other.difference(other_edge) / 4.0;
+        product + 0.5 * (covariance(edge) + covariance(other_edge))
     }
 
     /// Mean light of each layer.
@@ -101,6 +106,11 @@ impl PixelSum {
     pub fn pixel(&self, edge: Option<&Edge>, guide: Guide) -> Pixel {
         Pixel::new(self.layers(edge), self.variances(edge)[0], guide)
     }
+}
+
+/// The covariance of the halves of an edge pixel: each takes its factor from the other.
+fn covariance(edge: Option<&Edge>) -> DVec3 {
+    edge.map_or(DVec3::ZERO, |e| e.correction(0) * e.correction(1))
 }
 
 #[cfg(test)]

@@ -41,12 +41,12 @@ impl<'a> Facts<'a> {
         job: &'a ImageJob,
         outcome: &'a Outcome,
     ) -> Facts<'a> {
-        let Outcome { rendered, end, state } = outcome;
+        let Outcome { rendered, estimator, end, state } = outcome;
         let (planned, paths) = (job.settings.paths_per_pixel, rendered.paths_per_pixel);
-        let mut settings = Settings { paths_per_pixel: paths, ..job.settings.clone() };
+        let mut settings = Settings { paths_per_pixel: paths, estimator: *estimator, ..job.settings.clone() };
         if request.target_error.is_none() && paths != planned {
             // What the cut may add to a gather is that of the planned paths.
-            let accuracy = accuracy_of_gather(&job.settings, planned).map(|x| x / f64::from(paths).sqrt());
+            let accuracy = accuracy_of_gather(*estimator, planned).map(|x| x / f64::from(paths).sqrt());
             settings.estimator = settings.estimator.map_accuracy(|own| accuracy.unwrap_or(own));
         }
         let (inputs, kept, state) = (&prepared.inputs, prepared.kept.as_ref(), state.as_ref());

@@ -109,6 +109,13 @@ const MAX_PATHS: u32 = 4096;
 const REFERENCE_PATHS: u32 = 64;
 const MAX_REFERENCE_PATHS: u32 = 65536;
 
+impl Request {
+    /// Whether the noise of the paths decides the accuracy of the cut.
+    pub fn balances(&self) -> bool {
+        self.accuracy.is_none() && self.target_error.is_none() && self.estimator.is_hierarchical()
+    }
+}
+
 impl Task {
     /// The task that the arguments describe.
     pub fn of(mut arguments: Arguments) -> Result<Task, Failure> {
@@ -195,19 +202,9 @@ fn calibration(argument: Option<PathBuf>) -> CalibrationSource {
     }
 }
 
-/// The relative error of one gather that goes with the noise of paths: of bunny, sphere and dragon at 4 to 64 paths, the
-/// squared error times the time is then 1 to 2.5 times the least.
-const BALANCED: f64 = 0.02;
-
-/// The accuracy of the cut that goes with the noise of so many paths.
-pub fn balanced(paths: u32) -> f64 {
-    let least = Estimator::ALL.iter().find_map(|estimator| estimator.accuracy()).unwrap_or(1.0);
-    least.min(BALANCED / f64::from(paths).sqrt())
-}
-
 /// The relative error that the cut may add to one gather of a pixel of so many paths.
-pub fn accuracy_of_gather(settings: &gather::Settings, paths: u32) -> Option<f64> {
-    Some(settings.estimator.accuracy()? * f64::from(paths).sqrt())
+pub fn accuracy_of_gather(estimator: Estimator, paths: u32) -> Option<f64> {
+    Some(estimator.accuracy()? * f64::from(paths).sqrt())
 }
 
 /// The estimator of this name with the parameters that were given, for so many paths per pixel.
@@ -215,7 +212,8 @@ fn estimator(arguments: &Arguments, paths: u32) -> Result<Estimator, Failure> {
     match arguments.estimator {
         Estimator::Cut { .. } => {
             // The cut may add half of the target error, which is a quarter of its square.
-            let default = arguments.target_error.map_or_else(|| balanced(paths), |target| 0.5 * target);
+            let default =
+                arguments.target_error.map_or_else(|| gather::accuracy_of_unknown_noise(paths), |target| 0.5 * target);
             Ok(Estimator::Cut { accuracy: arguments.accuracy.unwrap_or(default) })
         }
         _ if arguments.accuracy.is_some() => {

@@ -59,6 +59,7 @@ fn render(scene: &Scene, rays: &Rays, cloud: &Cloud, normals: NormalKind, estima
             paths_per_pixel: 2,
             filter: Filter::Box,
             estimator,
+            balances: false,
             normals,
             max_depth: 8,
             near_field: true,

@@ -122,6 +122,7 @@ pub fn settings(model: Model, width: usize, height: usize) -> gather::Settings {
         paths_per_pixel: 1,
         filter: Filter::Point,
         estimator: Estimator::Exhaustive,
+        balances: false,
         model,
         near_field: false,
         reference: false,

@@ -2,6 +2,7 @@
 
 mod at_hand;
 mod bad_input;
+mod balance;
 mod bare;
 mod continued;
 mod crops;
