@@ -127,14 +127,18 @@ impl NearField {
         }
         work.rays += 2;
         work.points += found.axes.len() as u64;
-        let Some(mut lamp) = Lamp::new(surroundings, &found.points, (light, random), &mut work.rays) else {
+        let Some(mut lamp) = Lamp::new(surroundings, &found.points, &mut work.rays) else {
             return DVec3::ZERO;
         };
-        let mut sum = lamp.light(&exitant, self.eta).map_or(DVec3::ZERO, |light| around.plane(drawn, &light));
-        for (axis, point) in found.axes.iter().zip(&found.points[1..]) {
-            sum += lamp.light(point, self.eta).map_or(DVec3::ZERO, |light| around.point(*axis, point, &light));
+        let mut sum = DVec3::ZERO;
+        for numbers in surroundings.lightings(light, random) {
+            let mut lit = |point: &SurfacePoint| lamp.light(point, self.eta, &numbers);
+            sum += lit(&exitant).map_or(DVec3::ZERO, |light| around.plane(drawn, &light));
+            for (axis, point) in found.axes.iter().zip(&found.points[1..]) {
+                sum += lit(point).map_or(DVec3::ZERO, |light| around.point(*axis, point, &light));
+            }
         }
-        sum
+        sum / surroundings.lightings as f64
     }
 
     /// `(1 − w) S_bare` of the channels, 1/(m² sr).

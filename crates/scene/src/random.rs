@@ -104,6 +104,11 @@ impl Stream {
 }
 
 impl Item {
+    /// One of several items that this one is split into; the first is this one.
+    pub fn part(self, index: u64) -> Item {
+        if index == 0 { self } else { Item { key: mix(self.bits(index | 1 << 63)) } }
+    }
+
     /// 64 random bits for one dimension.
     pub fn bits(self, dimension: u64) -> u64 {
         mix(self.key.wrapping_add((dimension + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15)))

@@ -165,6 +165,12 @@ pub fn floor() -> Place {
     Place::flat("floor", &parts, &[sun(DVec3::ONE)], DVec3::splat(0.2), &views)
 }
 
+/// A plane in the light of a warm lamp and a blue sky.
+pub fn open_plane() -> Place {
+    let sky = mm(0.05, 0.1, 0.3);
+    Place::flat("open plane", &[part(quad(9.0 * MM, 0.0, 1))], &[sun(mm(1.0, 0.5, 0.1))], sky, &[onto(0.1, 0.2)])
+}
+
 /// A plane in grazing light, of an index at which it grazes below the surface too.
 pub fn grazing() -> Place {
     let lights = [from(mm(0.8, 0.6, 0.05), DVec3::ONE)];
