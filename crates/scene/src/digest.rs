@@ -50,6 +50,12 @@ impl Scene {
                 Alpha::Coverage => -1.0,
             };
             material.base_color.to_array().iter().chain([&cutoff]).for_each(|x| put(&x.to_le_bytes()));
+            // What a metal mirrors lights no samples.
+            if let Some(gloss) = material.gloss.as_ref().filter(|gloss| !material.volume && gloss.metallic > 0.0) {
+                put(b"gloss");
+                put(&gloss.metallic.to_le_bytes());
+                gloss.texture.iter().for_each(|texture| put(texture.picture.texels.as_flattened()));
+            }
             let Some(texture) = &material.base_texture else { continue };
             let [along, down] = texture.wrap.map(|w| w as u8);
             let next = numbers.len() as u64;
