@@ -43,7 +43,7 @@ fn gloss(metallic: f64, roughness: f64, base_color: DVec3) -> Gloss {
 /// The white furnace: a metal that reflects everything returns all light within 0.5 %, and so does a white dielectric,
 /// from its layer and its base together.
 ///
-/// Seen to catch: no light given back, the base with the layer's light of one direction alone.
+/// Seen to catch: no light given back, visible normals that are not stretched back.
 #[test]
 fn white_surfaces_lose_nothing() {
     for roughness in [0.1, 0.2, 0.45, 1.0] {
@@ -95,7 +95,8 @@ fn slight_roughness_transmits_as_a_smooth_boundary() {
 
 /// `f(a, b) = f(b, a)` for reflection, and `f(a, b)/η_b² = f(b, a)/η_a²` for transmission.
 ///
-/// Seen to catch: refraction without its index squared, light given back in proportion to one side alone.
+/// Seen to catch: refraction with its index once instead of squared, a base with the light of one direction through the
+/// layer, refraction without the shadows of the refracted side.
 #[test]
 fn light_goes_back_the_way_it_came() {
     let (mut state, eta) = (1, 1.5);
@@ -185,7 +186,7 @@ fn check(name: &str, bsdf: &impl Bsdf, view: &View, lobe: Lobe) {
 }
 
 /// Seen to catch: visible normals that are not stretched back, a density without the share of several microfacets,
-/// refraction without its Jacobian.
+/// refraction with its index once in the Jacobian.
 #[test]
 fn samples_have_the_density_that_is_stated() {
     for roughness in [0.4, 1.0] {

@@ -35,7 +35,6 @@ mod tests {
     use super::*;
     use crate::lanes::{EntryRefraction, LANES};
 
-    /// Seen to catch: the square of the root left out.
     #[test]
     fn sixteen_samples_enter_as_the_boundary_says() {
         let boundary = RoughBoundary::new(1.4, 0.6);

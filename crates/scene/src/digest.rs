@@ -1,6 +1,9 @@
 //! The identity of a scene, by which clouds recognize it.
 
-use crate::{material::Alpha, scene::Scene};
+use crate::{
+    material::{Alpha, Material},
+    scene::Scene,
+};
 use std::{collections::BTreeMap, sync::Arc};
 
 impl Scene {
@@ -37,6 +40,27 @@ impl Scene {
             put(&ior.to_le_bytes());
         }
         *hasher.finalize().as_bytes()
+    }
+
+    /// Identity of what the file states of metal and roughness, as a BLAKE3 digest; none if all surfaces are matt or, if
+    /// marked as translucent, smooth.
+    pub fn gloss_digest(&self) -> Option<[u8; 32]> {
+        let mut hasher = blake3::Hasher::new();
+        let shown = |m: &'_ Material| m.gloss.clone().filter(|gloss| !m.volume || gloss.is_rough());
+        let all: Vec<_> = self.materials.iter().enumerate().filter_map(|(k, m)| Some((k, shown(m)?))).collect();
+        for (k, gloss) in &all {
+            let schlick = [gloss.dielectric.normal, gloss.dielectric.grazing].map(|v| v.to_array());
+            let numbers = [*k as f64, gloss.metallic, gloss.roughness];
+            let numbers = numbers.into_iter().chain(schlick.into_iter().flatten());
+            numbers.for_each(|x| _ = hasher.update(&x.to_le_bytes()));
+            if let Some(texture) = &gloss.texture {
+                hasher.update(&[texture.wrap[0] as u8, texture.wrap[1] as u8, u8::from(texture.nearest)]);
+                hasher.update(&(texture.picture.width as u64).to_le_bytes());
+                hasher.update(texture.picture.texels.as_flattened());
+            }
+        }
+        self.mesh.gloss_coordinates.as_flattened().iter().for_each(|x| _ = hasher.update(&x.to_le_bytes()));
+        (!all.is_empty()).then(|| *hasher.finalize().as_bytes())
     }
 
     /// Gives `put` all that colors and holes depend on: they light and shadow the samples.

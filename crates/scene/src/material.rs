@@ -64,6 +64,11 @@ impl GlossStated {
         [self.metallic * texel.z, self.roughness * texel.y]
     }
 
+    /// Whether any roughness is left where a surface is no mirror.
+    pub fn is_rough(&self) -> bool {
+        self.mean_roughness().powi(2) >= bsdf::SMOOTH_BELOW
+    }
+
     /// The mean roughness over all texels.
     pub fn mean_roughness(&self) -> f64 {
         let Some(texture) = &self.texture else { return self.roughness };
