@@ -127,7 +127,7 @@ impl Scene {
         let material = &self.materials[self.mesh.triangles[triangle as usize].material as usize];
         let gloss = material.gloss.as_ref()?;
         let [metallic, roughness] = self.metallic_roughness(gloss, triangle, weights);
-        let base_color = self.color(triangle, weights).truncate().min(DVec3::ONE);
+        let base_color = self.color(triangle, weights).truncate().clamp(DVec3::ZERO, DVec3::ONE);
         Some(bsdf::Stated { base_color, metallic, roughness, dielectric: gloss.dielectric })
     }
 
