@@ -21,6 +21,7 @@ mod patterns;
 mod picks;
 mod reference;
 mod reflectance;
+mod rough;
 mod roulette;
 mod sampling;
 mod shards;

@@ -1,8 +1,9 @@
 //! What happens to light at a surface: which share of it is reflected and which transmitted, and where it goes.
 //!
-//! [`Bsdf`] is the contract between a surface and a path tracer. [`SmoothDielectric`] and [`Lambertian`] implement it,
-//! and [`Surface`] is one of them, as the scene decides. The BSSRDF describes what happens *below* the surface; this
-//! crate does not depend on it. The crate has no I/O and no random numbers, and allocates nothing.
+//! [`Bsdf`] is the contract between a surface and a path tracer. [`SmoothDielectric`], [`RoughDielectric`],
+//! [`Lambertian`] and [`Gloss`] implement it, and [`Surface`] is one of them, as the scene decides. The BSSRDF describes
+//! what happens *below* the surface; this crate does not depend on it. The crate has no I/O and no random numbers, and
+//! allocates nothing but the tables of rough surfaces, before they are asked.
 //!
 //! ```
 //! use bsdf::{Bsdf, DVec3, Lobe, Side, Surface, View};
@@ -18,12 +19,20 @@
 //! ```
 
 mod dielectric;
+mod frame;
 pub mod fresnel;
+mod ggx;
+mod gloss;
+mod grid;
 mod lambertian;
+mod rough;
 
 pub use dielectric::SmoothDielectric;
+pub use ggx::SMOOTH_BELOW;
 pub use glam::DVec3;
+pub use gloss::{Gloss, Schlick, Stated};
 pub use lambertian::Lambertian;
+pub use rough::{RoughBoundary, RoughDielectric};
 
 /// A side of a surface. Normals of closed meshes point outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,19 +104,21 @@ pub trait Bsdf {
 
 /// The BSDFs that a scene may ask for.
 #[derive(Clone, Copy, Debug)]
-pub enum Surface {
+pub enum Surface<'a> {
     SmoothDielectric(SmoothDielectric),
+    RoughDielectric(RoughDielectric<'a>),
     Lambertian(Lambertian),
+    Gloss(Gloss),
 }
 
-impl Surface {
+impl Surface<'_> {
     /// The surface of a translucent material whose medium has the relative index `eta`, inside over outside.
-    pub fn dielectric(eta: f64) -> Surface {
+    pub fn dielectric(eta: f64) -> Surface<'static> {
         Surface::SmoothDielectric(SmoothDielectric::new(eta))
     }
 
     /// The surface of an opaque material that reflects the share `albedo` of each color channel.
-    pub fn opaque(albedo: DVec3) -> Surface {
+    pub fn opaque(albedo: DVec3) -> Surface<'static> {
         Surface::Lambertian(Lambertian { albedo })
     }
 }
@@ -117,12 +128,14 @@ macro_rules! ask {
     ($surface:expr, $method:ident($($argument:expr),*)) => {
         match $surface {
             Surface::SmoothDielectric(bsdf) => bsdf.$method($($argument),*),
+            Surface::RoughDielectric(bsdf) => bsdf.$method($($argument),*),
             Surface::Lambertian(bsdf) => bsdf.$method($($argument),*),
+            Surface::Gloss(bsdf) => bsdf.$method($($argument),*),
         }
     };
 }
 
-impl Bsdf for Surface {
+impl Bsdf for Surface<'_> {
     fn transmittance(&self, view: &View) -> f64 {
         ask!(self, transmittance(view))
     }

@@ -119,7 +119,7 @@ fn entry(bencher: Bencher, level: Level) {
     let mut random = Random(2);
     let samples: Vec<_> = (0..BLOCKS).map(|_| [0; 2].map(|_| directions(&mut random))).collect();
     let entry = EntryRefraction::new(1.3);
-    let kernel = || Enter { entry: black_box(entry), samples: black_box(&samples) };
+    let kernel = || Enter { entry: black_box(entry.clone()), samples: black_box(&samples) };
     bencher.counter(ItemsCount::new(BLOCKS * LANES)).bench(|| simd::run_as(level, kernel()));
 }
 

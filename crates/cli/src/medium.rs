@@ -104,6 +104,7 @@ mod tests {
                 alpha: Alpha::Ignored,
                 emission: DVec3::ZERO,
                 emission_texture: None,
+                gloss: None,
                 volume: true,
                 thin: false,
                 stated: Some(stated),

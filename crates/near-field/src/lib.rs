@@ -9,7 +9,7 @@ mod surroundings;
 
 pub use surroundings::Surroundings;
 
-use bssrdf::{Bssrdf, Medium, Model, Partition, Separation};
+use bssrdf::{Bssrdf, Medium, Model, Partition, RoughEntry, Separation};
 use formats::cloud::{Cloud, shards};
 use glam::DVec3;
 use profile::{PlaneIntegral, Profile, Radii};
@@ -27,6 +27,8 @@ pub struct NearField {
     material: u16,
     radii: Radii,
     plane: PlaneIntegral,
+    /// What enters through a rough interface.
+    rough: Option<RoughEntry>,
 }
 
 /// Where light leaves.
@@ -95,7 +97,12 @@ impl NearField {
         let (partition, eta) = (Partition::new(from, reach), medium.eta);
         let model = model.of(medium);
         let (radii, plane) = Profile { model: &*model, partition, reach, eta }.tabulate(shortest(medium));
-        NearField { model, partition, reach, eta, material, radii, plane }
+        NearField { model, partition, reach, eta, material, radii, plane, rough: None }
+    }
+
+    /// The same near part behind a rough interface.
+    pub fn behind(self, rough: &RoughEntry) -> NearField {
+        NearField { rough: Some(rough.clone()), ..self }
     }
 
     /// Where the far part begins, which the cloud's samples are left with.
@@ -130,9 +137,10 @@ impl NearField {
         let Some(mut lamp) = Lamp::new(surroundings, &found.points, &mut work.rays) else {
             return DVec3::ZERO;
         };
+        let interface = (self.eta, self.rough.as_ref());
         let mut sum = DVec3::ZERO;
         for numbers in surroundings.lightings(light, random) {
-            let mut lit = |point: &SurfacePoint| lamp.light(point, self.eta, &numbers);
+            let mut lit = |point: &SurfacePoint| lamp.light(point, interface, &numbers);
             sum += lit(&exitant).map_or(DVec3::ZERO, |light| around.plane(drawn, &light));
             for (axis, point) in found.axes.iter().zip(&found.points[1..]) {
                 sum += lit(point).map_or(DVec3::ZERO, |light| around.point(*axis, point, &light));

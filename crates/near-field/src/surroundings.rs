@@ -1,6 +1,6 @@
 //! The surfaces of a scene around an exitant point, and their light.
 
-use bssrdf::fresnel;
+use bssrdf::{RoughEntry, fresnel};
 use glam::DVec3;
 use scene::{
     Hit, NormalKind, Rays, Scene, SurfacePoint,
@@ -89,14 +89,24 @@ impl<'a> Lamp<'a> {
         Some(Lamp { surroundings, choice, rays })
     }
 
-    /// The light that the numbers pick for a point, if any enters a medium of relative index `eta` there.
-    pub fn light(&mut self, point: &SurfacePoint, eta: f64, by: &Lighting) -> Option<Arriving> {
+    /// The light that the numbers pick for a point, if any enters a medium of relative index `eta` there, through an
+    /// interface that may be rough.
+    pub fn light(
+        &mut self,
+        point: &SurfacePoint,
+        (eta, rough): (f64, Option<&RoughEntry>),
+        by: &Lighting,
+    ) -> Option<Arriving> {
         let Surroundings { surface, bounce, .. } = self.surroundings;
         let lit = surface.light_at(bounce.as_ref(), &self.choice, point, by.light, by.random, self.rays);
         let Lit::Light { direction, irradiance } = lit else {
             return None;
         };
         let entry = fresnel::enter(point.normal, direction, eta)?;
-        Some(Arriving { entering: irradiance * entry.transmittance, refracted: entry.direction })
+        let transmittance = match rough {
+            None => entry.transmittance,
+            Some(rough) => f64::from(rough.at(point.normal.dot(direction) as f32)),
+        };
+        Some(Arriving { entering: irradiance * transmittance, refracted: entry.direction })
     }
 }

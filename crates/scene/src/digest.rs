@@ -1,6 +1,9 @@
 //! The identity of a scene, by which clouds recognize it.
 
-use crate::{material::Alpha, scene::Scene};
+use crate::{
+    material::{Alpha, Material},
+    scene::Scene,
+};
 use std::{collections::BTreeMap, sync::Arc};
 
 impl Scene {
@@ -39,6 +42,27 @@ impl Scene {
         *hasher.finalize().as_bytes()
     }
 
+    /// Identity of what the file states of metal and roughness, as a BLAKE3 digest; none if all surfaces are matt or, if
+    /// marked as translucent, smooth.
+    pub fn gloss_digest(&self) -> Option<[u8; 32]> {
+        let mut hasher = blake3::Hasher::new();
+        let shown = |m: &'_ Material| m.gloss.clone().filter(|gloss| !m.volume || gloss.is_rough());
+        let all: Vec<_> = self.materials.iter().enumerate().filter_map(|(k, m)| Some((k, shown(m)?))).collect();
+        for (k, gloss) in &all {
+            let schlick = [gloss.dielectric.normal, gloss.dielectric.grazing].map(|v| v.to_array());
+            let numbers = [*k as f64, gloss.metallic, gloss.roughness];
+            let numbers = numbers.into_iter().chain(schlick.into_iter().flatten());
+            numbers.for_each(|x| _ = hasher.update(&x.to_le_bytes()));
+            if let Some(texture) = &gloss.texture {
+                hasher.update(&[texture.wrap[0] as u8, texture.wrap[1] as u8, u8::from(texture.nearest)]);
+                hasher.update(&(texture.picture.width as u64).to_le_bytes());
+                hasher.update(texture.picture.texels.as_flattened());
+            }
+        }
+        self.mesh.gloss_coordinates.as_flattened().iter().for_each(|x| _ = hasher.update(&x.to_le_bytes()));
+        (!all.is_empty()).then(|| *hasher.finalize().as_bytes())
+    }
+
     /// Gives `put` all that colors and holes depend on: they light and shadow the samples.
     fn put_colors(&self, put: &mut impl FnMut(&[u8])) {
         // A picture of several materials is put once, and referred to by its number afterwards.
@@ -50,6 +74,12 @@ impl Scene {
                 Alpha::Coverage => -1.0,
             };
             material.base_color.to_array().iter().chain([&cutoff]).for_each(|x| put(&x.to_le_bytes()));
+            // What a metal mirrors lights no samples.
+            if let Some(gloss) = material.gloss.as_ref().filter(|gloss| !material.volume && gloss.metallic > 0.0) {
+                put(b"gloss");
+                put(&gloss.metallic.to_le_bytes());
+                gloss.texture.iter().for_each(|texture| put(texture.picture.texels.as_flattened()));
+            }
             let Some(texture) = &material.base_texture else { continue };
             let [along, down] = texture.wrap.map(|w| w as u8);
             let next = numbers.len() as u64;

@@ -15,6 +15,8 @@ pub struct Material {
     /// Radiance that it emits, W/(m² sr): a factor of that of the texture.
     pub emission: DVec3,
     pub emission_texture: Option<Texture>,
+    /// How the surface mirrors, if the file states a roughness or a metal.
+    pub gloss: Option<GlossStated>,
     /// Whether the file marks the surface as translucent: light enters it, or it bounds a volume.
     pub volume: bool,
     /// Whether the file gives it walls without thickness that light crosses: transmission without a volume.
@@ -41,6 +43,38 @@ impl Material {
         let texels = &texture.picture.texels;
         let is_bright = |texel: &&[u8; 4]| (0..3).any(|c| self.emission[c] > 0.0 && texel[c] >= BRIGHT);
         2 * texels.iter().filter(is_bright).count() >= texels.len()
+    }
+}
+
+/// How a surface mirrors, by the metallic-roughness model of glTF.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GlossStated {
+    /// 0 to 1: a factor of the texture's blue.
+    pub metallic: f64,
+    /// 0 to 1: a factor of the texture's green.
+    pub roughness: f64,
+    pub texture: Option<Texture>,
+    /// What the part that is no metal reflects.
+    pub dielectric: bsdf::Schlick,
+}
+
+impl GlossStated {
+    /// Metallic and roughness where the texture has this texel.
+    pub(crate) fn with(&self, texel: DVec4) -> [f64; 2] {
+        [self.metallic * texel.z, self.roughness * texel.y]
+    }
+
+    /// Whether any roughness is left where a surface is no mirror.
+    pub fn is_rough(&self) -> bool {
+        self.mean_roughness().powi(2) >= bsdf::SMOOTH_BELOW
+    }
+
+    /// The mean roughness over all texels.
+    pub fn mean_roughness(&self) -> f64 {
+        let Some(texture) = &self.texture else { return self.roughness };
+        let texels = &texture.picture.texels;
+        let sum: u64 = texels.iter().map(|texel| u64::from(texel[1])).sum();
+        self.roughness * sum as f64 / (255.0 * texels.len().max(1) as f64)
     }
 }
 

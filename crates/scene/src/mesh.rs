@@ -22,6 +22,8 @@ pub struct Mesh {
     pub coordinates: Vec<[f32; 2]>,
     /// The same of emission; empty if no vertex has any.
     pub emission_coordinates: Vec<[f32; 2]>,
+    /// The same of metallic and roughness; empty if no vertex has any.
+    pub gloss_coordinates: Vec<[f32; 2]>,
     /// Linear red, green and blue, and alpha; empty if no vertex has any.
     pub colors: Vec<[f32; 4]>,
 }
@@ -108,6 +110,12 @@ impl Mesh {
     /// Texture coordinates of emission at the point with barycentric `weights`; 0 where the file has none.
     pub(crate) fn emission_coordinates(&self, triangle: u32, weights: [f64; 3]) -> [f64; 2] {
         self.interpolated(triangle, weights, |i| self.emission_coordinate(i)).to_array()
+    }
+
+    /// Texture coordinates of metallic and roughness at the point with barycentric `weights`; 0 where the file has none.
+    pub(crate) fn gloss_coordinates(&self, triangle: u32, weights: [f64; 3]) -> [f64; 2] {
+        let of = |i: u32| self.gloss_coordinates.get(i as usize).copied().unwrap_or_default();
+        self.interpolated(triangle, weights, |i| DVec2::from_array(of(i).map(f64::from))).to_array()
     }
 
     /// Color of the vertices at the point with barycentric `weights`.

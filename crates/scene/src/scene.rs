@@ -4,7 +4,7 @@ use crate::{
     error::{LostVolumes, SceneError},
     import::units::FileUnits,
     light::{contract::Light, environment::Environment},
-    material::Material,
+    material::{GlossStated, Material},
     mesh::{Mesh, bounds},
     unhonoured::Unhonoured,
     view::Camera,
@@ -120,6 +120,35 @@ impl Scene {
         let texture = material.base_texture.as_ref();
         let texel = texture.map_or(DVec4::ONE, |t| t.at(self.mesh.coordinates(triangle, weights)));
         material.base_color * texel * self.mesh.color(triangle, weights)
+    }
+
+    /// How an opaque surface mirrors at the point of a triangle with these barycentric weights; none if it is matt.
+    pub fn gloss(&self, triangle: u32, weights: [f64; 3]) -> Option<bsdf::Stated> {
+        let material = &self.materials[self.mesh.triangles[triangle as usize].material as usize];
+        let gloss = material.gloss.as_ref()?;
+        let [metallic, roughness] = self.metallic_roughness(gloss, triangle, weights);
+        let base_color = self.color(triangle, weights).truncate().clamp(DVec3::ZERO, DVec3::ONE);
+        Some(bsdf::Stated { base_color, metallic, roughness, dielectric: gloss.dielectric })
+    }
+
+    /// The roughness at the point of a triangle, 0 to 1; none if the material states none.
+    pub fn roughness(&self, triangle: u32, weights: [f64; 3]) -> Option<f64> {
+        let material = &self.materials[self.mesh.triangles[triangle as usize].material as usize];
+        material.gloss.as_ref().map(|gloss| self.metallic_roughness(gloss, triangle, weights)[1])
+    }
+
+    fn metallic_roughness(&self, gloss: &GlossStated, triangle: u32, weights: [f64; 3]) -> [f64; 2] {
+        let texel = gloss.texture.as_ref().map(|t| t.numbers_at(self.mesh.gloss_coordinates(triangle, weights)));
+        gloss.with(texel.unwrap_or(DVec4::ONE))
+    }
+
+    /// Share of diffuse light that an opaque surface reflects diffusely: nothing where it is a metal.
+    pub fn diffuse(&self, triangle: u32, weights: [f64; 3]) -> DVec3 {
+        let color = self.color(triangle, weights).truncate();
+        match &self.materials[self.mesh.triangles[triangle as usize].material as usize].gloss {
+            None => color,
+            Some(gloss) => color * (1.0 - self.metallic_roughness(gloss, triangle, weights)[0]),
+        }
     }
 
     /// Radiance that the point of a triangle with these barycentric weights emits, W/(m² sr).

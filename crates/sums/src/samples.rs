@@ -1,6 +1,7 @@
 //! The lit samples of one material and half, as the estimators read them from the tiles of the file.
 
 use bssrdf::{
+    RoughEntry,
     lanes::{Block, EntryRefraction, LANES, Lane},
     simd,
 };
@@ -13,7 +14,7 @@ use glam::DVec3;
 const _: () = assert!(LANES == TILE, "a tile is evaluated as one block");
 
 /// Samples whose light enters one medium.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct LitSamples<'a> {
     pub(crate) tiles: &'a [Tile],
     /// The tree over the tiles, see [`Node`].
@@ -79,6 +80,11 @@ impl<'a> LitSamples<'a> {
     pub fn of(tiles: &'a [Tile], nodes: &'a [Node], len: usize, eta: f64) -> LitSamples<'a> {
         let scale = nodes.get(1).map_or(1.0, |root| unit_of(root.flux));
         LitSamples { tiles, nodes, len: len.min(tiles.len() * TILE), entry: EntryRefraction::new(eta), scale }
+    }
+
+    /// The same samples behind a rough interface.
+    pub fn behind(self, rough: &RoughEntry) -> LitSamples<'a> {
+        LitSamples { entry: self.entry.behind(rough), ..self }
     }
 
     /// The number of samples, without the fillers of the last tile.

@@ -7,6 +7,7 @@ use crate::{
     estimator::{CutCorrection, Estimator, Scatterer, Scratch, Sum},
     samples::{Exit, LitSamples},
 };
+use bssrdf::RoughEntry;
 use formats::cloud::Cloud;
 use glam::DVec3;
 use std::sync::Arc;
@@ -45,6 +46,12 @@ impl<'a> Summation<'a> {
         let eta = scatterer.eta();
         let halves = |cloud: &'a Cloud| cloud.meta().materials[slot].halves.map(|h| LitSamples::new(cloud, &h, eta));
         Summation::new(scatterer, clouds.iter().map(halves).collect(), DrawnCounts::of(clouds))
+    }
+
+    /// The same sum behind a rough interface.
+    pub fn behind(mut self, rough: &RoughEntry) -> Summation<'a> {
+        self.shards = self.shards.into_iter().map(|halves| halves.map(|half| half.behind(rough))).collect();
+        self
     }
 
     /// True if no sample carries light.

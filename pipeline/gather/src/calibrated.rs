@@ -83,6 +83,7 @@ pub fn make(request: &Request, lit: &LitScene, rays: &Rays, model: Model) -> Res
         return Ok(None);
     }
     let common = &request.common;
+    lit.warn_of_smooth_walks("the calibration", common);
     let normals = cli::normal_kind(request.scene.how.normals);
     let (clouds, media, seed) = (lit.clouds(), &lit.media, common.seed);
     let task = Task { scene: &lit.scene, rays, clouds, media, model, normals, walks: WALKS, seed };

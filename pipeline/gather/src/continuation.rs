@@ -110,6 +110,7 @@ fn settings(request: &Request, inputs: &LitScene, calibration: Option<&Calibrati
         format!("--reference {reference}"),
         format!("--medium {}", media.collect::<Vec<_>>().join("; ")),
     ];
+    all.extend(inputs.scene.gloss_digest().map(|digest| format!("roughness {}", hex(&digest))));
     if !reference {
         all.extend([
             format!("--bssrdf {}", model.name()),

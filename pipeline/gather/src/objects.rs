@@ -3,7 +3,7 @@
 use crate::{
     image::{Input, Settings},
     reference::Walks,
-    renderer::TranslucentObject,
+    renderer::{Rough, TranslucentObject},
 };
 use bssrdf::{Medium, Partition};
 use calibration::Factors;
@@ -19,9 +19,16 @@ pub fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<Translu
     for (slot, (sampled, medium)) in shards::materials(input.clouds).iter().zip(input.media).enumerate() {
         let near = || NearField::of_clouds(settings.model, medium, input.clouds, slot);
         let near = settings.near_field.then(near).flatten();
+        let rough = Rough::new(&input.scene.materials[sampled.index as usize], medium.eta);
+        let entry = rough.as_ref().map(Rough::entry);
+        let near = match &entry {
+            None => near,
+            Some(entry) => near.map(|near| near.behind(entry)),
+        };
         let partition = near.as_ref().map_or(Partition::NONE, NearField::partition);
         let scatterer = Arc::new(Scatterer::new(settings.model, medium, sampled.area_m2.sqrt()).far(partition));
         let is_translucent = |material| shards::materials(input.clouds).iter().any(|m| m.index == material);
+        let summation = Summation::of_clouds(scatterer, input.clouds, slot);
         let walks = settings.reference.then(|| Walks::new(input, sampled.index, medium, is_translucent));
         let extinction = || medium.map(|c| c.extinction());
         objects[sampled.index as usize] = Some(TranslucentObject {
@@ -29,7 +36,11 @@ pub fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<Translu
             walks: walks.flatten(),
             factors: input.calibration.map(|c| Factors::new(&c.materials[slot])),
             lobe: settings.model.exit_lobe(medium),
-            summation: Summation::of_clouds(scatterer, input.clouds, slot),
+            summation: match &entry {
+                None => summation,
+                Some(entry) => summation.behind(entry),
+            },
+            rough,
             near,
             color: color_of(medium),
             medium: medium.clone(),

@@ -3,6 +3,7 @@
 
 use crate::{
     counts::Counts,
+    meeting::Meeting,
     path_state::{Guide, Layer, PathIndex, PathLight, PathState, ThreadContext, Trace},
     renderer::{Renderer, TranslucentObject},
 };
@@ -25,6 +26,7 @@ impl Renderer<'_> {
             from: None,
             inside: None,
             throughput: DVec3::ONE,
+            drawn: None,
             layer: None,
             events: 0,
             half,
@@ -98,7 +100,7 @@ impl Renderer<'_> {
                 true
             }
             (Some(object), Side::Outside) => self.meet_from_outside(state, object, (&point, &hit), trace, context),
-            (Some(object), Side::Inside) => self.meet_from_inside(state, object, &point, &mut context.counts),
+            (Some(object), Side::Inside) => self.meet_from_inside(state, object, (&point, &hit), &mut context.counts),
         }
     }
 
@@ -119,7 +121,10 @@ impl Renderer<'_> {
         if let Some(backdrop) = self.settings.backdrop.filter(|_| state.layer.is_none() && state.inside.is_none()) {
             return light.add(state, Layer::Emission, backdrop);
         }
-        let mut seen = self.lights.distant_radiance(state.origin, state.direction);
+        let mut seen = match &state.drawn {
+            None => self.lights.distant_radiance(state.origin, state.direction),
+            Some(drawn) => self.lights.distant_radiance_by(&drawn.at, state.direction, drawn.density),
+        };
         if let Some(object) = state.inside.and_then(|m| self.objects[m as usize].as_ref()) {
             counts.escaped_inside += 1;
             // Only channels without extinction see through an infinite medium. The ray escaped because one of them was
@@ -163,10 +168,15 @@ impl Renderer<'_> {
     ) -> bool {
         let material = &self.input.scene.materials[point.material as usize];
         if material.emits() && (side == Side::Outside || material.double_sided) {
-            light.add(state, Layer::Emission, self.input.scene.emission(hit.triangle, hit.weights));
+            let emission = self.input.scene.emission(hit.triangle, hit.weights);
+            light.add(state, Layer::Emission, emission * self.share_of(state, point.material));
         }
         // A ray meets a pane only where that mirrors.
-        let bsdf = match self.input.scene.is_pane(point.material) {
+        let is_pane = self.input.scene.is_pane(point.material);
+        if !is_pane && let Some(stated) = self.input.scene.gloss(hit.triangle, hit.weights) {
+            return self.meet_gloss(state, point, side, &stated, light, counts);
+        }
+        let bsdf = match is_pane {
             true => Surface::dielectric(1.0),
             false => Surface::opaque(self.input.scene.color(hit.triangle, hit.weights).truncate()),
         };
@@ -193,11 +203,12 @@ impl Renderer<'_> {
         context: &mut ThreadContext,
     ) -> bool {
         let counts = &mut context.counts;
-        let meeting = Meeting::new(point, object.surface(), Side::Outside, -state.direction, counts);
+        let surface = object.surface(self.input.scene, hit);
+        let meeting = Meeting::new(point, surface, Side::Outside, -state.direction, counts);
         let transmittance = meeting.transmittance();
         let splits = state.layer.is_none() && transmittance > 0.0;
         if !splits && state.uniform() >= transmittance {
-            return meeting.scatter(state, Lobe::Reflection, Layer::Specular, counts);
+            return self.reflect(state, &meeting, &mut trace.light, counts);
         }
         if splits {
             if transmittance < 1.0 {
@@ -209,14 +220,15 @@ impl Renderer<'_> {
                     ..*state
                 };
                 branch.throughput *= 1.0 - transmittance;
-                let follows = meeting.scatter(&mut branch, Lobe::Reflection, Layer::Specular, counts);
+                let follows = self.reflect(&mut branch, &meeting, &mut trace.light, counts);
                 trace.mirrored = (follows && branch.events < self.settings.max_depth).then_some(branch);
                 counts.cut_by_depth += u64::from(follows && trace.mirrored.is_none());
             }
             state.throughput *= transmittance;
             trace.light.through = if object.is_dark() { 0.0 } else { transmittance };
         }
-        trace.light.add(state, Layer::Emission, self.input.scene.emission(hit.triangle, hit.weights));
+        let emission = self.input.scene.emission(hit.triangle, hit.weights) * self.share_of(state, point.material);
+        trace.light.add(state, Layer::Emission, emission);
         self.gather(state, object, point, &meeting.view, &mut trace.light, context);
         (state.walks, state.near) = (None, None);
         state.inside = Some(point.material);
@@ -230,16 +242,20 @@ impl Renderer<'_> {
         &self,
         state: &mut PathState,
         object: &TranslucentObject,
-        point: &SurfacePoint,
+        (point, hit): (&SurfacePoint, &Hit),
         counts: &mut Counts,
     ) -> bool {
-        let meeting = Meeting::new(point, object.surface(), Side::Inside, -state.direction, counts);
+        let surface = object.surface(self.input.scene, hit);
+        let meeting = Meeting::new(point, surface, Side::Inside, -state.direction, counts);
         if state.uniform() >= meeting.transmittance() {
             state.inside = Some(point.material);
             return meeting.scatter(state, Lobe::Reflection, Layer::Transmission, counts);
         }
         state.inside = None;
         if !meeting.scatter(state, Lobe::Transmission, Layer::Transmission, counts) {
+            if !meeting.bsdf.is_specular() {
+                return false;
+            }
             // Only the interpolated normal lets light through: the path goes straight on.
             state.leave(point, state.direction, Layer::Transmission);
         }
@@ -256,7 +272,8 @@ impl Renderer<'_> {
         let view = -direction;
         match &self.objects[point.material as usize] {
             Some(object) if view.dot(point.geometric_normal) > 0.0 && !object.is_dark() => {
-                Meeting::new(&point, object.surface(), Side::Outside, view, &mut Counts::default()).transmittance()
+                let surface = object.surface(self.input.scene, &hit);
+                Meeting::new(&point, surface, Side::Outside, view, &mut Counts::default()).transmittance()
             }
             _ => 0.0,
         }
@@ -279,57 +296,5 @@ impl Renderer<'_> {
             albedo,
             id: u32::from(point.material) + 1,
         }
-    }
-}
-
-/// A surface point where a path meets a BSDF.
-struct Meeting<'a> {
-    /// Its normals are on the side that the path comes from.
-    point: &'a SurfacePoint,
-    bsdf: Surface,
-    view: View,
-}
-
-impl Meeting<'_> {
-    /// The view uses the interpolated normal, unless that normal faces away from `direction` and the triangle's own
-    /// does not.
-    fn new<'a>(
-        point: &'a SurfacePoint,
-        bsdf: Surface,
-        side: Side,
-        direction: DVec3,
-        counts: &mut Counts,
-    ) -> Meeting<'a> {
-        let interpolated = point.normal.dot(direction) > 0.0;
-        counts.geometric_normals += u64::from(!interpolated);
-        let normal = if interpolated { point.normal } else { point.geometric_normal };
-        Meeting { point, bsdf, view: View { normal, direction, side } }
-    }
-
-    fn transmittance(&self) -> f64 {
-        self.bsdf.transmittance(&self.view)
-    }
-
-    /// Sends the path on in a direction of one lobe, and assigns its light to the layer `event`. The direction is
-    /// sampled about the geometric normal if the interpolated one puts it on the wrong side of the triangle. False if
-    /// there is none.
-    fn scatter(&self, state: &mut PathState, lobe: Lobe, event: Layer, counts: &mut Counts) -> bool {
-        let geometric = self.point.geometric_normal;
-        let mut sample = |view: &View| self.bsdf.sample(view, lobe, || [state.uniform(), state.uniform()]);
-        let mut sampled = sample(&self.view);
-        let on_wrong_side = |direction: DVec3| match lobe {
-            Lobe::Reflection => direction.dot(geometric) <= 0.0,
-            Lobe::Transmission => direction.dot(geometric) >= 0.0,
-        };
-        if sampled.is_none_or(|sample| on_wrong_side(sample.direction)) {
-            counts.geometric_normals += 1;
-            sampled = sample(&View { normal: geometric, ..self.view });
-        }
-        let Some(sample) = sampled else {
-            return false;
-        };
-        state.throughput *= sample.weight;
-        state.leave(self.point, sample.direction, event);
-        true
     }
 }

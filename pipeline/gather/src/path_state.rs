@@ -42,6 +42,14 @@ pub struct Trace {
     pub mirrored: Option<PathState>,
 }
 
+/// A point of a rough surface that a path has left in a direction which lights were sampled for, too.
+#[derive(Clone, Copy)]
+pub struct Drawn {
+    pub at: SurfacePoint,
+    /// Density of the direction, 1/sr.
+    pub density: f64,
+}
+
 /// A path between two surfaces.
 #[derive(Clone, Copy)]
 pub struct PathState {
@@ -52,6 +60,8 @@ pub struct PathState {
     /// The material whose medium the ray is in.
     pub inside: Option<u16>,
     pub throughput: DVec3,
+    /// Where the direction was drawn from, if the light at that point was sampled as well.
+    pub drawn: Option<Drawn>,
     /// The layer of all further light, after the first event.
     pub layer: Option<Layer>,
     pub events: u32,
@@ -84,6 +94,7 @@ impl PathState {
         self.origin = point.position;
         self.direction = direction;
         self.from = Some(point.triangle);
+        self.drawn = None;
         self.layer.get_or_insert(event);
     }
 }

@@ -78,7 +78,7 @@ impl Renderer<'_> {
         if self.objects[point.material as usize].is_some() || scene.is_pane(point.material) {
             return emitted;
         }
-        let albedo = scene.color(triangle, weights).truncate();
+        let albedo = scene.diffuse(triangle, weights);
         let point = point.facing(-exit.direction);
         let xi = || [random.uniform(), random.uniform()];
         emitted + albedo / PI * all_light_at(&self.lights, self.input.rays, &point, xi, &mut counts.shadow_rays)

@@ -253,7 +253,7 @@ fn what_is_not_honoured_is_said_once() {
     let bench = Bench::new();
     let scene = bench.slab("scene.glb", |root| {
         root["materials"][0]["normalTexture"] = json!({ "index": 0 });
-        root["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"] = json!(0.5);
+        root["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = json!(0.5);
         root["fog"] = json!(1);
     });
     let said = bench.says(PROGRAM, &[&scene, "-n", "1000", "-o", "out.cloud"]);

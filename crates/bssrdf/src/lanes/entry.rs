@@ -10,6 +10,7 @@
 //! ```
 
 use super::block::{LANES, Lane, each};
+use crate::rough_entry::RoughEntry;
 
 /// Integers, one for each sample.
 type Integers = [i32; LANES];
@@ -18,8 +19,8 @@ type Integers = [i32; LANES];
 /// 32768 at most, so that its products fit into an `i32`.
 pub type Directions = [Integers; 3];
 
-/// The smooth interface that light enters through, from outside; no units.
-#[derive(Clone, Copy, Debug)]
+/// The interface that light enters through, from outside; no units.
+#[derive(Clone, Debug)]
 pub struct EntryRefraction {
     /// `η² − 1`: float64, because beyond it there is total reflection if `η < 1`.
     excess: f64,
@@ -27,6 +28,8 @@ pub struct EntryRefraction {
     squared: f32,
     /// `1/η`.
     inverse: f32,
+    /// The transmittance of a rough interface; light goes on in the direction that a smooth one sends it in.
+    rough: Option<RoughEntry>,
 }
 
 /// The light of sixteen samples that enters; no units.
@@ -43,7 +46,13 @@ pub struct Entered {
 impl EntryRefraction {
     /// The interface of relative index `eta`, inside over outside.
     pub fn new(eta: f64) -> EntryRefraction {
-        EntryRefraction { excess: (eta - 1.0) * (eta + 1.0), squared: (eta * eta) as f32, inverse: (1.0 / eta) as f32 }
+        let (excess, squared) = ((eta - 1.0) * (eta + 1.0), (eta * eta) as f32);
+        EntryRefraction { excess, squared, inverse: (1.0 / eta) as f32, rough: None }
+    }
+
+    /// The same interface with this roughness.
+    pub fn behind(&self, rough: &RoughEntry) -> EntryRefraction {
+        EntryRefraction { rough: Some(rough.clone()), ..*self }
     }
 
     /// Unit normals, refracted directions and transmittances of sixteen samples; `direction` points towards the light.
@@ -53,7 +62,12 @@ impl EntryRefraction {
         let m = dot(normal, direction); // N·D
         let (normal2, direction2) = (dot(normal, normal), dot(direction, direction)); // N², D²
         let w = self.root(&m, &normal2, &direction2);
-        let transmittance = each(|i| self.transmittance(m[i] as f32, w[i]));
+        let mut transmittance = each(|i| self.transmittance(m[i] as f32, w[i]));
+        if let Some(rough) = &self.rough {
+            for (i, t) in transmittance.iter_mut().enumerate().filter(|(_, t)| **t > 0.0) {
+                *t = rough.at(m[i] as f32 / ((normal2[i] as f32) * (direction2[i] as f32)).sqrt());
+            }
+        }
         let mut entered = Entered { normal: [[0.0; LANES]; 3], refracted: [[0.0; LANES]; 3], transmittance };
         for i in 0..LANES {
             let inverse = 1.0 / (normal2[i] as f32).sqrt();

@@ -93,6 +93,8 @@ struct Builder {
     coordinates: Vec<[f32; 2]>,
     /// The same of emission.
     emission_coordinates: Vec<[f32; 2]>,
+    /// The same of metallic and roughness.
+    gloss_coordinates: Vec<[f32; 2]>,
     /// Vertex colors; vertices at the end may have none.
     colors: Vec<[f32; 4]>,
 }
@@ -168,8 +170,11 @@ impl Builder {
 
     /// Adds texture coordinates and colors of the next vertices.
     fn add_colors(&mut self, part: &CheckedPrimitive) -> Result<()> {
-        let of_textures =
-            [(&part.coordinates, &mut self.coordinates), (&part.emission_coordinates, &mut self.emission_coordinates)];
+        let of_textures = [
+            (&part.coordinates, &mut self.coordinates),
+            (&part.emission_coordinates, &mut self.emission_coordinates),
+            (&part.gloss_coordinates, &mut self.gloss_coordinates),
+        ];
         for (part, all) in of_textures {
             if let Some((column, transform)) = part {
                 all.resize(self.positions.len(), [0.0; 2]);
@@ -267,8 +272,8 @@ impl Builder {
         for (material, count) in &rounded {
             *degenerate.entry(*material).or_default() += count;
         }
-        let Builder { normals, triangles, coordinates, emission_coordinates, colors, .. } = self;
-        let mesh = Mesh { positions, normals, triangles, coordinates, emission_coordinates, colors };
+        let Builder { normals, triangles, coordinates, emission_coordinates, gloss_coordinates, colors, .. } = self;
+        let mesh = Mesh { positions, normals, triangles, coordinates, emission_coordinates, gloss_coordinates, colors };
         Ok(Geometry { mesh, origin, degenerate, rounded })
     }
 }

@@ -1,6 +1,8 @@
 //! Import of materials.
 
-use super::{base_color, container::Document, extras, fault::Result, textures::Textures, units::FileUnits, volumes};
+use super::{
+    base_color, container::Document, extras, fault::Result, gloss, textures::Textures, units::FileUnits, volumes,
+};
 use crate::{
     material::{Alpha, Material},
     texture::Texture,
@@ -32,11 +34,15 @@ pub(super) fn read(context: &Context, warnings: &mut Vec<String>) -> Result<(Vec
         ));
     }
     let (mut textures, mut faults, mut materials) = (Textures::new(context.document), BTreeMap::new(), Vec::new());
-    for (index, m) in (0..).zip(&root.materials) {
+    for (index, m) in (0u16..).zip(&root.materials) {
         let name = m.name.clone().unwrap_or_else(|| format!("material{index}"));
         let named = |e| format!("material `{name}`: {e}");
         let mut material = material(name.clone(), m, context, warnings).map_err(named)?;
-        if context.used.contains(&index) {
+        let is_used = context.used.contains(&index);
+        let note = |what| warnings.push(format!("material `{name}`: {what}"));
+        let textures_of_used = is_used.then_some(&mut textures);
+        material.gloss = gloss::read(context.document, usize::from(index), m, textures_of_used, note).map_err(named)?;
+        if is_used {
             match base_texture(m, &mut textures) {
                 Ok(texture) => material.base_texture = texture,
                 Err(e) => _ = faults.insert(index, named(e)),
@@ -82,6 +88,7 @@ fn default_named(name: String) -> Material {
         alpha: Alpha::Ignored,
         emission: DVec3::ZERO,
         emission_texture: None,
+        gloss: None,
         volume: false,
         thin: false,
         stated: None,

@@ -17,6 +17,7 @@ mod features;
 pub(crate) mod files;
 mod foreign;
 mod geometry;
+mod gloss;
 mod honoured;
 mod instancing;
 mod jpeg;

@@ -6,6 +6,7 @@ use super::{
     container::Document,
     draco,
     fault::{Fault, Result},
+    gloss,
     textures::Coordinates,
 };
 use glam::Vec3;
@@ -35,6 +36,8 @@ pub(super) struct CheckedPrimitive<'a> {
     pub coordinates: Option<(CheckedAccessor<'a>, Coordinates)>,
     /// The same of the emissive texture.
     pub emission_coordinates: Option<(CheckedAccessor<'a>, Coordinates)>,
+    /// The same of the texture of metallic and roughness.
+    pub gloss_coordinates: Option<(CheckedAccessor<'a>, Coordinates)>,
     pub colors: Option<CheckedAccessor<'a>>,
     targets: Vec<Target<'a>>,
     /// Joints and weights, four to a vertex in each set.
@@ -216,8 +219,11 @@ impl<'a> CheckedPrimitive<'a> {
         let own = document.root.materials.get(usize::from(material));
         let base = own.and_then(base_color::texture);
         let emission = own.filter(|m| m.emissive_factor.0 != [0.0; 3]).and_then(|m| m.emissive_texture.as_ref());
-        let [coordinates, emission_coordinates] =
-            [coordinates(base.as_ref().map(|(info, _)| &**info))?, coordinates(emission)?];
+        let [coordinates, emission_coordinates, gloss_coordinates] = [
+            coordinates(base.as_ref().map(|(info, _)| &**info))?,
+            coordinates(emission)?,
+            coordinates(own.and_then(gloss::texture))?,
+        ];
         let (targets, influences) = (source.targets(&positions)?, source.influences(&positions)?);
         Ok(CheckedPrimitive {
             positions,
@@ -225,6 +231,7 @@ impl<'a> CheckedPrimitive<'a> {
             indices,
             coordinates,
             emission_coordinates,
+            gloss_coordinates,
             colors,
             targets,
             influences,

@@ -2,7 +2,7 @@
 //!
 //! Skipped values are not built, so that the memory of the visit is that of its findings.
 
-use super::honoured::{DOCUMENT, Fate, Lookup, look_up};
+use super::honoured::{DOCUMENT, Fate, Lookup, MATERIALS, look_up};
 use crate::unhonoured::cut;
 use serde::de::{Deserialize, DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_json::Value;
@@ -14,12 +14,18 @@ use std::{
 /// Most bytes of the name of a property; a longer one is cut.
 const MAX_KEY_BYTES: usize = 60;
 
+/// Properties of materials that mean something else where they are left out than with their default.
+const ROUGHNESS: &str = "pbrMetallicRoughness.roughnessFactor";
+const METALLIC: &str = "pbrMetallicRoughness.metallicFactor";
+
 /// Properties that are not honoured, for each element of each list of the file.
 #[derive(Default)]
 pub(super) struct Survey {
     lists: BTreeMap<&'static str, Vec<Vec<Finding>>>,
     /// Names of all extensions that have an object.
     pub extensions: BTreeSet<String>,
+    /// Materials that state a roughness, or that they are metals.
+    glossy: BTreeSet<usize>,
 }
 
 /// A property that is not honoured.
@@ -34,6 +40,11 @@ impl Survey {
     /// The findings about an element of a list.
     pub fn of(&self, list: &str, index: usize) -> &[Finding] {
         self.lists.get(list).and_then(|elements| elements.get(index)).map_or(&[], Vec::as_slice)
+    }
+
+    /// Whether a material states a roughness, or a metallic factor above 0.
+    pub fn is_glossy(&self, material: usize) -> bool {
+        self.glossy.contains(&material)
     }
 
     /// Number of elements of a list.
@@ -68,13 +79,18 @@ impl Walk<'_> {
 
     /// Reads a property of the table.
     fn property<'de, A: MapAccess<'de>>(&mut self, map: &mut A, path: String, on: [Fate; 2]) -> Result<(), A::Error> {
-        let by_value = on.iter().any(|fate| matches!(fate, Fate::TakenAs(_) | Fate::Unless(_)));
+        let is_factor = self.list == MATERIALS && [ROUGHNESS, METALLIC].contains(&path.as_str());
+        let by_value = is_factor || on.iter().any(|fate| matches!(fate, Fate::TakenAs(_) | Fate::Unless(_)));
         let (numbers, is_there) = if by_value {
             let value: Value = map.next_value()?;
             (numbers(&value), !value.is_null())
         } else {
             (Vec::new(), map.next_value::<Option<IgnoredAny>>()?.is_some())
         };
+        if is_factor && is_there && (path == ROUGHNESS || numbers.as_slice() != [0.0]) {
+            let index = self.survey.len(MATERIALS).saturating_sub(1);
+            self.survey.glossy.insert(index);
+        }
         let differs = |expected: &[f64]| !numbers.starts_with(expected);
         let named = |fate: Fate| match fate {
             Fate::Shown | Fate::Neutral | Fate::Reported => None,

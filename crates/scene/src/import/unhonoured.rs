@@ -3,6 +3,7 @@
 use super::{
     base_color, clipping,
     container::Document,
+    gloss,
     honoured::{self, Fate},
     nodes::SceneNode,
     survey::{Finding, Survey},
@@ -79,12 +80,16 @@ impl Collected<'_> {
         }
     }
 
-    /// Adds the textures of base color and emission with their samplers and images.
+    /// Adds the textures of base color, emission, metallic and roughness with their samplers and images.
     fn add_pictures(&mut self, root: &Root, materials: &BTreeSet<u16>) {
         let materials = materials.iter().filter_map(|k| root.materials.get(usize::from(*k)));
         let own = |m: &json::Material| {
             let base = base_color::texture(m).map(|(info, _)| info.index.value());
-            [base, m.emissive_texture.as_ref().map(|info| info.index.value())]
+            let others = [
+                m.emissive_texture.as_ref().map(|info| info.index.value()),
+                gloss::texture(m).map(|info| info.index.value()),
+            ];
+            [base, others[0], others[1]]
         };
         let textures: BTreeSet<usize> = materials.flat_map(own).flatten().collect();
         let (mut samplers, mut images) = (BTreeSet::new(), BTreeSet::new());

@@ -178,7 +178,8 @@ impl Light for AreaLight {
         let factor = at.normal.dot(direction) * cosine_out * area / (distance * distance);
         let lit = at.normal.dot(direction) > 0.0 && cosine_out > 0.0 && factor.is_finite();
         let radiance = || self.radiance_at(index, [w[1], w[2]]);
-        lit.then(|| Illumination { direction, distance, irradiance: radiance() * factor })
+        let density = || distance * distance / (cosine_out * area);
+        lit.then(|| Illumination { direction, distance, irradiance: radiance() * factor, density: density() })
     }
 
     fn pdf_solid_angle(&self, at: &SurfacePoint, direction: DVec3) -> f64 {
@@ -186,6 +187,10 @@ impl Light for AreaLight {
             let area = self.weight * self.emitters[seen.emitter].area_per_weight;
             seen.distance * seen.distance / (seen.cosine * area)
         })
+    }
+
+    fn material(&self) -> Option<u16> {
+        Some(self.material)
     }
 
     fn delta(&self) -> Option<Delta> {

@@ -61,7 +61,11 @@ pub struct Bounce<'a> {
 impl<'a> Bounce<'a> {
     /// None if no opaque surface reflects.
     pub fn new(scene: &'a Scene, translucent: impl Fn(u16) -> bool) -> Option<Self> {
-        let reflects = |k: usize| scene.materials[k].base_color.truncate() != DVec3::ZERO;
+        let reflects = |k: usize| {
+            let material = &scene.materials[k];
+            let is_metal = material.gloss.as_ref().is_some_and(|g| g.metallic == 1.0 && g.texture.is_none());
+            material.base_color.truncate() != DVec3::ZERO && !is_metal
+        };
         let diffuse = |k: usize| !translucent(k as u16) && !scene.is_pane(k as u16) && reflects(k);
         let opaque: Vec<bool> = (0..scene.materials.len()).map(diffuse).collect();
         let any = scene.mesh.triangles.iter().any(|t| opaque[t.material as usize]);
@@ -69,7 +73,7 @@ impl<'a> Bounce<'a> {
     }
 
     /// A cosine-distributed direction, and the irradiance `π L` that the opaque surface there gives, W/m². Its light is
-    /// `L = ρ E/π`, since both of its sides are Lambertian, as in phase two.
+    /// `L = ρ E/π`, since both of its sides are Lambertian, as in phase two; what a glossy surface mirrors is left out.
     fn light_at(&self, surface: &LitSurface, at: &SurfacePoint, xi: [f64; 2], random: Item, rays: &mut u64) -> Lit {
         // The frame is that of the triangle: a scene that is turned as a whole keeps its samples.
         let [a, b, _] = surface.mesh.corners(at.triangle as usize);
@@ -87,7 +91,7 @@ impl<'a> Bounce<'a> {
         if !self.opaque[point.material as usize] {
             return Lit::NoBounce;
         }
-        let albedo = self.scene.color(hit.triangle, hit.weights).truncate();
+        let albedo = self.scene.diffuse(hit.triangle, hit.weights);
         let mut dimension = 0;
         let xi = || {
             dimension += 2;

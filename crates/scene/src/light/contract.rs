@@ -14,12 +14,14 @@ pub struct Illumination {
     /// `E = L_i (n·ω)/pdf_solid_angle(ω)`, cosine included, visibility not, W/m².
     // note: [irradiance]
     pub irradiance: DVec3,
+    /// `pdf_solid_angle(ω)`, 1/sr; 0 for a delta distribution.
+    pub density: f64,
 }
 
 impl Illumination {
     /// Light from infinitely far away.
-    pub(super) fn distant(direction: DVec3, irradiance: DVec3) -> Illumination {
-        Illumination { direction, distance: f64::INFINITY, irradiance }
+    pub(super) fn distant(direction: DVec3, irradiance: DVec3, density: f64) -> Illumination {
+        Illumination { direction, distance: f64::INFINITY, irradiance, density }
     }
 }
 
@@ -52,6 +54,9 @@ pub trait Light: Send + Sync {
     /// Emitted radiance that arrives at `position` from `direction` if nothing is in the way, W/(m² sr); 0 if the light
     /// has a single direction there.
     fn radiance(&self, position: DVec3, direction: DVec3) -> DVec3;
+
+    /// The material whose surface shines; none for lights that are no surfaces.
+    fn material(&self) -> Option<u16>;
 
     /// The origin of a light that has a single direction at each point; none for others, which rays may meet.
     fn delta(&self) -> Option<Delta>;

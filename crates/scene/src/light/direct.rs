@@ -8,6 +8,7 @@ use super::{
 };
 use crate::{mesh::SurfacePoint, rays::Rays};
 use glam::DVec3;
+use std::ops::{Add, Div};
 
 /// The outcome of one attempt to light a point.
 #[derive(Clone, Copy, Debug)]
@@ -41,31 +42,66 @@ pub fn light_at(choice: &LightChoice, rays: &Rays, at: &SurfacePoint, xi: [f64; 
 /// Number of nodes in the list from which the lights of a single point are picked.
 const NODES_PER_POINT: usize = 128;
 
-/// Irradiance for surfaces that are lit once a path. Up to `MAX_FLAT` lights are all sampled, one direction each, since
-/// the choice of one would be noise; of more, as many are picked. Each call of `xi` gives two uniform numbers.
+/// The light of two layers that a surface reflects towards a viewer, W/(m² sr).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Reflected {
+    pub mirrored: DVec3,
+    pub diffuse: DVec3,
+}
+
+impl Add for Reflected {
+    type Output = Reflected;
+
+    fn add(self, other: Reflected) -> Reflected {
+        Reflected { mirrored: self.mirrored + other.mirrored, diffuse: self.diffuse + other.diffuse }
+    }
+}
+
+impl Div<f64> for Reflected {
+    type Output = Reflected;
+
+    fn div(self, x: f64) -> Reflected {
+        Reflected { mirrored: self.mirrored / x, diffuse: self.diffuse / x }
+    }
+}
+
+/// Irradiance for surfaces that are lit once a path, as of [`all_lights_at`].
 pub fn all_light_at(
+    lights: &LightTree,
+    rays: &Rays,
+    at: &SurfacePoint,
+    xi: impl FnMut() -> [f64; 2],
+    shadow_rays: &mut u64,
+) -> DVec3 {
+    all_lights_at(lights, rays, at, xi, shadow_rays, |light| light.irradiance)
+}
+
+/// The sum over all lights of what `reflect` makes of each that is not hidden. Up to `MAX_FLAT` lights are all sampled, one direction each, since
+/// the choice of one would be noise; of more, as many are picked. Each call of `xi` gives two uniform numbers.
+pub fn all_lights_at<T: Default + Add<Output = T> + Div<f64, Output = T>>(
     lights: &LightTree,
     rays: &Rays,
     at: &SurfacePoint,
     mut xi: impl FnMut() -> [f64; 2],
     shadow_rays: &mut u64,
-) -> DVec3 {
+    reflect: impl Fn(&Illumination) -> T,
+) -> T {
     let mut visible = |light: &dyn Light, xi: [f64; 2]| {
-        let Some(arriving) = arriving(light, at, xi) else { return DVec3::ZERO };
+        let Some(arriving) = arriving(light, at, xi) else { return T::default() };
         *shadow_rays += 1;
         let clear = rays.visible(at.position, arriving.direction, arriving.distance, Some(at.triangle));
-        if clear { arriving.irradiance } else { DVec3::ZERO }
+        if clear { reflect(&arriving) } else { T::default() }
     };
     if lights.lights.len() <= MAX_FLAT {
-        return lights.lights.iter().map(|light| visible(*light, xi())).sum();
+        return lights.lights.iter().fold(T::default(), |sum, light| sum + visible(*light, xi()));
     }
     let choice = LightChoice::new(lights, &ReceiverBounds::point(at), NODES_PER_POINT);
     let [shift, _] = xi();
     let one = |k: usize| {
         let picked = choice.pick(at, (k as f64 + shift) / MAX_FLAT as f64);
-        picked.map_or(DVec3::ZERO, |p| visible(p.light, xi()) / p.share)
+        picked.map_or_else(T::default, |p| visible(p.light, xi()) / p.share)
     };
-    (0..MAX_FLAT).map(one).sum::<DVec3>() / MAX_FLAT as f64
+    (0..MAX_FLAT).map(one).fold(T::default(), |sum, x| sum + x) / MAX_FLAT as f64
 }
 
 /// Light from above the triangle.

@@ -30,11 +30,15 @@ impl Light for DirectionalLight {
 
     fn illuminate(&self, at: &SurfacePoint, _xi: [f64; 2]) -> Option<Illumination> {
         let cosine = at.normal.dot(self.direction);
-        (cosine > 0.0).then(|| Illumination::distant(self.direction, self.irradiance * cosine))
+        (cosine > 0.0).then(|| Illumination::distant(self.direction, self.irradiance * cosine, 0.0))
     }
 
     fn pdf_solid_angle(&self, _at: &SurfacePoint, _direction: DVec3) -> f64 {
         0.0
+    }
+
+    fn material(&self) -> Option<u16> {
+        None
     }
 
     fn delta(&self) -> Option<Delta> {

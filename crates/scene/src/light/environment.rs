@@ -57,7 +57,9 @@ impl Light for Environment {
     fn illuminate(&self, at: &SurfacePoint, xi: [f64; 2]) -> Option<Illumination> {
         match self {
             Environment::Constant(radiance) => {
-                Some(Illumination::distant(warp::cosine_hemisphere(at.normal, xi), *radiance * PI))
+                let direction = warp::cosine_hemisphere(at.normal, xi);
+                let density = warp::cosine_hemisphere_pdf_solid_angle(at.normal.dot(direction));
+                Some(Illumination::distant(direction, *radiance * PI, density))
             }
             Environment::Map(map) => map.illuminate(at, xi),
         }
@@ -68,6 +70,10 @@ impl Light for Environment {
             Environment::Constant(_) => warp::cosine_hemisphere_pdf_solid_angle(at.normal.dot(direction)),
             Environment::Map(map) => map.pdf_solid_angle(at, direction),
         }
+    }
+
+    fn material(&self) -> Option<u16> {
+        None
     }
 
     fn delta(&self) -> Option<Delta> {

@@ -149,8 +149,10 @@ impl EnvironmentMap {
         let direction = self.in_world(self.direction(&cell));
         let cosine = at.normal.dot(direction);
         let radiance = self.pixel_radiance([cell.column, cell.row]);
-        let factor = cosine * solid_angle(self.width, self.height, cell.row) / cell.probability;
-        (cosine > 0.0).then(|| Illumination::distant(direction, radiance * factor))
+        let solid_angle = solid_angle(self.width, self.height, cell.row);
+        let factor = cosine * solid_angle / cell.probability;
+        let density = || cell.probability / solid_angle;
+        (cosine > 0.0).then(|| Illumination::distant(direction, radiance * factor, density()))
     }
 
     /// `P/Ω` of the pixel in this direction.

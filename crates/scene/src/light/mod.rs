@@ -22,7 +22,7 @@ pub use bounce::{Bounce, LitSurface};
 pub use bounds::{LightBounds, ReceiverBounds};
 pub use choice::{LightChoice, Pick};
 pub use contract::{Delta, Illumination, Light};
-pub use direct::{Lit, all_light_at, light_at};
+pub use direct::{Lit, Reflected, all_light_at, all_lights_at, light_at};
 pub use direction_cone::DirectionCone;
 pub use directional::DirectionalLight;
 pub use environment::Environment;

@@ -97,11 +97,15 @@ impl Light for PointLight {
         let cosine = at.normal.dot(direction);
         let factor = self.attenuation(direction, distance) * cosine / (distance * distance);
         let lit = cosine > 0.0 && factor > 0.0 && factor.is_finite();
-        lit.then(|| Illumination { direction, distance, irradiance: self.intensity * factor })
+        lit.then(|| Illumination { direction, distance, irradiance: self.intensity * factor, density: 0.0 })
     }
 
     fn pdf_solid_angle(&self, _at: &SurfacePoint, _direction: DVec3) -> f64 {
         0.0
+    }
+
+    fn material(&self) -> Option<u16> {
+        None
     }
 
     fn delta(&self) -> Option<Delta> {

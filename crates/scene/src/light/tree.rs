@@ -4,7 +4,7 @@ use super::{
     bounds::{LightBounds, LightSphere, ReceiverBounds},
     contract::Light,
 };
-use crate::mesh::bounds;
+use crate::mesh::{SurfacePoint, bounds};
 use glam::DVec3;
 
 /// Up to this number, lights with bounds are weighed one by one, without a tree.
@@ -21,6 +21,8 @@ pub struct LightTree<'a> {
     pub(super) single: Vec<u32>,
     /// The lights without bounds.
     distant: Vec<&'a dyn Light>,
+    /// The lights that are surfaces, by their material.
+    surfaces: Vec<(u16, &'a dyn Light)>,
     /// The root first; the first child of a node follows it.
     nodes: Vec<Node>,
     /// Indices of the nodes of single lights.
@@ -50,7 +52,10 @@ impl<'a> LightTree<'a> {
         let is_flat = bounded.len() <= MAX_FLAT;
         let single = indices.filter(|k| is_flat || lights[*k as usize].bounds().is_none()).collect();
         let distant = lights.iter().copied().filter(|light| light.bounds().is_none()).collect();
-        let mut tree = LightTree { lights, single, distant, nodes: Vec::new(), leaves: Vec::new() };
+        let mut surfaces: Vec<(u16, &dyn Light)> =
+            lights.iter().filter_map(|light| Some((light.material()?, *light))).collect();
+        surfaces.sort_by_key(|(material, _)| *material);
+        let mut tree = LightTree { lights, single, distant, surfaces, nodes: Vec::new(), leaves: Vec::new() };
         if !is_flat {
             tree.add(&mut bounded);
         }
@@ -85,6 +90,21 @@ impl<'a> LightTree<'a> {
     /// Others show it on their own surfaces.
     pub fn distant_radiance(&self, origin: DVec3, direction: DVec3) -> DVec3 {
         self.distant.iter().map(|light| light.radiance(origin, direction)).sum()
+    }
+
+    /// The same for a direction that was drawn with a density, 1/sr, at a point whose light is sampled as well: the share
+    /// that each light leaves to such rays by the balance heuristic.
+    pub fn distant_radiance_by(&self, at: &SurfacePoint, direction: DVec3, density: f64) -> DVec3 {
+        let share = |light: &&dyn Light| density / (density + light.pdf_solid_angle(at, direction));
+        let one = |light: &&dyn Light| light.radiance(at.position, direction) * share(light);
+        self.distant.iter().map(one).sum()
+    }
+
+    /// The share of the light of an emitting material that is left to a ray by the balance heuristic, as above.
+    pub fn share_of_surface(&self, material: u16, at: &SurfacePoint, direction: DVec3, density: f64) -> f64 {
+        let found = self.surfaces.binary_search_by_key(&material, |(material, _)| *material);
+        let sampled = found.map_or(0.0, |k| self.surfaces[k].1.pdf_solid_angle(at, direction));
+        density / (density + sampled)
     }
 
     pub(super) fn kind(&self, node: u32) -> Kind {

@@ -246,8 +246,11 @@ fn density_and_radiance_are_those_of_the_samples() {
             if pdf > 0.0 {
                 let expected = radiance * at.normal.dot(l.direction);
                 compared[which] += 1;
-                equal[which] += u32::from((l.irradiance * pdf).distance(expected) <= 1e-9 * expected.length());
+                let is_stated = (l.density - pdf).abs() <= 1e-9 * pdf;
+                let fits = (l.irradiance * pdf).distance(expected) <= 1e-9 * expected.length();
+                equal[which] += u32::from(is_stated && fits);
             } else {
+                assert_eq!(l.density, 0.0);
                 assert_eq!(radiance, DVec3::ZERO);
             }
         }

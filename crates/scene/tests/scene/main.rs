@@ -6,6 +6,7 @@ mod cutouts;
 mod environment;
 mod exactness;
 mod framing;
+mod gloss;
 mod glow;
 mod identity;
 mod import;

@@ -1,0 +1,106 @@
+//! What surfaces mirror that have roughness: lights are sampled, and paths follow a direction that the BSDF draws; each of
+//! the two counts for the share of its density (balance heuristic, Veach 1997; docs/method.md 18.5).
+
+use crate::{
+    counts::Counts,
+    meeting::Meeting,
+    path_state::{Drawn, Layer, PathLight, PathState},
+    renderer::Renderer,
+};
+use bsdf::{Bsdf, Gloss, Lobe, Side, Stated, Surface};
+use scene::{
+    DVec3, SurfacePoint,
+    light::{Illumination, Reflected, all_lights_at},
+};
+
+/// The least probability with which a path goes on that has had an event already.
+const MIN_SURVIVAL: f64 = 0.05;
+
+impl Renderer<'_> {
+    /// Adds the light that an opaque surface reflects diffusely, and what it mirrors of sampled lights; sends the path on
+    /// in a mirrored direction. After its first event, a path goes on by chance, as likely as light is mirrored.
+    pub(crate) fn meet_gloss(
+        &self,
+        state: &mut PathState,
+        point: &SurfacePoint,
+        side: Side,
+        stated: &Stated,
+        light: &mut PathLight,
+        counts: &mut Counts,
+    ) -> bool {
+        let gloss = Gloss::new(stated);
+        let meeting = Meeting::new(point, Surface::Gloss(gloss), side, -state.direction, counts);
+        self.add_lights(state, &meeting, Some(&gloss), light, counts);
+        if state.layer.is_some() {
+            let mirrored = gloss.albedo(meeting.view.normal.dot(meeting.view.direction)).max_element();
+            let survival = mirrored.clamp(MIN_SURVIVAL, 1.0);
+            if state.uniform() >= survival {
+                return false;
+            }
+            state.throughput /= survival;
+        }
+        mirror(&meeting, state, counts)
+    }
+
+    /// Follows the reflection lobe of a translucent surface, whose share the path has accounted for.
+    pub(crate) fn reflect(
+        &self,
+        state: &mut PathState,
+        meeting: &Meeting,
+        light: &mut PathLight,
+        counts: &mut Counts,
+    ) -> bool {
+        if !meeting.bsdf.is_specular() {
+            self.add_lights(state, meeting, None, light, counts);
+        }
+        mirror(meeting, state, counts)
+    }
+
+    /// Adds the light of sampled lights: what a surface mirrors, and what its base reflects.
+    fn add_lights(
+        &self,
+        state: &mut PathState,
+        meeting: &Meeting,
+        base: Option<&Gloss>,
+        light: &mut PathLight,
+        counts: &mut Counts,
+    ) {
+        let (view, bsdf) = (&meeting.view, &meeting.bsdf);
+        let at = SurfacePoint { normal: view.normal, ..*meeting.point };
+        let share = 1.0 - meeting.transmittance();
+        let reflect = |arriving: &Illumination| {
+            let left = match arriving.density {
+                0.0 => 1.0,
+                density => density / (density + bsdf.density(view, arriving.direction)),
+            };
+            let diffuse = base.map_or(DVec3::ZERO, |base| base.base(view, arriving.direction));
+            Reflected {
+                mirrored: bsdf.evaluate(view, arriving.direction) * arriving.irradiance * (left / share),
+                diffuse: diffuse * arriving.irradiance,
+            }
+        };
+        let xi = || [state.uniform(), state.uniform()];
+        let reflected = all_lights_at(&self.lights, self.input.rays, &at, xi, &mut counts.shadow_rays, reflect);
+        light.add(state, Layer::Diffuse, reflected.diffuse);
+        light.add(state, Layer::Specular, reflected.mirrored);
+    }
+
+    /// The share of the light of an emitting surface that is left to a ray which meets it.
+    pub(crate) fn share_of(&self, state: &PathState, material: u16) -> f64 {
+        state
+            .drawn
+            .as_ref()
+            .map_or(1.0, |drawn| self.lights.share_of_surface(material, &drawn.at, state.direction, drawn.density))
+    }
+}
+
+/// Sends the path on in a mirrored direction; false if there is none.
+fn mirror(meeting: &Meeting, state: &mut PathState, counts: &mut Counts) -> bool {
+    let follows = meeting.scatter(state, Lobe::Reflection, Layer::Specular, counts);
+    if follows && !meeting.bsdf.is_specular() {
+        let at = SurfacePoint { normal: meeting.view.normal, ..*meeting.point };
+        let density = meeting.bsdf.density(&meeting.view, state.direction);
+        state.drawn = Some(Drawn { at, density });
+    }
+    follows
+}
