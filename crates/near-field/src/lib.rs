@@ -35,7 +35,7 @@ pub struct Place {
     pub surface: SurfacePoint,
     /// Where the model is evaluated, m.
     pub position: DVec3,
-    /// The normal that the model is given.
+    /// The normal that the model is given, without normal maps.
     pub normal: DVec3,
 }
 
@@ -118,7 +118,7 @@ impl NearField {
         let around = Around { near: self, at, frame: [at.normal, x, y] };
         let drawn = (self.radii.sample(radius), TAU * azimuth);
         let Scratch { hits, found, work } = scratch;
-        let exitant = SurfacePoint { normal: at.normal, ..at.surface };
+        let exitant = SurfacePoint { smooth_normal: at.normal, ..at.surface }.smoothed();
         found.axes.clear();
         found.points.clear();
         found.points.push(exitant);
@@ -209,7 +209,7 @@ impl Around<'_> {
             // A line along the surface, or rounding at the end of the near part, where its value is 0.
             return DVec3::ZERO;
         }
-        let (normal_in, normal_out) = (point.normal, self.at.normal);
+        let (normal_in, normal_out) = (point.smooth_normal, self.at.normal);
         let value = near.value(&Separation { offset, normal_in, refracted: light.refracted, normal_out });
         light.entering * value * (share / density)
     }

@@ -71,7 +71,8 @@ impl<'a> Lamp<'a> {
         let Lit::Light { direction, irradiance } = lit else {
             return None;
         };
-        let entry = fresnel::enter(point.normal, direction, eta)?;
+        let entry = fresnel::enter(point.smooth_normal, direction, eta)?;
+        let irradiance = irradiance * point.bump.gain(point.smooth_normal.dot(direction));
         Some(Arriving { entering: irradiance * entry.transmittance, refracted: entry.direction })
     }
 }

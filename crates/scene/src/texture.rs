@@ -51,26 +51,36 @@ impl Wrap {
 
 impl Texture {
     /// Linear red, green and blue, and alpha, at texture coordinates.
-    pub fn at(&self, [u, v]: [f64; 2]) -> DVec4 {
+    pub fn at(&self, coordinates: [f64; 2]) -> DVec4 {
+        self.decoded_at(coordinates, Texture::linear)
+    }
+
+    /// The codes from 0 to 255, for pictures whose numbers are no colors.
+    pub fn codes_at(&self, coordinates: [f64; 2]) -> DVec4 {
+        self.decoded_at(coordinates, |codes| DVec4::from_array(codes.map(f64::from)))
+    }
+
+    #[inline(always)]
+    fn decoded_at(&self, [u, v]: [f64; 2], decode: impl Fn([u8; 4]) -> DVec4) -> DVec4 {
         let (width, height) = (self.picture.width, self.picture.texels.len() / self.picture.width);
         let [x, y] = [u * width as f64, v * height as f64];
         if self.nearest {
-            return self.texel(x.floor() as i64, y.floor() as i64);
+            return decode(self.texel(x.floor() as i64, y.floor() as i64));
         }
         // The center of a texel is half a texel from its edges.
         let [x, y] = [x - 0.5, y - 0.5];
         let [left, top] = [x.floor(), y.floor()];
         let row = |j: i64| {
             let i = left as i64;
-            self.texel(i, j).lerp(self.texel(i.saturating_add(1), j), x - left)
+            decode(self.texel(i, j)).lerp(decode(self.texel(i.saturating_add(1), j)), x - left)
         };
         row(top as i64).lerp(row((top as i64).saturating_add(1)), y - top)
     }
 
-    fn texel(&self, i: i64, j: i64) -> DVec4 {
+    fn texel(&self, i: i64, j: i64) -> [u8; 4] {
         let Picture { width, texels } = &*self.picture;
         let [x, y] = [self.wrap[0].texel(i, *width as i64), self.wrap[1].texel(j, (texels.len() / width) as i64)];
-        Texture::linear(texels[y as usize * width + x as usize])
+        texels[y as usize * width + x as usize]
     }
 
     /// Linear red, green and blue, and alpha, of a texel.

@@ -24,7 +24,11 @@ impl TranslucentObject<'_> {
         match &self.factors {
             None => self.exit_lobe(view.normal.dot(view.direction)),
             Some(factors) => {
-                factors.at(&Site { position: point.position, normal: point.geometric_normal }, view.direction)
+                let site = Site { position: point.position, normal: point.geometric_normal };
+                let factor = factors.at(&site, view.direction);
+                let [smooth, tilted] = [point.geometric_normal, view.normal].map(|normal| normal.dot(view.direction));
+                // Only normal maps turn the lobe: interpolated normals are fitted by the factors.
+                if point.normal == point.smooth_normal { factor } else { factor * factors.turned_lobe(smooth, tilted) }
             }
         }
     }
@@ -57,11 +61,14 @@ impl Renderer<'_> {
             return self.walk(state, walks, point, view.normal, light, context);
         }
         let position = object.evaluated_at(point, view);
-        let place = Place { surface: *point, position, normal: view.normal };
+        // The model knows no bumps of normal maps.
+        let faces = point.smooth_normal.dot(view.direction) > 0.0;
+        let normal = if faces { point.smooth_normal } else { point.geometric_normal };
+        let place = Place { surface: *point, position, normal };
         let nearby = self.nearby(state, object, &place, context);
         let besides = 0.5 * (nearby[0] + nearby[1]);
         let exit = |half: usize| {
-            Exit::new(position, view.normal, state.key.bits(2 * state.dimension + half as u64)).besides(besides)
+            Exit::new(position, normal, state.key.bits(2 * state.dimension + half as u64)).besides(besides)
         };
         let estimator = self.estimator_for(state.throughput.max_element());
         let scratch = &mut context.scratch[point.material as usize];
@@ -110,7 +117,7 @@ impl Renderer<'_> {
         context: &mut ThreadContext,
     ) -> DVec3 {
         let numbers = std::array::from_fn(|k| item.uniform(LATER + k as u64));
-        let at = Place { surface: *point, position: point.position, normal: point.normal };
+        let at = Place { surface: *point, position: point.position, normal: point.smooth_normal };
         self.nearby_once(object, &at, &numbers, item, context)
     }
 

@@ -87,7 +87,10 @@ pub(super) const TABLE: &[Row] = &[
         "extensions.KHR_materials_pbrSpecularGlossiness.diffuseTexture.extensions.KHR_texture_transform.texCoord"]),
     material(TakenAs(&[0.0]), TakenAs(&[0.0]), &["pbrMetallicRoughness.metallicFactor"]),
     material(Unless(&[1.0]), TakenAs(&[0.0]), &["pbrMetallicRoughness.roughnessFactor"]),
-    material(No, No, &["pbrMetallicRoughness.metallicRoughnessTexture", "normalTexture", "occlusionTexture"]),
+    material(No, No, &["pbrMetallicRoughness.metallicRoughnessTexture", "occlusionTexture"]),
+    material(Shown, Shown, &["normalTexture.index", "normalTexture.texCoord", "normalTexture.scale",
+        "normalTexture.extensions.KHR_texture_transform.offset", "normalTexture.extensions.KHR_texture_transform.rotation",
+        "normalTexture.extensions.KHR_texture_transform.scale", "normalTexture.extensions.KHR_texture_transform.texCoord"]),
     material(Unless(&[1.5]), Shown, &["extensions.KHR_materials_ior.ior"]),
     material(Unless(&[0.0]), TakenAs(&[1.0]), &["extensions.KHR_materials_transmission.transmissionFactor"]),
     material(No, No, &["extensions.KHR_materials_transmission.transmissionTexture"]),
@@ -125,8 +128,9 @@ pub(super) const TABLE: &[Row] = &[
         "primitives[].indices", "primitives[].material", "primitives[].mode",
         "primitives[].extensions.KHR_draco_mesh_compression.*"]),
     row(MESHES, Shown, &["primitives[].attributes.JOINTS_*", "primitives[].attributes.WEIGHTS_*", "primitives[].targets", "weights"]),
-    // Tangents serve normal maps; the others serve applications.
-    row(MESHES, Neutral, &["primitives[].attributes.TANGENT", "primitives[].attributes.COLOR_*", "primitives[].attributes._*"]),
+    row(MESHES, Shown, &["primitives[].attributes.TANGENT"]),
+    // These serve applications.
+    row(MESHES, Neutral, &["primitives[].attributes.COLOR_*", "primitives[].attributes._*"]),
     row(NODES, Shown, &["mesh", "camera", "children", "matrix", "translation", "rotation", "scale", "extensions.KHR_lights_punctual.light"]),
     row(NODES, Shown, &["skin", "weights", "extensions.EXT_mesh_gpu_instancing.attributes.TRANSLATION",
         "extensions.EXT_mesh_gpu_instancing.attributes.ROTATION", "extensions.EXT_mesh_gpu_instancing.attributes.SCALE"]),

@@ -6,6 +6,7 @@ use super::{
     container::Document,
     draco,
     fault::{Fault, Result},
+    materials::normal_info,
     textures::Coordinates,
 };
 use glam::Vec3;
@@ -35,6 +36,10 @@ pub(super) struct CheckedPrimitive<'a> {
     pub coordinates: Option<(CheckedAccessor<'a>, Coordinates)>,
     /// The same of the emissive texture.
     pub emission_coordinates: Option<(CheckedAccessor<'a>, Coordinates)>,
+    /// The same of the normal map.
+    pub normal_coordinates: Option<(CheckedAccessor<'a>, Coordinates)>,
+    /// Tangents with the sign of the bitangent, where there are normals and a normal map.
+    pub tangents: Option<CheckedAccessor<'a>>,
     pub colors: Option<CheckedAccessor<'a>>,
     targets: Vec<Target<'a>>,
     /// Joints and weights, four to a vertex in each set.
@@ -216,8 +221,16 @@ impl<'a> CheckedPrimitive<'a> {
         let own = document.root.materials.get(usize::from(material));
         let base = own.and_then(base_color::texture);
         let emission = own.filter(|m| m.emissive_factor.0 != [0.0; 3]).and_then(|m| m.emissive_texture.as_ref());
-        let [coordinates, emission_coordinates] =
-            [coordinates(base.as_ref().map(|(info, _)| &**info))?, coordinates(emission)?];
+        let bumps = own.and_then(|m| m.normal_texture.as_ref()).and_then(normal_info);
+        let [coordinates, emission_coordinates, normal_coordinates] = [
+            coordinates(base.as_ref().map(|(info, _)| &**info))?,
+            coordinates(emission)?,
+            coordinates(bumps.as_ref())?,
+        ];
+        let tangents = match bumps.is_some() && normals.is_some() {
+            true => source.beside(&positions, Semantic::Tangents, (CheckedAccessor::tangents, 4))?,
+            false => None,
+        };
         let (targets, influences) = (source.targets(&positions)?, source.influences(&positions)?);
         Ok(CheckedPrimitive {
             positions,
@@ -225,6 +238,8 @@ impl<'a> CheckedPrimitive<'a> {
             indices,
             coordinates,
             emission_coordinates,
+            normal_coordinates,
+            tangents,
             colors,
             targets,
             influences,

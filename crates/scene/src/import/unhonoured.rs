@@ -79,12 +79,13 @@ impl Collected<'_> {
         }
     }
 
-    /// Adds the textures of base color and emission with their samplers and images.
+    /// Adds the textures of base color, emission and normals with their samplers and images.
     fn add_pictures(&mut self, root: &Root, materials: &BTreeSet<u16>) {
         let materials = materials.iter().filter_map(|k| root.materials.get(usize::from(*k)));
         let own = |m: &json::Material| {
             let base = base_color::texture(m).map(|(info, _)| info.index.value());
-            [base, m.emissive_texture.as_ref().map(|info| info.index.value())]
+            let bumps = m.normal_texture.as_ref().map(|texture| texture.index.value());
+            [base, m.emissive_texture.as_ref().map(|info| info.index.value()), bumps]
         };
         let textures: BTreeSet<usize> = materials.flat_map(own).flatten().collect();
         let (mut samplers, mut images) = (BTreeSet::new(), BTreeSet::new());
