@@ -26,3 +26,4 @@ mod sampling;
 mod shards;
 mod slab;
 mod spread;
+mod textures;

@@ -96,7 +96,7 @@ fn dense(place: &Place, at: DVec3, run: u64) -> Cloud {
 fn nearby(near: &NearField, surroundings: &Surroundings, exit: &SurfacePoint, run: u64) -> DVec3 {
     let (mut random, mut scratch) = (Random(!run), Scratch::default());
     let (position, normal) = (exit.position, exit.normal);
-    let at = ::near_field::Place { surface: *exit, position, normal };
+    let at = ::near_field::Place { surface: *exit, position, normal, crossing: DVec3::ONE };
     let stream = Stream::new(run, Purpose::NearPoint);
     let mut estimate = |k: u64| {
         let numbers = [0; 6].map(|_| random.uniform());

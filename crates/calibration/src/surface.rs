@@ -65,7 +65,7 @@ impl Lit<'_> {
         let Some((near, surroundings)) = &self.near else {
             return DVec3::ZERO;
         };
-        let at = Place { surface: *point, position: point.position, normal: point.smooth_normal };
+        let at = Place { surface: *point, position: point.position, normal: point.smooth_normal, crossing: DVec3::ONE };
         let one = |k: u32| near.light(surroundings, &at, &numbers(k), item, scratch);
         (0..ESTIMATES).map(one).sum::<DVec3>() / f64::from(ESTIMATES)
     }

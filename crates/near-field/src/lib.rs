@@ -16,6 +16,7 @@ use profile::{PlaneIntegral, Profile, Radii};
 use scene::{Hit, SurfacePoint, random::Item};
 use std::f64::consts::TAU;
 use surroundings::{Arriving, Lamp};
+use tint::Tint;
 
 /// The near part of the BSSRDF of one material.
 pub struct NearField {
@@ -25,6 +26,8 @@ pub struct NearField {
     reach: f64,
     eta: f64,
     material: u16,
+    /// The texture of the material, if it tints the medium.
+    tint: Option<Tint>,
     radii: Radii,
     plane: PlaneIntegral,
 }
@@ -37,6 +40,8 @@ pub struct Place {
     pub position: DVec3,
     /// The normal that the model is given, without normal maps.
     pub normal: DVec3,
+    /// The factor of light that crosses the surface there, by its texture.
+    pub crossing: DVec3,
 }
 
 /// The uniform numbers of one estimate: two for a point of a disc, one that chooses an axis, three for the light.
@@ -57,6 +62,8 @@ struct Found {
     points: Vec<SurfacePoint>,
     /// The axis along which each of the latter was found.
     axes: Vec<usize>,
+    /// The factors of light that enters there; none without a texture.
+    crossings: Vec<DVec3>,
 }
 
 /// The work that was done.
@@ -95,7 +102,12 @@ impl NearField {
         let (partition, eta) = (Partition::new(from, reach), medium.eta);
         let model = model.of(medium);
         let (radii, plane) = Profile { model: &*model, partition, reach, eta }.tabulate(shortest(medium));
-        NearField { model, partition, reach, eta, material, radii, plane }
+        NearField { model, partition, reach, eta, material, tint: None, radii, plane }
+    }
+
+    /// The same below a texture.
+    pub fn tinted(self, tint: Option<Tint>) -> NearField {
+        NearField { tint, ..self }
     }
 
     /// Where the far part begins, which the cloud's samples are left with.
@@ -120,6 +132,7 @@ impl NearField {
         let Scratch { hits, found, work } = scratch;
         let exitant = SurfacePoint { smooth_normal: at.normal, ..at.surface }.smoothed();
         found.axes.clear();
+        found.crossings.clear();
         found.points.clear();
         found.points.push(exitant);
         for axis in [0, 1 + usize::from(axis >= 0.5)] {
@@ -131,8 +144,12 @@ impl NearField {
             return DVec3::ZERO;
         };
         let mut sum = lamp.light(&exitant, self.eta).map_or(DVec3::ZERO, |light| around.plane(drawn, &light));
-        for (axis, point) in found.axes.iter().zip(&found.points[1..]) {
-            sum += lamp.light(point, self.eta).map_or(DVec3::ZERO, |light| around.point(*axis, point, &light));
+        if self.tint.is_some() {
+            sum *= at.crossing;
+        }
+        for (k, (axis, point)) in found.axes.iter().zip(&found.points[1..]).enumerate() {
+            let light = lamp.light(point, self.eta).map_or(DVec3::ZERO, |light| around.point(*axis, point, &light));
+            sum += found.crossings.get(k).map_or(light, |crossing| light * *crossing);
         }
         sum
     }
@@ -180,6 +197,11 @@ impl Around<'_> {
         surroundings.along(start, -direction, 2.0 * half, hits);
         let own = hits.iter().map(|hit| surroundings.point(hit)).filter(|point| point.material == near.material);
         found.points.extend(own);
+        if let Some(tint) = &near.tint {
+            let scene = surroundings.scene;
+            let own = hits.iter().filter(|hit| scene.mesh.triangles[hit.triangle as usize].material == near.material);
+            found.crossings.extend(own.map(|hit| tint.at(scene, hit.triangle, hit.weights)));
+        }
         found.axes.resize(found.points.len() - 1, axis);
     }
 

@@ -10,6 +10,7 @@ use scene::{
 
 /// The translucent surfaces of a scene and their light, as samples are lit.
 pub struct Surroundings<'a> {
+    pub(crate) scene: &'a Scene,
     surface: LitSurface<'a>,
     bounce: Option<Bounce<'a>>,
 }
@@ -18,7 +19,7 @@ impl<'a> Surroundings<'a> {
     pub fn new(scene: &'a Scene, rays: &'a Rays<'a>, normals: NormalKind, translucent: impl Fn(u16) -> bool) -> Self {
         let lights = LightTree::new(scene.lights());
         let surface = LitSurface { mesh: &scene.mesh, rays, lights, normals };
-        Surroundings { surface, bounce: Bounce::new(scene, translucent) }
+        Surroundings { scene, surface, bounce: Bounce::new(scene, translucent) }
     }
 
     /// The triangles along a line of this length, m.
@@ -66,7 +67,7 @@ impl<'a> Lamp<'a> {
 
     /// The light that the numbers pick for a point, if any enters a medium of relative index `eta` there.
     pub fn light(&mut self, point: &SurfacePoint, eta: f64) -> Option<Arriving> {
-        let Surroundings { surface, bounce } = self.surroundings;
+        let Surroundings { surface, bounce, .. } = self.surroundings;
         let lit = surface.light_at(bounce.as_ref(), &self.choice, point, self.light, self.random, self.rays);
         let Lit::Light { direction, irradiance } = lit else {
             return None;

@@ -217,7 +217,7 @@ impl Renderer<'_> {
             trace.light.through = if object.is_dark() { 0.0 } else { transmittance };
         }
         trace.light.add(state, Layer::Emission, self.input.scene.emission(hit.triangle, hit.weights));
-        self.gather(state, object, point, &meeting.view, &mut trace.light, context);
+        self.gather(state, object, (point, hit), &meeting.view, &mut trace.light, context);
         (state.walks, state.near) = (None, None);
         state.inside = Some(point.material);
         // If only the interpolated normal lets light through, the path ends here.

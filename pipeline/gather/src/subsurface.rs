@@ -7,7 +7,7 @@ use crate::{
 use bsdf::View;
 use calibration::Site;
 use near_field::{Numbers, Place};
-use scene::{DVec3, SurfacePoint, random::Item};
+use scene::{DVec3, Hit, SurfacePoint, random::Item};
 use sums::{estimator::Estimator, samples::Exit};
 
 /// The largest relative error that is asked of one sum. Above it, the cut does not predict its own error.
@@ -49,7 +49,7 @@ impl Renderer<'_> {
         &self,
         state: &PathState,
         object: &TranslucentObject,
-        point: &SurfacePoint,
+        (point, hit): (&SurfacePoint, &Hit),
         view: &View,
         light: &mut PathLight,
         context: &mut ThreadContext,
@@ -64,7 +64,8 @@ impl Renderer<'_> {
         // The model knows no bumps of normal maps.
         let faces = point.smooth_normal.dot(view.direction) > 0.0;
         let normal = if faces { point.smooth_normal } else { point.geometric_normal };
-        let place = Place { surface: *point, position, normal };
+        let crossing = object.tint.map_or(DVec3::ONE, |t| t.at(self.input.scene, hit.triangle, hit.weights));
+        let place = Place { surface: *point, position, normal, crossing };
         let nearby = self.nearby(state, object, &place, context);
         let besides = 0.5 * (nearby[0] + nearby[1]);
         let exit = |half: usize| {
@@ -79,7 +80,10 @@ impl Renderer<'_> {
         };
         leaving.radiance += besides;
         leaving.halves.iter_mut().zip(nearby).for_each(|(half, nearby)| *half += nearby);
-        let factor = object.factor(point, view);
+        let mut factor = object.factor(point, view);
+        if object.tint.is_some() {
+            factor *= crossing;
+        }
         leaving.radiance *= factor;
         leaving.halves.iter_mut().for_each(|half| *half *= factor);
         context.counts.gathers += 1;
@@ -117,7 +121,7 @@ impl Renderer<'_> {
         context: &mut ThreadContext,
     ) -> DVec3 {
         let numbers = std::array::from_fn(|k| item.uniform(LATER + k as u64));
-        let at = Place { surface: *point, position: point.position, normal: point.smooth_normal };
+        let at = Place { surface: *point, position: point.position, normal: point.smooth_normal, crossing: DVec3::ONE };
         self.nearby_once(object, &at, &numbers, item, context)
     }
 
