@@ -90,8 +90,15 @@ impl Lab {
             let estimator = Estimator::Cut { accuracy: 0.01 };
             let settings = Settings { estimator, paths_per_pixel: 2, ..settings(Model::StandardDipole, 2, 2) };
             let (scene, rays) = (&self.world.scene, &self.world.rays);
-            let input =
-                Input { scene, rays, clouds: from_ref(&cloud), media: &media, calibration: None, camera: &self.camera };
+            let input = Input {
+                scene,
+                rays,
+                clouds: from_ref(&cloud),
+                media: &media,
+                tints: &[],
+                calibration: None,
+                camera: &self.camera,
+            };
             gather::render(&input, &settings, |_| ());
         }
     }

@@ -15,7 +15,7 @@ use test_support::{
 
 /// The center of the square in z = 0.
 fn middle() -> SurfacePoint {
-    SurfacePoint { position: DVec3::ZERO, normal: DVec3::Z, geometric_normal: DVec3::Z, triangle: 0, material: 0 }
+    SurfacePoint::smooth(DVec3::ZERO, DVec3::Z, DVec3::Z, 0, 0)
 }
 
 /// A square of one metre under a point light of 1 W/sr.

@@ -53,7 +53,8 @@ fn image(scene: &Scene, settings: &Settings, seed: u64) -> Vec<Pixel> {
     let clouds: Vec<Cloud> = (0..count).map(|index| cloud(&scene.world, &shard(index))).collect();
     let (media, camera) = ([scene.medium.clone()], orthographic(DVec3::new(1.0, 1.2, 1.5), scene.half_height));
     let (scene_of, rays) = (&scene.world.scene, &scene.world.rays);
-    let input = Input { scene: scene_of, rays, clouds: &clouds, media: &media, calibration: None, camera: &camera };
+    let input =
+        Input { scene: scene_of, rays, clouds: &clouds, media: &media, tints: &[], calibration: None, camera: &camera };
     gather::render(&input, &Settings { seed, ..settings.clone() }, |_| ()).pixels
 }
 

@@ -96,7 +96,7 @@ fn dense(place: &Place, at: DVec3, run: u64) -> Cloud {
 fn nearby(near: &NearField, surroundings: &Surroundings, exit: &SurfacePoint, run: u64) -> DVec3 {
     let (mut random, mut scratch) = (Random(!run), Scratch::default());
     let (position, normal) = (exit.position, exit.normal);
-    let at = ::near_field::Place { surface: *exit, position, normal };
+    let at = ::near_field::Place { surface: *exit, position, normal, crossing: DVec3::ONE };
     let stream = Stream::new(run, Purpose::NearPoint);
     let mut estimate = |k: u64| {
         let numbers = [0; 6].map(|_| random.uniform());
@@ -253,7 +253,7 @@ fn deviation(place: &Place) -> f64 {
     let near = NearField::new(place.model, &place.medium, 0, STEP);
     let surroundings = Surroundings::new(scene, rays, place.normals, is_translucent(&place.world));
     let (exit, mut scratch) = (&place.exits[0], Scratch::default());
-    let at = ::near_field::Place { surface: *exit, position: exit.position, normal: exit.normal };
+    let at = ::near_field::Place { surface: *exit, position: exit.position, normal: exit.normal, crossing: DVec3::ONE };
     let (mut random, stream) = (Random(1), Stream::new(1, Purpose::NearPoint));
     let mut estimate = |k: u64| {
         let numbers = [0; 6].map(|_| random.uniform());

@@ -25,6 +25,7 @@ fn images(world: &World, medium: &Medium, towards: DVec3, seeds: u64) -> Estimat
         clouds: from_ref(&cloud),
         media: from_ref(medium),
         camera: &camera,
+        tints: &[],
         calibration: None,
     };
     let image = |seed: u64| {

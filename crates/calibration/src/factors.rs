@@ -66,6 +66,12 @@ impl Factors {
         &self.lobe
     }
 
+    /// The exit lobe at the cosine `to` over that at `from`; 1 where the latter is dark.
+    pub fn turned_lobe(&self, from: f64, to: f64) -> DVec3 {
+        let ratio = |[a, b]: [f64; 2]| if a + b * from > 0.0 { ((a + b * to) / (a + b * from)).max(0.0) } else { 1.0 };
+        DVec3::from_array(self.lobe.map(ratio))
+    }
+
     /// The factor of the radiance without `T21` that leaves at a point of the surface towards the unit vector `view`
     /// (docs/method.md 16.5).
     pub fn at(&self, site: &Site, view: DVec3) -> DVec3 {

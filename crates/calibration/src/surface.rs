@@ -65,7 +65,7 @@ impl Lit<'_> {
         let Some((near, surroundings)) = &self.near else {
             return DVec3::ZERO;
         };
-        let at = Place { surface: *point, position: point.position, normal: point.normal };
+        let at = Place { surface: *point, position: point.position, normal: point.smooth_normal, crossing: DVec3::ONE };
         let one = |k: u32| near.light(surroundings, &at, &numbers(k), item, scratch);
         (0..ESTIMATES).map(one).sum::<DVec3>() / f64::from(ESTIMATES)
     }
@@ -136,7 +136,8 @@ impl Surface {
             }
             let item = stream.item(index as u64);
             let nearby = lit.nearby(point, |k| numbers.at(ESTIMATES * index as u32 + k), item, near);
-            let exit = |half: usize| Exit::new(point.position, point.normal, item.bits(half as u64)).besides(nearby);
+            let exit =
+                |half: usize| Exit::new(point.position, point.smooth_normal, item.bits(half as u64)).besides(nearby);
             let leaving = lit.summation.whole(estimator, exit, scratch);
             leaving.radiance + nearby
         };

@@ -101,6 +101,7 @@ mod tests {
                 name: "wax".into(),
                 base_color: DVec4::ONE,
                 base_texture: None,
+                normal_map: None,
                 alpha: Alpha::Ignored,
                 emission: DVec3::ZERO,
                 emission_texture: None,

@@ -16,6 +16,7 @@ use profile::{PlaneIntegral, Profile, Radii};
 use scene::{Hit, SurfacePoint, random::Item};
 use std::f64::consts::TAU;
 use surroundings::{Arriving, Lamp};
+use tint::Tint;
 
 /// The near part of the BSSRDF of one material.
 pub struct NearField {
@@ -25,6 +26,8 @@ pub struct NearField {
     reach: f64,
     eta: f64,
     material: u16,
+    /// The texture of the material, if it tints the medium.
+    tint: Option<Tint>,
     radii: Radii,
     plane: PlaneIntegral,
     /// What enters through a rough interface.
@@ -37,8 +40,10 @@ pub struct Place {
     pub surface: SurfacePoint,
     /// Where the model is evaluated, m.
     pub position: DVec3,
-    /// The normal that the model is given.
+    /// The normal that the model is given, without normal maps.
     pub normal: DVec3,
+    /// The factor of light that crosses the surface there, by its texture.
+    pub crossing: DVec3,
 }
 
 /// The uniform numbers of one estimate: two for a point of a disc, one that chooses an axis, three for the light.
@@ -59,6 +64,8 @@ struct Found {
     points: Vec<SurfacePoint>,
     /// The axis along which each of the latter was found.
     axes: Vec<usize>,
+    /// The factors of light that enters there; none without a texture.
+    crossings: Vec<DVec3>,
 }
 
 /// The work that was done.
@@ -97,12 +104,17 @@ impl NearField {
         let (partition, eta) = (Partition::new(from, reach), medium.eta);
         let model = model.of(medium);
         let (radii, plane) = Profile { model: &*model, partition, reach, eta }.tabulate(shortest(medium));
-        NearField { model, partition, reach, eta, material, radii, plane, rough: None }
+        NearField { model, partition, reach, eta, material, tint: None, radii, plane, rough: None }
     }
 
     /// The same near part behind a rough interface.
     pub fn behind(self, rough: &RoughEntry) -> NearField {
         NearField { rough: Some(rough.clone()), ..self }
+    }
+
+    /// The same below a texture.
+    pub fn tinted(self, tint: Option<Tint>) -> NearField {
+        NearField { tint, ..self }
     }
 
     /// Where the far part begins, which the cloud's samples are left with.
@@ -125,8 +137,9 @@ impl NearField {
         let around = Around { near: self, at, frame: [at.normal, x, y] };
         let drawn = (self.radii.sample(radius), TAU * azimuth);
         let Scratch { hits, found, work } = scratch;
-        let exitant = SurfacePoint { normal: at.normal, ..at.surface };
+        let exitant = SurfacePoint { smooth_normal: at.normal, ..at.surface }.smoothed();
         found.axes.clear();
+        found.crossings.clear();
         found.points.clear();
         found.points.push(exitant);
         for axis in [0, 1 + usize::from(axis >= 0.5)] {
@@ -141,9 +154,14 @@ impl NearField {
         let mut sum = DVec3::ZERO;
         for numbers in surroundings.lightings(light, random) {
             let mut lit = |point: &SurfacePoint| lamp.light(point, interface, &numbers);
-            sum += lit(&exitant).map_or(DVec3::ZERO, |light| around.plane(drawn, &light));
-            for (axis, point) in found.axes.iter().zip(&found.points[1..]) {
-                sum += lit(point).map_or(DVec3::ZERO, |light| around.point(*axis, point, &light));
+            let mut plane = lit(&exitant).map_or(DVec3::ZERO, |light| around.plane(drawn, &light));
+            if self.tint.is_some() {
+                plane *= at.crossing;
+            }
+            sum += plane;
+            for (k, (axis, point)) in found.axes.iter().zip(&found.points[1..]).enumerate() {
+                let light = lit(point).map_or(DVec3::ZERO, |light| around.point(*axis, point, &light));
+                sum += found.crossings.get(k).map_or(light, |crossing| light * *crossing);
             }
         }
         sum / surroundings.lightings as f64
@@ -192,6 +210,11 @@ impl Around<'_> {
         surroundings.along(start, -direction, 2.0 * half, hits);
         let own = hits.iter().map(|hit| surroundings.point(hit)).filter(|point| point.material == near.material);
         found.points.extend(own);
+        if let Some(tint) = &near.tint {
+            let scene = surroundings.scene;
+            let own = hits.iter().filter(|hit| scene.mesh.triangles[hit.triangle as usize].material == near.material);
+            found.crossings.extend(own.map(|hit| tint.at(scene, hit.triangle, hit.weights)));
+        }
         found.axes.resize(found.points.len() - 1, axis);
     }
 
@@ -221,7 +244,7 @@ impl Around<'_> {
             // A line along the surface, or rounding at the end of the near part, where its value is 0.
             return DVec3::ZERO;
         }
-        let (normal_in, normal_out) = (point.normal, self.at.normal);
+        let (normal_in, normal_out) = (point.smooth_normal, self.at.normal);
         let value = near.value(&Separation { offset, normal_in, refracted: light.refracted, normal_out });
         light.entering * value * (share / density)
     }

@@ -10,6 +10,7 @@ use scene::{
 
 /// The translucent surfaces of a scene and their light, as samples are lit.
 pub struct Surroundings<'a> {
+    pub(crate) scene: &'a Scene,
     surface: LitSurface<'a>,
     bounce: Option<Bounce<'a>>,
     /// How many times the points of one estimate are lit.
@@ -40,7 +41,7 @@ impl<'a> Surroundings<'a> {
         let mut lights = scene.lights();
         let is_sharp = bounce.is_none() && lights.all(|light| light.delta().is_some());
         let lightings = if is_sharp { scene.lights().count().clamp(1, LIGHTINGS) } else { LIGHTINGS };
-        Surroundings { surface, bounce, lightings }
+        Surroundings { scene, surface, bounce, lightings }
     }
 
     /// The numbers of all lightings, which those of the first are followed by.
@@ -102,10 +103,12 @@ impl<'a> Lamp<'a> {
         let Lit::Light { direction, irradiance } = lit else {
             return None;
         };
-        let entry = fresnel::enter(point.normal, direction, eta)?;
+        let entry = fresnel::enter(point.smooth_normal, direction, eta)?;
+        let cosine = point.smooth_normal.dot(direction);
+        let irradiance = irradiance * point.bump.gain(cosine);
         let transmittance = match rough {
             None => entry.transmittance,
-            Some(rough) => f64::from(rough.at(point.normal.dot(direction) as f32)),
+            Some(rough) => f64::from(rough.at(cosine as f32)),
         };
         Some(Arriving { entering: irradiance * transmittance, refracted: entry.direction })
     }

@@ -34,6 +34,7 @@ impl Scene {
             put(m.name.as_bytes());
         }
         self.put_colors(&mut put);
+        self.put_bumps(&mut put);
         for (k, ior) in self.panes.iter().enumerate().filter_map(|(k, pane)| Some((k, (*pane)?))) {
             put(b"pane");
             put(&(k as u64).to_le_bytes());
@@ -61,6 +62,26 @@ impl Scene {
         }
         self.mesh.gloss_coordinates.as_flattened().iter().for_each(|x| _ = hasher.update(&x.to_le_bytes()));
         (!all.is_empty()).then(|| *hasher.finalize().as_bytes())
+    }
+
+    /// Gives `put` all that normal maps depend on.
+    fn put_bumps(&self, put: &mut impl FnMut(&[u8])) {
+        let Some(bumps) = &self.mesh.bumps else { return };
+        put(b"bumps");
+        for (k, map) in bumps.maps.iter().enumerate().filter_map(|(k, map)| Some((k, map.as_ref()?))) {
+            let texture = map.texture();
+            let [along, down] = texture.wrap.map(|w| w as u8);
+            put(&(k as u64).to_le_bytes());
+            put(&map.scale().to_le_bytes());
+            put(&[along, down, u8::from(texture.nearest)]);
+            put(&(texture.picture.width as u64).to_le_bytes());
+            put(&(texture.picture.texels.len() as u64).to_le_bytes());
+            put(texture.picture.texels.as_flattened());
+        }
+        bumps.coordinates.as_flattened().iter().for_each(|x| put(&x.to_le_bytes()));
+        for frame in bumps.frames.as_flattened() {
+            frame.tangent.to_array().iter().chain([&frame.sign]).for_each(|x| put(&x.to_le_bytes()));
+        }
     }
 
     /// Gives `put` all that colors and holes depend on: they light and shadow the samples.

@@ -162,13 +162,7 @@ impl Framing<'_> {
     /// in the way.
     fn light(&self) -> DVec3 {
         let normals = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
-        let points = normals.map(|normal| SurfacePoint {
-            position: self.middle,
-            normal,
-            geometric_normal: normal,
-            triangle: 0,
-            material: 0,
-        });
+        let points = normals.map(|normal| SurfacePoint::smooth(self.middle, normal, normal, 0, 0));
         let points: Vec<SurfacePoint> = points.collect();
         let at = |k: u32| (f64::from(k) + 0.5) / f64::from(LIGHT_SAMPLES);
         let numbers = || (0..LIGHT_SAMPLES).flat_map(|x| (0..LIGHT_SAMPLES).map(move |y| [at(x), at(y)]));

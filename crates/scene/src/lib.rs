@@ -33,6 +33,7 @@
 //! assert!((irradiance - DVec3::splat(4.0)).length() < 1e-12);
 //! ```
 
+mod bumps;
 mod cutouts;
 mod digest;
 mod error;
@@ -53,6 +54,7 @@ mod view;
 mod warnings;
 pub mod warp;
 
+pub use bumps::{Bump, Bumps, NormalMap};
 pub use error::{LostVolumes, SceneError};
 pub use framing::{Framing, Placed};
 pub use glam::{DVec3, DVec4, Vec3};

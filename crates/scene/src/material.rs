@@ -1,6 +1,6 @@
 //! The appearance of surfaces, and the media below them, as a glTF file describes them.
 
-use crate::texture::Texture;
+use crate::{bumps::NormalMap, texture::Texture};
 use glam::{DVec3, DVec4};
 
 /// The appearance of a surface, apart from the medium below it.
@@ -10,6 +10,7 @@ pub struct Material {
     /// Diffuse albedo of an opaque surface, and alpha: a factor of those of texture and vertices.
     pub base_color: DVec4,
     pub base_texture: Option<Texture>,
+    pub normal_map: Option<NormalMap>,
     /// What the alpha of an opaque surface means.
     pub alpha: Alpha,
     /// Radiance that it emits, W/(m² sr): a factor of that of the texture.

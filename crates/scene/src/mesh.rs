@@ -1,5 +1,6 @@
 //! Triangles: normals, areas, interpolation.
 
+use crate::bumps::{Bump, Bumps};
 use glam::{DVec2, DVec3, DVec4, Vec3};
 use std::ops::{Add, Mul};
 
@@ -26,12 +27,14 @@ pub struct Mesh {
     pub gloss_coordinates: Vec<[f32; 2]>,
     /// Linear red, green and blue, and alpha; empty if no vertex has any.
     pub colors: Vec<[f32; 4]>,
+    /// The normal maps of materials, if there are any.
+    pub bumps: Option<Box<Bumps>>,
 }
 
 /// The normal that cosines are taken with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NormalKind {
-    /// Interpolated from the vertices.
+    /// Interpolated from the vertices, and tilted by normal maps.
     Shading,
     /// The triangle's, as in the note.
     Geometric,
@@ -44,6 +47,10 @@ pub struct SurfacePoint {
     pub position: DVec3,
     /// Unit normal that cosines are taken with.
     pub normal: DVec3,
+    /// The same without normal maps.
+    pub smooth_normal: DVec3,
+    /// The bumps of a normal map.
+    pub bump: Bump,
     /// Unit normal of the triangle.
     pub geometric_normal: DVec3,
     pub triangle: u32,
@@ -51,10 +58,23 @@ pub struct SurfacePoint {
 }
 
 impl SurfacePoint {
+    /// A point of a smooth surface.
+    pub fn smooth(position: DVec3, normal: DVec3, geometric_normal: DVec3, triangle: u32, material: u16) -> Self {
+        let (smooth_normal, bump) = (normal, Bump::default());
+        SurfacePoint { position, normal, smooth_normal, bump, geometric_normal, triangle, material }
+    }
+
+    /// The same point without the bumps of normal maps.
+    pub fn smoothed(self) -> SurfacePoint {
+        SurfacePoint { normal: self.smooth_normal, bump: Bump::default(), ..self }
+    }
+
     /// The point with its normals on the side of the triangle that `view` leads to, a direction away from it.
     pub fn facing(self, view: DVec3) -> SurfacePoint {
         let sign = if self.geometric_normal.dot(view) > 0.0 { 1.0 } else { -1.0 };
-        SurfacePoint { normal: self.normal * sign, geometric_normal: self.geometric_normal * sign, ..self }
+        let [normal, smooth_normal, geometric_normal] =
+            [self.normal, self.smooth_normal, self.geometric_normal].map(|n| n * sign);
+        SurfacePoint { normal, smooth_normal, geometric_normal, ..self }
     }
 }
 
@@ -79,19 +99,23 @@ impl Mesh {
             NormalKind::Geometric => geometric_normal,
             NormalKind::Shading => self.interpolated_normal(triangle, weights).unwrap_or(geometric_normal),
         };
-        SurfacePoint {
-            position: a * weights[0] + b * weights[1] + c * weights[2],
-            normal,
-            geometric_normal,
-            triangle,
-            material: self.triangles[index].material,
+        let position = a * weights[0] + b * weights[1] + c * weights[2];
+        let point = SurfacePoint::smooth(position, normal, geometric_normal, triangle, self.triangles[index].material);
+        match (&self.bumps, kind) {
+            (Some(bumps), NormalKind::Shading) => bumps.tilted(self, point, weights),
+            _ => point,
         }
     }
 
     /// The interpolated vertex normal; none where the vertices have none or cancel.
     fn interpolated_normal(&self, triangle: u32, weights: [f64; 3]) -> Option<DVec3> {
-        let sum = self.interpolated(triangle, weights, |i| self.normals[i as usize].as_dvec3());
+        let sum = self.normal_sum(triangle, weights);
         (sum.length_squared() > 1e-12).then(|| sum.normalize())
+    }
+
+    /// The interpolated vertex normal, not normalized.
+    pub(crate) fn normal_sum(&self, triangle: u32, weights: [f64; 3]) -> DVec3 {
+        self.interpolated(triangle, weights, |i| self.normals[i as usize].as_dvec3())
     }
 
     /// Texture coordinates at the point with barycentric `weights`; 0 where the file has none.
@@ -131,7 +155,7 @@ impl Mesh {
         self.colors.get(vertex as usize).copied().unwrap_or([1.0; 4])
     }
 
-    fn interpolated<T>(&self, triangle: u32, weights: [f64; 3], of: impl Fn(u32) -> T) -> T
+    pub(crate) fn interpolated<T>(&self, triangle: u32, weights: [f64; 3], of: impl Fn(u32) -> T) -> T
     where
         T: Add<Output = T> + Mul<f64, Output = T>,
     {

@@ -51,16 +51,22 @@ impl Wrap {
 
 impl Texture {
     /// Linear red, green and blue, and alpha, at texture coordinates.
-    pub fn at(&self, uv: [f64; 2]) -> DVec4 {
-        self.interpolated(uv, Texture::linear)
+    pub fn at(&self, coordinates: [f64; 2]) -> DVec4 {
+        self.decoded_at(coordinates, Texture::linear)
     }
 
     /// The codes of the channels over 255, as they are: numbers instead of colors.
-    pub fn numbers_at(&self, uv: [f64; 2]) -> DVec4 {
-        self.interpolated(uv, |texel| DVec4::from_array(texel.map(f64::from)) / 255.0)
+    pub fn numbers_at(&self, coordinates: [f64; 2]) -> DVec4 {
+        self.codes_at(coordinates) / 255.0
     }
 
-    fn interpolated(&self, [u, v]: [f64; 2], decode: impl Fn([u8; 4]) -> DVec4) -> DVec4 {
+    /// The codes from 0 to 255, for pictures whose numbers are no colors.
+    pub fn codes_at(&self, coordinates: [f64; 2]) -> DVec4 {
+        self.decoded_at(coordinates, |codes| DVec4::from_array(codes.map(f64::from)))
+    }
+
+    #[inline(always)]
+    fn decoded_at(&self, [u, v]: [f64; 2], decode: impl Fn([u8; 4]) -> DVec4) -> DVec4 {
         let (width, height) = (self.picture.width, self.picture.texels.len() / self.picture.width);
         let [x, y] = [u * width as f64, v * height as f64];
         if self.nearest {

@@ -34,7 +34,8 @@ impl Scene {
         }
     }
 
-    /// Adds a warning for each translucent material whose texture, alpha or vertex colors are not used.
+    /// Adds a warning for each translucent material whose alpha or vertex colors are not used, or whose texture cannot be
+    /// read. Vertex colors are used with a texture.
     pub fn warn_of_colors(&mut self, translucent: impl Fn(u16) -> bool) {
         let mut colored = vec![false; self.materials.len()];
         for t in &self.mesh.triangles {
@@ -42,15 +43,17 @@ impl Scene {
         }
         for (k, material) in self.materials.iter().enumerate() {
             let unused = [
-                (material.base_texture.is_some(), "base color texture"),
                 (matches!(material.alpha, Alpha::Cutoff(_)), "alphaMode MASK"),
                 (material.alpha == Alpha::Coverage, "alphaMode BLEND"),
-                (colored[k], "vertex colors"),
+                (colored[k] && material.base_texture.is_none(), "vertex colors"),
             ];
             let unused: Vec<&str> = unused.iter().filter(|u| u.0).map(|u| u.1).collect();
             if translucent(k as u16) && !unused.is_empty() {
                 let (name, what) = (&material.name, unused.join(", "));
                 self.warnings.push(format!("material `{name}`: not used on a translucent surface: {what}"));
+            }
+            if let Some(fault) = self.texture_faults.get(&(k as u16)).filter(|_| translucent(k as u16)) {
+                self.warnings.push(format!("{fault}: its medium has one color"));
             }
         }
     }

@@ -115,7 +115,7 @@ fn measure(renderer: &Renderer, material: usize, points: &[SurfacePoint], stream
         let item = stream.item(1 + (material * POINTS + index) as u64);
         let nearby = renderer.nearby_at(object, point, item, &mut context);
         let sum = |replicate: u64| {
-            let exit = Exit::new(point.position, point.normal, item.bits(round * REPLICATES + replicate));
+            let exit = Exit::new(point.position, point.smooth_normal, item.bits(round * REPLICATES + replicate));
             let exit = exit.besides(nearby);
             let (half, shard) = (index % 2, index / 2 % summation.shards());
             summation.sum(estimator, half, shard, &exit, &mut context.scratch[material])

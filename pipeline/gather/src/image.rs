@@ -5,6 +5,7 @@ use bssrdf::{Medium, Model};
 use formats::{calibration::Calibration, cloud::Cloud};
 use glam::{DVec2, DVec3};
 use scene::{Camera, NormalKind, Rays, Scene};
+use tint::Tinted;
 
 /// How paths are spread over a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,6 +37,8 @@ pub struct Input<'a> {
     pub clouds: &'a [Cloud],
     /// The medium of each material that the clouds sampled, in their order.
     pub media: &'a [Medium],
+    /// The tinted samples of each of these materials that has a texture; empty if none has.
+    pub tints: &'a [Option<Tinted>],
     /// The factors of the media on this shape, if it is calibrated.
     pub calibration: Option<&'a Calibration>,
     pub camera: &'a Camera,

@@ -34,7 +34,7 @@
 //!     seed: 0,
 //!     backdrop: None,
 //! };
-//! let input = Input { scene: &scene, rays: &rays, clouds: &[], media: &[], calibration: None, camera: &scene.cameras[0] };
+//! let input = Input { scene: &scene, rays: &rays, clouds: &[], media: &[], tints: &[], calibration: None, camera: &scene.cameras[0] };
 //! let rendered = render(&input, &settings, |_| ());
 //! assert_eq!((rendered.pixels.len(), rendered.counts.paths), (4, 16));
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -19,6 +19,7 @@ mod settings;
 mod steps;
 mod summary;
 mod sums_file;
+mod textured;
 
 use adaptive::{End, Work};
 use arguments::Arguments;
@@ -33,6 +34,7 @@ use scene::{Rays, Scene};
 use settings::{Request, Task};
 use std::time::Instant;
 use steps::{Clock, Live};
+use tint::Tinted;
 
 fn main() {
     let arguments: Arguments = cli::parse();
@@ -66,11 +68,12 @@ fn render(request: &Request) -> Result<(), Failure> {
         Some(_) => None,
         None => seconds.time("calibrate", || calibrated::make(request, &prepared.inputs, &rays, prepared.model))?,
     };
-    seconds.time("exposure", || exposed::expose(request, &prepared.inputs, &rays, &mut prepared.jobs))?;
+    let tints = textured::make(request, &prepared.inputs, &rays, prepared.model)?;
+    seconds.time("exposure", || exposed::expose(request, (&prepared.inputs, &tints), &rays, &mut prepared.jobs))?;
     let calibration = prepared.kept.as_ref().or(made.as_ref());
     for (index, job) in prepared.jobs.iter().enumerate() {
         let deadline = clock.deadline(job, prepared.jobs.len() - index, request.common.thread_count());
-        let image = ImageToRender { request, prepared: &prepared, rays: &rays, calibration, job };
+        let image = ImageToRender { request, prepared: &prepared, rays: &rays, tints: &tints, calibration, job };
         image.render(&asked, deadline, seconds)?;
         seconds = Seconds::start();
     }
@@ -103,6 +106,7 @@ struct ImageToRender<'a> {
     request: &'a Request,
     prepared: &'a Prepared,
     rays: &'a Rays<'a>,
+    tints: &'a [Option<Tinted>],
     calibration: Option<&'a Calibration>,
     job: &'a ImageJob,
 }
@@ -110,7 +114,7 @@ struct ImageToRender<'a> {
 impl ImageToRender<'_> {
     /// Renders the image and writes its files, all or none; `seconds` are those of the steps before it.
     fn render(&self, asked: &Asked, deadline: Option<Instant>, mut seconds: Seconds) -> Result<(), Failure> {
-        let ImageToRender { request, prepared, rays, calibration, job } = *self;
+        let ImageToRender { request, prepared, rays, tints, calibration, job } = *self;
         let (common, inputs) = (&request.common, &prepared.inputs);
         let path = job.file(&request.outputs.image);
         let output = Output::create(&path)?;
@@ -123,7 +127,7 @@ impl ImageToRender<'_> {
         let display = request.display.as_ref().map(start);
         let live = Live { deadline, asked, write: &|passes| self.write_so_far(passes), display };
         let work = Work {
-            input: Input { scene, rays, clouds, media, calibration, camera },
+            input: Input { scene, rays, clouds, media, tints, calibration, camera },
             job,
             common,
             before: continuation::read(request, job)?,

@@ -11,13 +11,15 @@ use formats::cloud::shards;
 use near_field::NearField;
 use scene::DVec3;
 use std::sync::Arc;
-use sums::{Summation, estimator::Scatterer};
+use sums::{Summation, drawn::DrawnCounts, estimator::Scatterer};
 
 /// The translucent objects by the materials of the scene; none for opaque ones.
 pub fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<TranslucentObject<'a>>> {
     let mut objects: Vec<Option<TranslucentObject>> = input.scene.materials.iter().map(|_| None).collect();
     for (slot, (sampled, medium)) in shards::materials(input.clouds).iter().zip(input.media).enumerate() {
-        let near = || NearField::of_clouds(settings.model, medium, input.clouds, slot);
+        let tinted = input.tints.get(slot).and_then(Option::as_ref);
+        let tint = tinted.map(|tinted| tinted.tint);
+        let near = || Some(NearField::of_clouds(settings.model, medium, input.clouds, slot)?.tinted(tint));
         let near = settings.near_field.then(near).flatten();
         let rough = Rough::new(&input.scene.materials[sampled.index as usize], medium.eta);
         let entry = rough.as_ref().map(Rough::entry);
@@ -28,7 +30,10 @@ pub fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<Translu
         let partition = near.as_ref().map_or(Partition::NONE, NearField::partition);
         let scatterer = Arc::new(Scatterer::new(settings.model, medium, sampled.area_m2.sqrt()).far(partition));
         let is_translucent = |material| shards::materials(input.clouds).iter().any(|m| m.index == material);
-        let summation = Summation::of_clouds(scatterer, input.clouds, slot);
+        let summation = match tinted {
+            Some(tinted) => Summation::new(scatterer, tinted.samples(medium.eta), DrawnCounts::of(input.clouds)),
+            None => Summation::of_clouds(scatterer, input.clouds, slot),
+        };
         let walks = settings.reference.then(|| Walks::new(input, sampled.index, medium, is_translucent));
         let extinction = || medium.map(|c| c.extinction());
         objects[sampled.index as usize] = Some(TranslucentObject {
@@ -41,6 +46,7 @@ pub fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<Translu
                 Some(entry) => summation.behind(entry),
             },
             rough,
+            tint,
             near,
             color: color_of(medium),
             medium: medium.clone(),

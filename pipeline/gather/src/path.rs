@@ -229,7 +229,7 @@ impl Renderer<'_> {
         }
         let emission = self.input.scene.emission(hit.triangle, hit.weights) * self.share_of(state, point.material);
         trace.light.add(state, Layer::Emission, emission);
-        self.gather(state, object, point, &meeting.view, &mut trace.light, context);
+        self.gather(state, object, (point, hit), &meeting.view, &mut trace.light, context);
         (state.walks, state.near) = (None, None);
         state.inside = Some(point.material);
         // If only the interpolated normal lets light through, the path ends here.

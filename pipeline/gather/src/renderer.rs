@@ -11,6 +11,7 @@ use near_field::{NearField, Surroundings};
 use scene::{DVec3, Hit, Material, Scene, light::LightTree, random::Stream};
 use std::ops::Range;
 use sums::{Summation, drawn::DrawnCounts};
+use tint::Tint;
 
 /// The data of an image, shared by all threads.
 pub struct Renderer<'a> {
@@ -82,6 +83,8 @@ pub struct TranslucentObject<'a> {
     pub summation: Summation<'a>,
     /// The near part, if the samples are too far apart for it; the summation then has the far part alone.
     pub near: Option<NearField>,
+    /// What its texture does to light that enters and leaves; its samples are tinted.
+    pub tint: Option<Tint>,
     /// The factors of its surface, if it is calibrated.
     pub factors: Option<Factors>,
     /// Random walks, if they take the place of the summation.

@@ -7,7 +7,7 @@ use crate::{
 use bsdf::View;
 use calibration::Site;
 use near_field::{Numbers, Place};
-use scene::{DVec3, SurfacePoint, random::Item};
+use scene::{DVec3, Hit, SurfacePoint, random::Item};
 use sums::{estimator::Estimator, samples::Exit};
 
 /// The largest relative error that is asked of one sum. Above it, the cut does not predict its own error.
@@ -24,7 +24,11 @@ impl TranslucentObject<'_> {
         match &self.factors {
             None => self.exit_lobe(view.normal.dot(view.direction)),
             Some(factors) => {
-                factors.at(&Site { position: point.position, normal: point.geometric_normal }, view.direction)
+                let site = Site { position: point.position, normal: point.geometric_normal };
+                let factor = factors.at(&site, view.direction);
+                let [smooth, tilted] = [point.geometric_normal, view.normal].map(|normal| normal.dot(view.direction));
+                // Only normal maps turn the lobe: interpolated normals are fitted by the factors.
+                if point.normal == point.smooth_normal { factor } else { factor * factors.turned_lobe(smooth, tilted) }
             }
         }
     }
@@ -45,7 +49,7 @@ impl Renderer<'_> {
         &self,
         state: &PathState,
         object: &TranslucentObject,
-        point: &SurfacePoint,
+        (point, hit): (&SurfacePoint, &Hit),
         view: &View,
         light: &mut PathLight,
         context: &mut ThreadContext,
@@ -57,11 +61,15 @@ impl Renderer<'_> {
             return self.walk(state, walks, point, view.normal, light, context);
         }
         let position = object.evaluated_at(point, view);
-        let place = Place { surface: *point, position, normal: view.normal };
+        // The model knows no bumps of normal maps.
+        let faces = point.smooth_normal.dot(view.direction) > 0.0;
+        let normal = if faces { point.smooth_normal } else { point.geometric_normal };
+        let crossing = object.tint.map_or(DVec3::ONE, |t| t.at(self.input.scene, hit.triangle, hit.weights));
+        let place = Place { surface: *point, position, normal, crossing };
         let nearby = self.nearby(state, object, &place, context);
         let besides = 0.5 * (nearby[0] + nearby[1]);
         let exit = |half: usize| {
-            Exit::new(position, view.normal, state.key.bits(2 * state.dimension + half as u64)).besides(besides)
+            Exit::new(position, normal, state.key.bits(2 * state.dimension + half as u64)).besides(besides)
         };
         let estimator = self.estimator_for(state.throughput.max_element());
         let scratch = &mut context.scratch[point.material as usize];
@@ -72,7 +80,10 @@ impl Renderer<'_> {
         };
         leaving.radiance += besides;
         leaving.halves.iter_mut().zip(nearby).for_each(|(half, nearby)| *half += nearby);
-        let factor = object.factor(point, view);
+        let mut factor = object.factor(point, view);
+        if object.tint.is_some() {
+            factor *= crossing;
+        }
         leaving.radiance *= factor;
         leaving.halves.iter_mut().for_each(|half| *half *= factor);
         context.counts.gathers += 1;
@@ -110,7 +121,7 @@ impl Renderer<'_> {
         context: &mut ThreadContext,
     ) -> DVec3 {
         let numbers = std::array::from_fn(|k| item.uniform(LATER + k as u64));
-        let at = Place { surface: *point, position: point.position, normal: point.normal };
+        let at = Place { surface: *point, position: point.position, normal: point.smooth_normal, crossing: DVec3::ONE };
         self.nearby_once(object, &at, &numbers, item, context)
     }
 

@@ -59,7 +59,7 @@ impl<'a> Points<'a> {
         let at = |scratch: &mut Scratch, (index, sample): (usize, &SamplePoint)| {
             let point = self.scene.mesh.point(sample.triangle, sample.weights, self.settings.normals());
             let key = 2 * (stream * self.points.len() as u64 + index as u64) + half as u64;
-            let exit = Exit::new(point.position, point.normal, key);
+            let exit = Exit::new(point.position, point.smooth_normal, key);
             let slot = materials.iter().position(|material| material.index == point.material);
             let light = slot.map_or(DVec3::ZERO, |slot| summations[slot].half(self.estimator, half, &exit, scratch));
             // With the note's choice of triangles, points do not represent equal areas.

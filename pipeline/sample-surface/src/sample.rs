@@ -63,13 +63,18 @@ fn drawn(
         };
     // note: [flux] Φ = E/pdf(x); the estimator divides by K (docs/method.md 6.5).
     // A color of -0 would make a flux of -0: adding 0 removes the sign.
-    let flux = (irradiance / sample.pdf_area).as_vec3() + Vec3::ZERO;
+    // The light on the bumps of a normal map enters below the smooth surface.
+    let gain = point.bump.gain(point.smooth_normal.dot(direction));
+    if gain <= 0.0 {
+        return SampleOutcome::FacingAway;
+    }
+    let flux = (irradiance * gain / sample.pdf_area).as_vec3() + Vec3::ZERO;
     if !flux.is_finite() {
         return SampleOutcome::NotFinite;
     }
     if flux == Vec3::ZERO {
         return SampleOutcome::Underflow;
     }
-    let sample = Sample { position: point.position.as_vec3(), normal: point.normal, direction, flux };
+    let sample = Sample { position: point.position.as_vec3(), normal: point.smooth_normal, direction, flux };
     SampleOutcome::Lit { sample, material: point.material }
 }

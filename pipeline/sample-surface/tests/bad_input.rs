@@ -252,14 +252,15 @@ fn a_mesh_that_is_there_twice_takes_in_its_light_once() {
 fn what_is_not_honoured_is_said_once() {
     let bench = Bench::new();
     let scene = bench.slab("scene.glb", |root| {
-        root["materials"][0]["normalTexture"] = json!({ "index": 0 });
+        root["materials"][0]["occlusionTexture"] = json!({ "index": 0 });
         root["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = json!(0.5);
         root["fog"] = json!(1);
     });
     let said = bench.says(PROGRAM, &[&scene, "-n", "1000", "-o", "out.cloud"]);
     let lines: Vec<&str> = said.lines().filter(|line| line.contains("warning")).collect();
     let [line] = lines[..] else { panic!("{said}") };
-    for word in ["scene.glb: not honoured: ", "materials[].normalTexture (`Slab`)", "taken as 0", "fog; docs/scenes.md"]
+    for word in
+        ["scene.glb: not honoured: ", "materials[].occlusionTexture (`Slab`)", "taken as 0", "fog; docs/scenes.md"]
     {
         assert!(line.contains(word), "{word}: {line}");
     }

@@ -65,8 +65,15 @@ fn render(scene: &Scene, rays: &Rays, cloud: &Cloud, normals: NormalKind, estima
             near_field: true,
             ..pipeline::settings(Model::DirectionalDipole, SIDE, SIDE)
         };
-        let input =
-            Input { scene, rays, clouds: std::slice::from_ref(cloud), media: &media, calibration: None, camera };
+        let input = Input {
+            scene,
+            rays,
+            clouds: std::slice::from_ref(cloud),
+            media: &media,
+            tints: &[],
+            calibration: None,
+            camera,
+        };
         let rendered = gather::render(&input, &settings, |_| ());
         let sane = brightest < SANE && (1.0 / SANE..SANE).contains(&size);
         assert!(!sane || rendered.non_finite_count == 0, "{brightest} W, {size} m: {:?}", rendered.non_finite);

@@ -110,7 +110,7 @@ pub fn orthographic(towards: DVec3, half_height: f64) -> Camera {
 
 /// What an uncalibrated image of a world is rendered from.
 pub fn input<'a>(world: &'a World, clouds: &'a [Cloud], media: &'a [Medium], camera: &'a Camera) -> gather::Input<'a> {
-    gather::Input { scene: &world.scene, rays: &world.rays, clouds, media, calibration: None, camera }
+    gather::Input { scene: &world.scene, rays: &world.rays, clouds, media, tints: &[], calibration: None, camera }
 }
 
 /// One path through the center of each pixel, the exhaustive sum, and no light but that of the cloud.

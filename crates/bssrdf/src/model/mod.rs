@@ -6,6 +6,7 @@ mod directional_dipole;
 mod directional_lanes;
 mod half_space;
 mod half_space_lanes;
+mod reflectance;
 mod standard_dipole;
 mod standard_lanes;
 

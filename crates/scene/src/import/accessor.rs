@@ -66,6 +66,12 @@ impl<'a> CheckedAccessor<'a> {
         CheckedAccessor::new(document, index, field, Number::of_color, &[Type::Vec3, Type::Vec4], expected)
     }
 
+    /// A list of tangents, each with the sign of its bitangent.
+    pub fn tangents(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self> {
+        let expected = "VEC4 of 32-bit float, or of 8 or 16-bit integers";
+        CheckedAccessor::new(document, index, field, Number::of_vector, &[Type::Vec4], expected)
+    }
+
     /// A list of vertex indices.
     pub fn indices(document: &'a Document, index: &Index<Accessor>, field: String) -> Result<Self> {
         let expected = "SCALAR unsigned integers, not normalized";

@@ -62,6 +62,10 @@ impl Instance<'_> {
 pub(super) struct Geometry {
     pub mesh: Mesh,
     pub origin: DVec3,
+    /// Texture coordinates of normal maps; vertices at the end may have none.
+    pub normal_coordinates: Vec<[f32; 2]>,
+    /// Tangents of the file with the signs of bitangents, in the world; 0 where it has none.
+    pub tangents: Vec<[f32; 4]>,
     /// Number of triangles without area, which are left out, by material.
     pub degenerate: BTreeMap<u16, u64>,
     /// Number of those that have an area before their positions are rounded to float32.
@@ -95,6 +99,10 @@ struct Builder {
     emission_coordinates: Vec<[f32; 2]>,
     /// The same of metallic and roughness.
     gloss_coordinates: Vec<[f32; 2]>,
+    /// The same of normal maps.
+    normal_coordinates: Vec<[f32; 2]>,
+    /// Tangents of the file; vertices at the end may have none.
+    tangents: Vec<[f32; 4]>,
     /// Vertex colors; vertices at the end may have none.
     colors: Vec<[f32; 4]>,
 }
@@ -150,14 +158,16 @@ impl Builder {
         let first = self.positions.len() as u32;
         self.add_colors(part)?;
         let name = &instance.placed.name;
+        let tangents = part.tangents.as_ref().map_or(Ok(Vec::new()), CheckedAccessor::read_reals)?;
+        if !tangents.is_empty() {
+            self.tangents.resize(self.positions.len(), [0.0; 4]);
+        }
+        let vertices = Vertices { positions: &positions, normals: &normals, tangents: &tangents };
         let mirrored = match instance.joints {
-            Some(joints) if !part.influences.is_empty() => Mirrored::Each(self.add_skinned(
-                &positions,
-                &normals,
-                (&Influences::read(&part.influences)?, joints),
-                name,
-            )?),
-            _ => Mirrored::All(self.add_vertices(&positions, &normals, transform, name)?),
+            Some(joints) if !part.influences.is_empty() => {
+                Mirrored::Each(self.add_skinned(&vertices, (&Influences::read(&part.influences)?, joints), name)?)
+            }
+            _ => Mirrored::All(self.add_vertices(&vertices, transform, name)?),
         };
         for mut vertices in part.triangles(&indices) {
             if mirrored.at(vertices[0]) {
@@ -174,6 +184,7 @@ impl Builder {
             (&part.coordinates, &mut self.coordinates),
             (&part.emission_coordinates, &mut self.emission_coordinates),
             (&part.gloss_coordinates, &mut self.gloss_coordinates),
+            (&part.normal_coordinates, &mut self.normal_coordinates),
         ];
         for (part, all) in of_textures {
             if let Some((column, transform)) = part {
@@ -190,29 +201,30 @@ impl Builder {
     }
 
     /// Adds vertices in world space. True if the transform is a reflection, which reverses the winding.
-    fn add_vertices(&mut self, positions: &[Vec3], normals: &[Vec3], transform: DMat4, name: &str) -> Result<bool> {
+    fn add_vertices(&mut self, vertices: &Vertices, transform: DMat4, name: &str) -> Result<bool> {
         let (normal_matrix, mirrored) = of_normals(transform);
-        for p in positions {
+        for p in vertices.positions {
             self.positions.push(finite(transform.transform_point3(p.as_dvec3()), name)?);
         }
-        self.normals.extend(normals.iter().map(|n| turned(normal_matrix, *n)));
+        self.normals.extend(vertices.normals.iter().map(|n| turned(normal_matrix, *n)));
+        self.tangents.extend(vertices.tangents.iter().map(|t| placed_tangent(transform, mirrored, *t)));
         Ok(mirrored)
     }
 
     /// Adds vertices, each of which follows its joints. Tells of each whether it is mirrored.
     fn add_skinned(
         &mut self,
-        positions: &[Vec3],
-        normals: &[Vec3],
+        vertices: &Vertices,
         (influences, joints): (&Influences, &[DMat4]),
         name: &str,
     ) -> Result<Vec<bool>> {
-        let mut all_mirrored = Vec::with_capacity(positions.len());
-        for (vertex, (p, n)) in positions.iter().zip(normals).enumerate() {
+        let mut all_mirrored = Vec::with_capacity(vertices.positions.len());
+        for (vertex, (p, n)) in vertices.positions.iter().zip(vertices.normals).enumerate() {
             let transform = influences.matrix(vertex, joints).map_err(|e| format!("node `{name}`: {e}"))?;
             let (normal_matrix, mirrored) = of_normals(transform);
             self.positions.push(finite(transform.transform_point3(p.as_dvec3()), name)?);
             self.normals.push(turned(normal_matrix, *n));
+            self.tangents.extend(vertices.tangents.get(vertex).map(|t| placed_tangent(transform, mirrored, *t)));
             all_mirrored.push(mirrored);
         }
         Ok(all_mirrored)
@@ -273,9 +285,26 @@ impl Builder {
             *degenerate.entry(*material).or_default() += count;
         }
         let Builder { normals, triangles, coordinates, emission_coordinates, gloss_coordinates, colors, .. } = self;
-        let mesh = Mesh { positions, normals, triangles, coordinates, emission_coordinates, gloss_coordinates, colors };
-        Ok(Geometry { mesh, origin, degenerate, rounded })
+        let (normal_coordinates, tangents) = (self.normal_coordinates, self.tangents);
+        let mesh = Mesh {
+            positions,
+            normals,
+            triangles,
+            coordinates,
+            emission_coordinates,
+            gloss_coordinates,
+            colors,
+            bumps: None,
+        };
+        Ok(Geometry { mesh, origin, normal_coordinates, tangents, degenerate, rounded })
     }
+}
+
+/// The vertices of a primitive, not placed yet; there are no tangents, or as many as positions.
+struct Vertices<'a> {
+    positions: &'a [Vec3],
+    normals: &'a [Vec3],
+    tangents: &'a [[f32; 4]],
 }
 
 /// Whether the transform of a vertex is a reflection.
@@ -304,6 +333,13 @@ fn of_normals(transform: DMat4) -> (DMat3, bool) {
 /// A normal in the world.
 fn turned(matrix: DMat3, normal: Vec3) -> Vec3 {
     (matrix * normal.as_dvec3()).normalize_or_zero().as_vec3()
+}
+
+/// A tangent in the world. A reflection turns the cross product of normal and tangent around.
+fn placed_tangent(transform: DMat4, mirrored: bool, [x, y, z, sign]: [f32; 4]) -> [f32; 4] {
+    let tangent = transform.transform_vector3(Vec3::new(x, y, z).as_dvec3()).normalize_or_zero().as_vec3();
+    let sign = if (sign < 0.0) != mirrored { -1.0 } else { 1.0 };
+    tangent.extend(sign).to_array()
 }
 
 /// A position in the world.

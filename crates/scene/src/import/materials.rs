@@ -4,11 +4,12 @@ use super::{
     base_color, container::Document, extras, fault::Result, gloss, textures::Textures, units::FileUnits, volumes,
 };
 use crate::{
+    bumps::NormalMap,
     material::{Alpha, Material},
     texture::Texture,
 };
 use glam::{DVec3, DVec4};
-use gltf::json::{self, material::AlphaMode, validation::Checked};
+use gltf::json::{self, material::AlphaMode, texture::Info, validation::Checked};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Triangles have a material index of 16 bits, and one index is for triangles without material.
@@ -48,6 +49,11 @@ pub(super) fn read(context: &Context, warnings: &mut Vec<String>) -> Result<(Vec
                 Err(e) => _ = faults.insert(index, named(e)),
             }
             read_emission(&mut material, m, &mut textures).map_err(named)?;
+            // A surface without its bumps is plainer, and no fault.
+            match normal_map(m, &mut textures) {
+                Ok(map) => material.normal_map = map,
+                Err(e) => warnings.push(format!("{}: the surface is smooth", named(e))),
+            }
         }
         if material.alpha != Alpha::Ignored && material.emits() {
             warnings.push(named("alphaMode MASK and BLEND are not used where the surface emits".into()));
@@ -60,6 +66,22 @@ pub(super) fn read(context: &Context, warnings: &mut Vec<String>) -> Result<(Vec
 fn base_texture(m: &json::Material, textures: &mut Textures) -> Result<Option<Texture>> {
     let texture = base_color::texture(m);
     texture.map(|(info, field)| textures.read(&info).map_err(|e| format!("{field}: {e}"))).transpose()
+}
+
+fn normal_map(m: &json::Material, textures: &mut Textures) -> Result<Option<NormalMap>> {
+    let Some(of_file) = &m.normal_texture else { return Ok(None) };
+    let field = |e| format!("normalTexture: {e}");
+    if !of_file.scale.is_finite() {
+        return Err(field(format!("scale {} must be finite", of_file.scale)));
+    }
+    let info = normal_info(of_file).ok_or_else(|| field("KHR_texture_transform: not as the extension says".into()))?;
+    let texture = textures.read(&info).map_err(field)?;
+    Ok(Some(NormalMap::new(texture, f64::from(of_file.scale))))
+}
+
+/// A normal texture without its scale, if its extensions are well-formed.
+pub(super) fn normal_info(texture: &json::material::NormalTexture) -> Option<Info> {
+    serde_json::from_value(serde_json::to_value(texture).ok()?).ok()
 }
 
 /// Reads the texture of a material that emits; one that is black does not.
@@ -85,6 +107,7 @@ fn default_named(name: String) -> Material {
         name,
         base_color: DVec3::splat(0.8).extend(1.0),
         base_texture: None,
+        normal_map: None,
         alpha: Alpha::Ignored,
         emission: DVec3::ZERO,
         emission_texture: None,

@@ -30,6 +30,7 @@ mod pose;
 mod primitive;
 mod skin;
 mod survey;
+mod tangents;
 mod text;
 mod textures;
 mod transform;
@@ -97,7 +98,8 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
     let (metres_per_unit, claimed) = (options.metres_per_unit, claimed(root, &nodes));
     let context = materials::Context { document, metres_per_unit, units: &units, used: &claimed };
     let (mut materials, texture_faults) = materials::read(&context, &mut warnings)?;
-    let Geometry { mut mesh, origin, degenerate, rounded } = geometry(document, &nodes, &posed, &mut warnings)?;
+    let placed = geometry(document, &nodes, &posed, &mut warnings)?;
+    let Geometry { mut mesh, origin, normal_coordinates, tangents, degenerate, rounded } = placed;
     if mesh.triangles.iter().any(|t| usize::from(t.material) == materials.len()) {
         materials.push(materials::default());
     }
@@ -107,6 +109,7 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
         let count: u64 = duplicates.values().sum();
         warnings.push(format!("{count} triangles lie exactly on others of their material and are left out"));
     }
+    mesh.bumps = tangents::bumps(&mesh, &materials, normal_coordinates, &tangents, &mut warnings).map(Box::new);
     let mut lights = lights::punctual(root, &nodes, (metres_per_unit, &units), origin, &mut warnings)?;
     lights.extend(lights::emitters(&mesh, &materials));
     let cameras = cameras::read(root, &nodes, metres_per_unit)?;

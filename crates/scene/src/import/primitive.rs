@@ -7,6 +7,7 @@ use super::{
     draco,
     fault::{Fault, Result},
     gloss,
+    materials::normal_info,
     textures::Coordinates,
 };
 use glam::Vec3;
@@ -38,6 +39,10 @@ pub(super) struct CheckedPrimitive<'a> {
     pub emission_coordinates: Option<(CheckedAccessor<'a>, Coordinates)>,
     /// The same of the texture of metallic and roughness.
     pub gloss_coordinates: Option<(CheckedAccessor<'a>, Coordinates)>,
+    /// The same of the normal map.
+    pub normal_coordinates: Option<(CheckedAccessor<'a>, Coordinates)>,
+    /// Tangents with the sign of the bitangent, where there are normals and a normal map.
+    pub tangents: Option<CheckedAccessor<'a>>,
     pub colors: Option<CheckedAccessor<'a>>,
     targets: Vec<Target<'a>>,
     /// Joints and weights, four to a vertex in each set.
@@ -219,11 +224,17 @@ impl<'a> CheckedPrimitive<'a> {
         let own = document.root.materials.get(usize::from(material));
         let base = own.and_then(base_color::texture);
         let emission = own.filter(|m| m.emissive_factor.0 != [0.0; 3]).and_then(|m| m.emissive_texture.as_ref());
-        let [coordinates, emission_coordinates, gloss_coordinates] = [
+        let bumps = own.and_then(|m| m.normal_texture.as_ref()).and_then(normal_info);
+        let [coordinates, emission_coordinates, gloss_coordinates, normal_coordinates] = [
             coordinates(base.as_ref().map(|(info, _)| &**info))?,
             coordinates(emission)?,
             coordinates(own.and_then(gloss::texture))?,
+            coordinates(bumps.as_ref())?,
         ];
+        let tangents = match bumps.is_some() && normals.is_some() {
+            true => source.beside(&positions, Semantic::Tangents, (CheckedAccessor::tangents, 4))?,
+            false => None,
+        };
         let (targets, influences) = (source.targets(&positions)?, source.influences(&positions)?);
         Ok(CheckedPrimitive {
             positions,
@@ -232,6 +243,8 @@ impl<'a> CheckedPrimitive<'a> {
             coordinates,
             emission_coordinates,
             gloss_coordinates,
+            normal_coordinates,
+            tangents,
             colors,
             targets,
             influences,

@@ -80,7 +80,7 @@ impl Collected<'_> {
         }
     }
 
-    /// Adds the textures of base color, emission, metallic and roughness with their samplers and images.
+    /// Adds the textures of base color, emission, metallic and roughness, and normals with their samplers and images.
     fn add_pictures(&mut self, root: &Root, materials: &BTreeSet<u16>) {
         let materials = materials.iter().filter_map(|k| root.materials.get(usize::from(*k)));
         let own = |m: &json::Material| {
@@ -88,8 +88,9 @@ impl Collected<'_> {
             let others = [
                 m.emissive_texture.as_ref().map(|info| info.index.value()),
                 gloss::texture(m).map(|info| info.index.value()),
+                m.normal_texture.as_ref().map(|texture| texture.index.value()),
             ];
-            [base, others[0], others[1]]
+            [base, others[0], others[1], others[2]]
         };
         let textures: BTreeSet<usize> = materials.flat_map(own).flatten().collect();
         let (mut samplers, mut images) = (BTreeSet::new(), BTreeSet::new());

@@ -175,7 +175,7 @@ mod tests {
             let size = 4.0 * item.uniform(100);
             let point = |k: u64| {
                 let normal = (DVec3::Y + size * vector(2 * k)).normalize();
-                SurfacePoint { position: vector(2 * k + 1), normal, geometric_normal: normal, triangle: 0, material: 0 }
+                SurfacePoint::smooth(vector(2 * k + 1), normal, normal, 0, 0)
             };
             let points: Vec<SurfacePoint> = (0..5).map(point).collect();
             let receiver = ReceiverBounds::around(&points).expect("points");

@@ -12,7 +12,7 @@ use std::f64::consts::{PI, TAU};
 type Size = (usize, usize);
 
 fn facing(normal: DVec3) -> SurfacePoint {
-    SurfacePoint { position: DVec3::ZERO, normal, geometric_normal: normal, triangle: 0, material: 0 }
+    SurfacePoint::smooth(DVec3::ZERO, normal, normal, 0, 0)
 }
 
 fn map(size: Size, pixels: &[Vec3]) -> EnvironmentMap {

@@ -24,7 +24,7 @@ fn import(asset: &Asset) -> Scene {
 /// A point above the square that faces it.
 fn above(scene: &Scene, position: DVec3) -> SurfacePoint {
     let normal = DVec3::NEG_Z;
-    SurfacePoint { position: position - scene.origin, normal, geometric_normal: normal, triangle: 0, material: 0 }
+    SurfacePoint::smooth(position - scene.origin, normal, normal, 0, 0)
 }
 
 /// Irradiance of a point by a sum over the square of what is seen of it, W/m².

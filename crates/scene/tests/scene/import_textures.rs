@@ -225,7 +225,8 @@ fn vertex_colors_of_every_kind() {
     }
 }
 
-/// Texture, mask and vertex colors do not change a translucent surface, and one line warns of them.
+/// A mask does not change a translucent surface, vertex colors change none without a texture, and one line warns of
+/// them. A texture that cannot be read is said.
 #[test]
 fn what_is_not_used_is_said() {
     let mut material = textured(json!({}));
@@ -236,8 +237,15 @@ fn what_is_not_used_is_said() {
     scene.warn_of_colors(|_| false);
     assert!(scene.warnings.is_empty());
     scene.warn_of_colors(|m| m == 0);
-    let expected = "`Cloth`: not used on a translucent surface: base color texture, alphaMode MASK, vertex colors";
-    assert!(scene.warnings.len() == 1 && scene.warnings[0].contains(expected), "{:?}", scene.warnings);
+    let expected = "`Cloth`: not used on a translucent surface: alphaMode MASK";
+    assert!(scene.warnings.len() == 1 && scene.warnings[0].ends_with(expected), "{:?}", scene.warnings);
+    asset.json["materials"][0]["pbrMetallicRoughness"] = json!({});
+    let mut scene = asset.import().expect("imports");
+    scene.warn_of_colors(|m| m == 0);
+    assert!(scene.warnings[0].ends_with(&format!("{expected}, vertex colors")), "{:?}", scene.warnings);
+    let mut scene = with_picture(&png()[..60], textured(json!({})), json!({})).import().expect("imports");
+    scene.warn_of_colors(|m| m == 0);
+    assert!(scene.warnings[0].ends_with("its medium has one color"), "{:?}", scene.warnings);
     let mut bare = with_picture(&png(), textured(json!({})), json!({}));
     bare.set("/meshes/0/primitives/0/attributes", json!({ "POSITION": 0 }));
     assert!(bare.import().expect("imports").warnings[0].contains("no TEXCOORD_0"));

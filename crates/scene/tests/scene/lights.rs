@@ -11,7 +11,7 @@ use scene::{
 use std::f64::consts::PI;
 
 fn facing(position: DVec3, normal: DVec3) -> SurfacePoint {
-    SurfacePoint { position, normal, geometric_normal: normal, triangle: 0, material: 0 }
+    SurfacePoint::smooth(position, normal, normal, 0, 0)
 }
 
 fn irradiance(light: &dyn Light, at: &SurfacePoint) -> f64 {

@@ -25,6 +25,7 @@ mod lights;
 mod many_lights;
 mod mesh_defects;
 mod meshes;
+mod normal_maps;
 mod panes;
 mod rays;
 mod shadows;

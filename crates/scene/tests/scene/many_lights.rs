@@ -10,7 +10,7 @@ use scene::{
 };
 
 fn facing(position: DVec3, normal: DVec3) -> SurfacePoint {
-    SurfacePoint { position, normal, geometric_normal: normal, triangle: u32::MAX, material: 0 }
+    SurfacePoint::smooth(position, normal, normal, u32::MAX, 0)
 }
 
 /// Points of a unit sphere, with a normal that is not quite the sphere's.

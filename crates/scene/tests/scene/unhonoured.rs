@@ -55,8 +55,8 @@ fn known_properties_are_named_with_what_has_them() {
     let extension = |name: &str, field: &str, value: Value| json!({ "extensions": { name: { field: value } } });
     let transmission = |x: f64| extension("KHR_materials_transmission", "transmissionFactor", json!(x));
     for (name, fields, words) in [
-        ("floor", json!({ "normalTexture": texture() }), "materials[].normalTexture (`floor`);"),
-        ("wax", json!({ "normalTexture": texture() }), "materials[].normalTexture (`wax`);"),
+        ("floor", json!({ "occlusionTexture": texture() }), "materials[].occlusionTexture (`floor`);"),
+        ("wax", json!({ "occlusionTexture": texture() }), "materials[].occlusionTexture (`wax`);"),
         ("wax", json!({ "occlusionTexture": texture() }), "materials[].occlusionTexture (`wax`);"),
         ("wax", pbr("metallicFactor", json!(1)), "pbrMetallicRoughness.metallicFactor taken as 0 (`wax`);"),
         ("wax", pbr("baseColorFactor", json!([1, 1, 0.5, 1])), "baseColorFactor taken as 1 (`wax`);"),
@@ -114,7 +114,7 @@ fn what_changes_no_picture_is_not_named() {
     let extensions = json!({ "KHR_materials_clearcoat": coat, "KHR_materials_ior": { "ior": 1.5 },
         "KHR_materials_transmission": { "transmissionFactor": 0 }, "KHR_xmp_json_ld": { "packet": 0 } });
     let floor = json!({ "pbrMetallicRoughness": plain, "doubleSided": true, "extras": [1], "extensions": extensions,
-        "normalTexture": null });
+        "occlusionTexture": null });
     assert_eq!(material("floor", floor), "");
     let smooth = json!({ "metallicFactor": 0, "roughnessFactor": 0, "baseColorFactor": [1, 1, 1, 1] });
     let extensions = json!({ "KHR_materials_ior": { "ior": 1.3 },
@@ -128,7 +128,7 @@ fn what_changes_no_picture_is_not_named() {
 #[test]
 fn what_is_not_drawn_is_not_named() {
     let mut asset = asset();
-    asset.set("/materials/2/normalTexture", json!({ "index": 0 }));
+    asset.set("/materials/2/occlusionTexture", json!({ "index": 0 }));
     asset.set("/textures/0/extensions", json!({ "ACME_texture": { "source": 0 } }));
     asset.set("/extensionsUsed", json!(["ACME_texture", "ACME_wings"]));
     asset.push("nodes", json!({ "mesh": 2, "camera": 1, "extensions": { "ACME_wings": {} } }));
@@ -193,7 +193,7 @@ fn the_line_is_short() {
     asset.json["materials"][0][long.as_str()] = json!(0);
     asset.set("/materials/1/name", json!(long));
     for _ in 0..2000 {
-        asset.push("materials", json!({ "normalTexture": { "index": 0 } }));
+        asset.push("materials", json!({ "occlusionTexture": { "index": 0 } }));
         let primitive = json!({ "attributes": { "POSITION": 0 }, "indices": 2 });
         let material = asset.json["materials"].as_array().map_or(0, Vec::len) - 1;
         let mesh = asset.mesh(primitive);
