@@ -13,6 +13,7 @@ mod environment;
 mod error_bars;
 mod half_space;
 mod knob;
+mod lens;
 mod means;
 mod near_field;
 mod objects;

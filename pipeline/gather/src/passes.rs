@@ -10,7 +10,7 @@ use crate::{
     image::{Filter, Input, Rendered, Settings},
     objects::objects,
     path_state::{PathIndex, ThreadContext},
-    pixel_numbers::{PixelNumbers, halves},
+    pixel_numbers::{PixelNumbers, Streams, halves},
     pixel_sum::{PixelSum, Sums},
     reference::{Walks, meets_light},
     renderer::Renderer,
@@ -34,6 +34,19 @@ pub(crate) const TILE: usize = 8;
 /// A ray that crosses a surface undeflected continues at this distance beyond it, as a share of the scene's diagonal.
 const CLEARANCE: f64 = 1e-9;
 
+/// The middle of a lens, and places around its rim, by the numbers that choose them.
+const ACROSS_THE_LENS: [Option<[f64; 2]>; 9] = [
+    None,
+    Some([0.0, 0.0]),
+    Some([0.5, 0.0]),
+    Some([1.0, 0.0]),
+    Some([0.0, 0.5]),
+    Some([1.0, 0.5]),
+    Some([0.0, 1.0]),
+    Some([0.5, 1.0]),
+    Some([1.0, 1.0]),
+];
+
 /// An image to which paths are added in passes.
 pub struct Passes<'a> {
     renderer: Renderer<'a>,
@@ -45,9 +58,8 @@ pub struct Passes<'a> {
     /// Paths that each pixel has so far.
     paths: u32,
     counts: Counts,
-    pixel_stream: Stream,
-    /// The first four numbers of near fields, and the rest.
-    near_streams: [Stream; 2],
+    /// Random numbers of all pixels.
+    streams: Streams,
     edge_stream: Stream,
 }
 
@@ -77,6 +89,13 @@ impl<'a> Passes<'a> {
             near_points: Stream::new(settings.seed, Purpose::NearPoint),
         };
         cut_correction::correct(&mut renderer);
+        let stream = |purpose: Purpose| Stream::new(settings.seed, purpose);
+        let streams = Streams {
+            places: stream(Purpose::Pixel),
+            lens: input.camera.lens.map(|_| stream(Purpose::Lens)),
+            walks: settings.reference.then_some(renderer.walk_starts),
+            near: renderer.surroundings.is_some().then(|| [Purpose::NearField, Purpose::NearLight].map(stream)),
+        };
         let mut passes = Passes {
             renderer,
             edges: vec![None; settings.part().pixels()],
@@ -84,9 +103,8 @@ impl<'a> Passes<'a> {
             part: settings.part(),
             paths: 0,
             counts: Counts::default(),
-            pixel_stream: Stream::new(settings.seed, Purpose::Pixel),
-            near_streams: [Purpose::NearField, Purpose::NearLight].map(|purpose| Stream::new(settings.seed, purpose)),
-            edge_stream: Stream::new(settings.seed, Purpose::Edge),
+            streams,
+            edge_stream: stream(Purpose::Edge),
         };
         let walks = passes.renderer.objects.iter().flatten().filter_map(|object| object.walks.as_ref());
         passes.counts.reflections_left_out = walks.map(Walks::incomplete).sum();
@@ -99,7 +117,7 @@ impl<'a> Passes<'a> {
         &self.renderer
     }
 
-    /// Finds edge pixels by the transmittance at the corners of all pixels. There are none with one path per pixel,
+    /// Finds edge pixels by the transmittance at the corners of all pixels, and across the lens if there is one. There are none with one path per pixel,
     /// which has no second half to estimate the factor of the control variate from, nor with rays through pixel
     /// centers, which are all the same.
     fn find_edges(&mut self) {
@@ -108,19 +126,26 @@ impl<'a> Passes<'a> {
             return;
         }
         let Crop { x: left, y: upper, width, height } = self.part;
+        let lens: &[Option<[f64; 2]>] = if self.streams.lens.is_some() { &ACROSS_THE_LENS } else { &[None] };
         let row = |y: usize| {
             let mut counts = Counts::default();
             let corner = |x: usize, counts: &mut Counts| {
-                let (origin, direction) = self.ray_at(DVec2::new((left + x) as f64, (upper + y) as f64));
-                self.renderer.through(origin, direction, counts)
+                let at = DVec2::new((left + x) as f64, (upper + y) as f64);
+                let range = |[low, high]: [f64; 2], lens: &Option<[f64; 2]>| {
+                    let (origin, direction) = self.renderer.camera_ray(at, *lens);
+                    let through = self.renderer.through(origin, direction, counts);
+                    [low.min(through), high.max(through)]
+                };
+                lens.iter().fold([1.0, 0.0], range)
             };
-            ((0..=width).map(|x| corner(x, &mut counts)).collect::<Vec<f64>>(), counts)
+            ((0..=width).map(|x| corner(x, &mut counts)).collect::<Vec<[f64; 2]>>(), counts)
         };
-        let rows: Vec<(Vec<f64>, Counts)> = (0..=height).into_par_iter().map(row).collect();
+        let rows: Vec<(Vec<[f64; 2]>, Counts)> = (0..=height).into_par_iter().map(row).collect();
         for index in 0..width * height {
             let (x, y) = (index % width, index / width);
             let corners = [rows[y].0[x], rows[y].0[x + 1], rows[y + 1].0[x], rows[y + 1].0[x + 1]];
-            let spread = corners.into_iter().fold(0.0, f64::max) - corners.into_iter().fold(1.0, f64::min);
+            let highest = corners.into_iter().map(|[_, high]| high).fold(0.0, f64::max);
+            let spread = highest - corners.into_iter().map(|[low, _]| low).fold(1.0, f64::min);
             self.edges[index] = (spread > edge::MIN_SPREAD).then(Box::default);
         }
         rows.iter().for_each(|(_, counts)| self.counts.add(counts));
@@ -140,17 +165,11 @@ impl<'a> Passes<'a> {
         self.part.width.div_ceil(TILE) * self.part.height.div_ceil(TILE)
     }
 
-    /// The ray through a point of a pixel, `offset` pixels from its corner.
-    fn ray(&self, index: usize, offset: DVec2) -> (DVec3, DVec3) {
+    /// The ray through a point of a pixel, `offset` pixels from its corner, and through the place on the lens that
+    /// `lens` chooses, or its middle.
+    fn ray(&self, index: usize, offset: DVec2, lens: Option<[f64; 2]>) -> (DVec3, DVec3) {
         let [x, y] = self.part.pixel(index);
-        self.ray_at(DVec2::new(x as f64, y as f64) + offset)
-    }
-
-    /// The ray through a point of the image, pixels.
-    fn ray_at(&self, point: DVec2) -> (DVec3, DVec3) {
-        let Renderer { input, settings, .. } = &self.renderer;
-        let (origin, direction) = input.camera.ray(point, settings.size());
-        (origin - input.scene.origin, direction)
+        self.renderer.camera_ray(DVec2::new(x as f64, y as f64) + offset, lens)
     }
 
     /// The sums of a pixel with more paths.
@@ -159,9 +178,7 @@ impl<'a> Passes<'a> {
         let [x, y] = self.part.pixel(index);
         let settings = &self.renderer.settings;
         let pixel = (y * settings.width + x) as u64;
-        let walk_starts = settings.reference.then_some(self.renderer.walk_starts);
-        let near_streams = self.renderer.surroundings.is_some().then_some(self.near_streams);
-        let numbers = PixelNumbers::new(pixel, self.pixel_stream, walk_starts, near_streams);
+        let numbers = PixelNumbers::new(pixel, self.streams);
         let mut edge = self.edges[index].clone().map(|edge| (edge, halves(self.edge_stream, pixel)));
         let alone = settings.paths_per_pixel == 1;
         let mut sum = self.sums[index];
@@ -170,7 +187,7 @@ impl<'a> Passes<'a> {
                 Filter::Point => DVec2::splat(0.5),
                 Filter::Box => DVec2::from_array(numbers.place(path)),
             };
-            let (origin, direction) = self.ray(index, offset);
+            let (origin, direction) = self.ray(index, offset, numbers.lens(path));
             let path_index = PathIndex { pixel, path, walks: numbers.walks(path), near: numbers.near(path) };
             let light = self.renderer.trace(path_index, origin, direction, context);
             sum.add(path, alone, &light);
@@ -178,8 +195,8 @@ impl<'a> Passes<'a> {
                 let half = path as usize % 2;
                 edge.add_path(half, &light);
                 for ray in 0..edge::RAYS {
-                    let [x, y, ..] = spread[half].point(path / 2 * edge::RAYS + ray);
-                    let (origin, direction) = self.ray(index, DVec2::new(x, y));
+                    let [x, y, u, v] = spread[half].point(path / 2 * edge::RAYS + ray);
+                    let (origin, direction) = self.ray(index, DVec2::new(x, y), self.streams.lens.map(|_| [u, v]));
                     edge.add_ray(half, self.renderer.through(origin, direction, &mut context.counts));
                 }
             }
@@ -188,7 +205,7 @@ impl<'a> Passes<'a> {
     }
 
     fn pixel(&self, index: usize) -> Pixel {
-        let (origin, direction) = self.ray(index, DVec2::splat(0.5));
+        let (origin, direction) = self.ray(index, DVec2::splat(0.5), None);
         self.sums[index].pixel(self.edges[index].as_deref(), self.renderer.guide(origin, direction))
     }
 

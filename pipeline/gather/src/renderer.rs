@@ -7,6 +7,7 @@ use crate::{
 use bsdf::Surface;
 use bssrdf::Medium;
 use calibration::Factors;
+use glam::DVec2;
 use near_field::{NearField, Surroundings};
 use scene::{DVec3, light::LightTree, random::Stream};
 use std::ops::Range;
@@ -36,6 +37,19 @@ pub struct Renderer<'a> {
     pub shard_picks: Stream,
     pub walk_starts: Stream,
     pub near_points: Stream,
+}
+
+impl Renderer<'_> {
+    /// Origin, m from the scene's, and unit direction of the ray through a point of the image, pixels, and through the
+    /// place on the camera's lens that `lens` chooses, or its middle.
+    pub fn camera_ray(&self, point: DVec2, lens: Option<[f64; 2]>) -> (DVec3, DVec3) {
+        let Renderer { input, settings, .. } = self;
+        let (origin, direction) = match lens {
+            None => input.camera.ray(point, settings.size()),
+            Some(xi) => input.camera.ray_through(point, settings.size(), xi),
+        };
+        (origin - input.scene.origin, direction)
+    }
 }
 
 /// A translucent material with its medium and its samples.
