@@ -27,3 +27,4 @@ mod sampling;
 mod shards;
 mod slab;
 mod spread;
+mod walls;

@@ -1,6 +1,6 @@
 //! What happens to light at a surface: which share of it is reflected and which transmitted, and where it goes.
 //!
-//! [`Bsdf`] is the contract between a surface and a path tracer. [`SmoothDielectric`] and [`Lambertian`] implement it,
+//! [`Bsdf`] is the contract between a surface and a path tracer. [`SmoothDielectric`], [`Lambertian`] and [`ThinWall`] implement it,
 //! and [`Surface`] is one of them, as the scene decides. The BSSRDF describes what happens *below* the surface; this
 //! crate does not depend on it. The crate has no I/O and no random numbers, and allocates nothing.
 //!
@@ -20,10 +20,12 @@
 mod dielectric;
 pub mod fresnel;
 mod lambertian;
+mod thin_wall;
 
 pub use dielectric::SmoothDielectric;
 pub use glam::DVec3;
 pub use lambertian::Lambertian;
+pub use thin_wall::ThinWall;
 
 /// A side of a surface. Normals of closed meshes point outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,6 +100,7 @@ pub trait Bsdf {
 pub enum Surface {
     SmoothDielectric(SmoothDielectric),
     Lambertian(Lambertian),
+    ThinWall(ThinWall),
 }
 
 impl Surface {
@@ -118,6 +121,7 @@ macro_rules! ask {
         match $surface {
             Surface::SmoothDielectric(bsdf) => bsdf.$method($($argument),*),
             Surface::Lambertian(bsdf) => bsdf.$method($($argument),*),
+            Surface::ThinWall(bsdf) => bsdf.$method($($argument),*),
         }
     };
 }

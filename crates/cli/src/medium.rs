@@ -118,6 +118,7 @@ mod tests {
                 emission_texture: None,
                 volume: true,
                 thin: false,
+                wall: None,
                 stated: Some(stated),
                 medium: Some(volume.clone()),
                 double_sided: false,

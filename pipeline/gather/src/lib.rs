@@ -60,6 +60,7 @@ pub mod renderer;
 mod state;
 mod subsurface;
 mod walked;
+mod wall;
 mod watch;
 
 pub use crop::Crop;

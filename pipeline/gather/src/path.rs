@@ -165,6 +165,11 @@ impl Renderer<'_> {
         if material.emits() && (side == Side::Outside || material.double_sided) {
             light.add(state, Layer::Emission, self.input.scene.emission(hit.triangle, hit.weights));
         }
+        if let Some(wall) = self.input.scene.wall(hit.triangle, hit.weights) {
+            let scattered = self.wall_light(state, (point, side), &wall, counts);
+            light.add(state, Layer::Diffuse, scattered);
+            return false;
+        }
         // A ray meets a pane only where that mirrors.
         let bsdf = match self.input.scene.is_pane(point.material) {
             true => Surface::dielectric(1.0),

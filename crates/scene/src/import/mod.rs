@@ -51,6 +51,7 @@ use geometry::{Geometry, Instance};
 use glam::DVec3;
 use gltf::json::Root;
 use instancing::Copies;
+use materials::ReadMaterials;
 use nodes::SceneNode;
 pub use options::{ImportOptions, LightUnit, Pose};
 use pose::Posed;
@@ -95,7 +96,7 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
     let units = units::decide(root, &nodes, options);
     let (metres_per_unit, claimed) = (options.metres_per_unit, claimed(root, &nodes));
     let context = materials::Context { document, metres_per_unit, units: &units, used: &claimed };
-    let (mut materials, texture_faults) = materials::read(&context, &mut warnings)?;
+    let ReadMaterials { mut materials, faults: texture_faults, of_solids } = materials::read(&context, &mut warnings)?;
     let Geometry { mut mesh, origin, degenerate, rounded } = geometry(document, &nodes, &posed, &mut warnings)?;
     if mesh.triangles.iter().any(|t| usize::from(t.material) == materials.len()) {
         materials.push(materials::default());
@@ -111,9 +112,10 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
     let cameras = cameras::read(root, &nodes, metres_per_unit)?;
     let parts = RenderedParts { mesh: &mesh, nodes: &nodes, cameras: &cameras, origin, metres_per_unit };
     let unhonoured = [features::undeclared_effects(root, &document.survey), unhonoured::of(document, &parts)].concat();
-    let panes = panes::find(&mesh, &materials);
+    let sheets = panes::find(&mesh, &materials);
+    warnings.extend(of_solids.into_iter().filter(|(k, _)| sheets[usize::from(*k)].is_none()).map(|(_, note)| note));
     Ok(Scene {
-        panes,
+        sheets,
         files: document.files.borrow().read.clone(),
         claimed,
         texture_faults,

@@ -28,3 +28,4 @@ mod panes;
 mod rays;
 mod shadows;
 mod unhonoured;
+mod walls;
