@@ -1,7 +1,7 @@
 //! What happens to light at a surface: which share of it is reflected and which transmitted, and where it goes.
 //!
 //! [`Bsdf`] is the contract between a surface and a path tracer. [`SmoothDielectric`], [`RoughDielectric`],
-//! [`Lambertian`] and [`Gloss`] implement it, and [`Surface`] is one of them, as the scene decides. The BSSRDF describes
+//! [`Lambertian`], [`Gloss`] and [`ThinWall`] implement it, and [`Surface`] is one of them, as the scene decides. The BSSRDF describes
 //! what happens *below* the surface; this crate does not depend on it. The crate has no I/O and no random numbers, and
 //! allocates nothing but the tables of rough surfaces, before they are asked.
 //!
@@ -26,6 +26,7 @@ mod gloss;
 mod grid;
 mod lambertian;
 mod rough;
+mod thin_wall;
 
 pub use dielectric::SmoothDielectric;
 pub use ggx::SMOOTH_BELOW;
@@ -33,6 +34,7 @@ pub use glam::DVec3;
 pub use gloss::{Gloss, Schlick, Stated};
 pub use lambertian::Lambertian;
 pub use rough::{RoughBoundary, RoughDielectric};
+pub use thin_wall::ThinWall;
 
 /// A side of a surface. Normals of closed meshes point outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,6 +111,7 @@ pub enum Surface<'a> {
     RoughDielectric(RoughDielectric<'a>),
     Lambertian(Lambertian),
     Gloss(Gloss),
+    ThinWall(ThinWall),
 }
 
 impl Surface<'_> {
@@ -131,6 +134,7 @@ macro_rules! ask {
             Surface::RoughDielectric(bsdf) => bsdf.$method($($argument),*),
             Surface::Lambertian(bsdf) => bsdf.$method($($argument),*),
             Surface::Gloss(bsdf) => bsdf.$method($($argument),*),
+            Surface::ThinWall(bsdf) => bsdf.$method($($argument),*),
         }
     };
 }

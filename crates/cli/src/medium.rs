@@ -3,7 +3,8 @@
 use crate::quoted;
 use bssrdf::{Medium, MediumError, MediumFile, Optics, Unit, built_in, single_scattering_albedo};
 use scene::{Material, ScatterExtension, StatedMedium};
-use std::{fs, io};
+use serde_json::{Map, Value};
+use std::{borrow::Cow, fs, io};
 
 /// Why a medium cannot be read.
 #[derive(Debug, thiserror::Error)]
@@ -48,7 +49,7 @@ pub fn scene_medium(material: &Material) -> Result<Option<Medium>, ReadMediumErr
     if let Some(stated) = &material.stated {
         let medium = match stated {
             StatedMedium::Name(name) => built_in(name),
-            StatedMedium::Json(text) => Medium::from_json(text),
+            StatedMedium::Json(text) => Medium::from_json(&with_name(text, &material.name)),
         };
         let fault = |source| ReadMediumError::Stated { material: material.name.clone(), source };
         return medium.map(Some).map_err(fault);
@@ -78,6 +79,17 @@ pub fn scene_medium(material: &Material) -> Result<Option<Medium>, ReadMediumErr
     Medium::new(file).map(Some).map_err(fault)
 }
 
+/// The JSON of a medium; one without a name has that of its material.
+fn with_name<'a>(text: &'a str, material: &str) -> Cow<'a, str> {
+    match serde_json::from_str::<Map<String, Value>>(text) {
+        Ok(mut fields) if !fields.contains_key("name") => {
+            fields.insert("name".into(), material.into());
+            Value::Object(fields).to_string().into()
+        }
+        _ => text.into(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -90,9 +102,9 @@ mod tests {
         assert!(message.contains("/dev/zero: cannot read: not a regular file"), "{message}");
     }
 
-    /// A name or JSON in the extras of a material; a name is never a path.
+    /// A name or JSON in the extras of a material; a name is never a path, and JSON without one has the material's.
     ///
-    /// Seen to catch: the extensions of the material taken before its extras.
+    /// Seen to catch: the extensions of the material taken before its extras, a name required of JSON.
     #[test]
     fn extras_of_a_material_state_its_medium() {
         let volume = Volume { extinction: DVec3::ONE, ior: 1.3, scatter: None };
@@ -108,6 +120,7 @@ mod tests {
                 gloss: None,
                 volume: true,
                 thin: false,
+                wall: None,
                 stated: Some(stated),
                 medium: Some(volume.clone()),
                 double_sided: false,
@@ -119,6 +132,9 @@ mod tests {
         assert_eq!(medium(name("marble")), Ok(Some(marble)));
         let own = r#"{"name":"own","unit":"1/m","sigma_a":[1,1,1],"sigma_s":[9,9,9]}"#;
         assert_eq!(medium(json(own)), Ok(Some(Medium::from_json(own).expect("a medium"))));
+        let nameless = own.replace(r#""name":"own","#, "");
+        let of_material = own.replace("own", "wax");
+        assert_eq!(medium(json(&nameless)), Ok(Some(Medium::from_json(&of_material).expect("a medium"))));
         for wrong in [name("marbel"), name("/etc/passwd"), name("data/media/marble.json"), json("{")] {
             let message = medium(wrong).expect_err("it is no medium");
             assert!(message.contains("`wax` of SCENE: extras.medium") && message.contains("--medium"), "{message}");

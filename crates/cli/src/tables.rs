@@ -131,6 +131,7 @@ pub fn material_table(scene: &Scene) -> Result<String, Failure> {
             _ if is_in(&lost) => "translucent, no triangle left",
             (_, _) if counts[index] == 0 => "unused",
             (false, false) if scene.is_pane(index as u16) => "pane",
+            (false, false) if scene.is_wall(index as u16) => "thin wall",
             (true, true) => "translucent, emits",
             (true, false) => "translucent",
             (false, true) => "emits",

@@ -1,10 +1,10 @@
 //! Holes in opaque surfaces: where their alpha is below a threshold, by chance where it is the share that they cover, and
-//! by chance in panes of glass, which are met where they mirror.
+//! by chance in panes of glass, which are met where they mirror, and in thin walls, which let some light through straight.
 
 use crate::{
     material::{Alpha, Material},
     mesh::unit,
-    panes,
+    panes::{self, Sheet},
     random::mix,
     scene::Scene,
 };
@@ -24,6 +24,8 @@ enum Rule {
     Alpha(Alpha),
     /// Glass of this relative index.
     Pane(f64),
+    /// Where the surface is by its alpha, this share of rays crosses it straight.
+    Wall(Alpha, f64),
 }
 
 const SOLID: Rule = Rule::Alpha(Alpha::Ignored);
@@ -36,8 +38,10 @@ impl<'a> Cutouts<'a> {
             if translucent(k as u16) || material.emits() {
                 return SOLID;
             }
-            if let Some(ior) = scene.panes[k] {
-                return Rule::Pane(ior);
+            match (scene.sheets[k], &material.wall) {
+                (Some(Sheet::Pane(ior)), _) => return Rule::Pane(ior),
+                (Some(Sheet::Wall), Some(wall)) if wall.clear > 0.0 => return Rule::Wall(material.alpha, wall.clear),
+                _ => {}
             }
             let covers_all = material.alpha == Alpha::Coverage && scene.mesh.colors.is_empty() && is_solid(material);
             if covers_all { SOLID } else { Rule::Alpha(material.alpha) }
@@ -61,6 +65,14 @@ impl<'a> Cutouts<'a> {
             // Both are float32 in the file: an alpha that equals the cutoff in decimals must not be a hole.
             Rule::Alpha(Alpha::Cutoff(cutoff)) => (alpha() as f32) < cutoff,
             Rule::Alpha(Alpha::Coverage) => chance(triangle, origin, direction) >= alpha(),
+            Rule::Wall(rule, clear) => {
+                let covered = match rule {
+                    Alpha::Ignored => 1.0,
+                    Alpha::Cutoff(cutoff) => f64::from(u8::from((alpha() as f32) >= cutoff)),
+                    Alpha::Coverage => alpha(),
+                };
+                chance(triangle, origin, direction) >= covered * (1.0 - clear)
+            }
             Rule::Pane(ior) => {
                 let [a, b, c] = self.scene.mesh.corners(triangle as usize);
                 let cosine = unit((b - a).cross(c - a)).dot(direction);

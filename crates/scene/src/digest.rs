@@ -1,7 +1,8 @@
 //! The identity of a scene, by which clouds recognize it.
 
 use crate::{
-    material::{Alpha, Material},
+    material::{Alpha, Material, Wall},
+    panes::Sheet,
     scene::Scene,
 };
 use std::{collections::BTreeMap, sync::Arc};
@@ -35,10 +36,14 @@ impl Scene {
         }
         self.put_colors(&mut put);
         self.put_bumps(&mut put);
-        for (k, ior) in self.panes.iter().enumerate().filter_map(|(k, pane)| Some((k, (*pane)?))) {
-            put(b"pane");
+        for (k, sheet) in self.sheets.iter().enumerate().filter_map(|(k, sheet)| Some((k, (*sheet)?))) {
+            let numbers = match (sheet, &self.materials[k].wall) {
+                (Sheet::Pane(ior), _) => ("pane", vec![ior]),
+                (Sheet::Wall, wall) => ("wall", wall.iter().flat_map(Wall::numbers).collect()),
+            };
+            put(numbers.0.as_bytes());
             put(&(k as u64).to_le_bytes());
-            put(&ior.to_le_bytes());
+            numbers.1.iter().for_each(|x| put(&x.to_le_bytes()));
         }
         *hasher.finalize().as_bytes()
     }

@@ -128,6 +128,8 @@ impl Framing<'_> {
             yfov: YFOV_DEGREES,
             width: None,
             height: None,
+            aperture: None,
+            focus: None,
         };
         view.with_camera(placed.name()).ok()
     }

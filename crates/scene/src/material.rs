@@ -22,6 +22,8 @@ pub struct Material {
     pub volume: bool,
     /// Whether the file gives it walls without thickness that light crosses: transmission without a volume.
     pub thin: bool,
+    /// How those walls scatter light to both sides, if they do.
+    pub wall: Option<Wall>,
     /// The medium that its `extras` state; it takes precedence over that of extensions.
     pub stated: Option<StatedMedium>,
     /// The medium of that volume, if the file describes it.
@@ -76,6 +78,26 @@ impl GlossStated {
         let texels = &texture.picture.texels;
         let sum: u64 = texels.iter().map(|texel| u64::from(texel[1])).sum();
         self.roughness * sum as f64 / (255.0 * texels.len().max(1) as f64)
+    }
+}
+
+/// How a wall without thickness scatters the light that does not cross it straight (docs/method.md 13.8).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wall {
+    /// The share of the base color in what leaves on the side where the light came from.
+    pub base: f64,
+    /// What leaves there besides, and what leaves on the other side: shares for each channel.
+    pub back: DVec3,
+    pub through: DVec3,
+    /// The share of rays that cross it straight.
+    pub clear: f64,
+}
+
+impl Wall {
+    /// All numbers that define it.
+    pub(crate) fn numbers(&self) -> [f64; 8] {
+        let [back, through] = [self.back, self.through];
+        [self.base, back.x, back.y, back.z, through.x, through.y, through.z, self.clear]
     }
 }
 

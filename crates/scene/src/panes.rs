@@ -1,30 +1,68 @@
-//! Panes: sheets of clear glass, which have no inside. A ray goes straight on, or is mirrored, by Fresnel's equations.
+//! Sheets, which have no inside. Panes are of clear glass: a ray goes straight on, or is mirrored, by Fresnel's
+//! equations. Thin walls scatter light to both sides.
 
-use crate::{material::Material, mesh::Mesh};
-use bsdf::fresnel;
+use crate::{material::Material, mesh::Mesh, scene::Scene};
+use bsdf::{ThinWall, fresnel};
 use glam::DVec3;
 
 /// A surface of area `A` that encloses less than this share of `A^(3/2)` is a sheet. A ball encloses 0.094, a cube
 /// 0.068, a square plate whose thickness is a thirtieth of its edge 0.01.
 const LARGEST_SHARE: f64 = 0.01;
 
-/// For each material, the relative index of its glass if its surface is a pane. Solids are none, nor are panes if no
-/// other translucent surface is in the scene: someone wants them to be seen as solids.
-pub(crate) fn find(mesh: &Mesh, materials: &[Material]) -> Vec<Option<f64>> {
-    let mut panes: Vec<Option<f64>> = vec![None; materials.len()];
-    if !materials.iter().any(|m| m.thin) {
-        return panes;
+/// A surface without an inside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Sheet {
+    /// Clear glass of this relative index.
+    Pane(f64),
+    /// As the material's `wall` says.
+    Wall,
+}
+
+/// For each material, whether its surface is a sheet. Solids of clear glass are none; what scatters is a wall if the file
+/// says so, whatever its shape. No surface is a sheet if no other translucent one is in the scene: someone wants them to be
+/// seen as solids.
+pub(crate) fn find(mesh: &Mesh, materials: &[Material]) -> Vec<Option<Sheet>> {
+    let mut sheets: Vec<Option<Sheet>> = vec![None; materials.len()];
+    if !materials.iter().any(|m| m.thin || m.wall.is_some()) {
+        return sheets;
     }
     let mut shapes = vec![Shape::default(); materials.len()];
     for (k, t) in mesh.triangles.iter().enumerate() {
         shapes[usize::from(t.material)].add(mesh.corners(k));
     }
-    for (pane, (material, shape)) in panes.iter_mut().zip(materials.iter().zip(&shapes)) {
+    for (sheet, (material, shape)) in sheets.iter_mut().zip(materials.iter().zip(&shapes)) {
         let ior = material.medium.as_ref().map(|medium| medium.ior);
-        *pane = ior.filter(|_| material.thin && shape.is_sheet());
+        let pane = ior.filter(|_| material.thin && shape.is_sheet()).map(Sheet::Pane);
+        *sheet = material.wall.map(|_| Sheet::Wall).or(pane);
     }
-    let is_solid = |(k, m): (usize, &Material)| m.volume && panes[k].is_none() && shapes[k].area > 0.0;
-    if materials.iter().enumerate().any(is_solid) { panes } else { vec![None; materials.len()] }
+    let is_solid = |(k, m): (usize, &Material)| m.volume && sheets[k].is_none() && shapes[k].area > 0.0;
+    if materials.iter().enumerate().any(is_solid) { sheets } else { vec![None; materials.len()] }
+}
+
+impl Scene {
+    /// Whether the surface of a material has no inside, and is not translucent by default.
+    pub(crate) fn is_sheet(&self, material: u16) -> bool {
+        self.sheets.get(usize::from(material)).is_some_and(Option::is_some)
+    }
+
+    /// Whether the surface of a material is a sheet of clear glass, which rays pass or are mirrored by. It is none where it
+    /// is sampled as translucent.
+    pub fn is_pane(&self, material: u16) -> bool {
+        matches!(self.sheets.get(usize::from(material)), Some(Some(Sheet::Pane(_))))
+    }
+
+    /// Whether it is a thin wall, which scatters light to both sides. It is none where it is sampled as translucent.
+    pub fn is_wall(&self, material: u16) -> bool {
+        self.sheets.get(usize::from(material)) == Some(&Some(Sheet::Wall))
+    }
+
+    /// The thin wall at the point of a triangle with these barycentric weights, if its surface is one.
+    pub fn wall(&self, triangle: u32, weights: [f64; 3]) -> Option<ThinWall> {
+        let material = self.mesh.triangles[triangle as usize].material;
+        let wall = self.materials[usize::from(material)].wall.filter(|_| self.is_wall(material))?;
+        let color = self.color(triangle, weights).truncate();
+        Some(ThinWall { back: wall.base * color + wall.back, through: wall.through })
+    }
 }
 
 /// Sums over the triangles of a surface.

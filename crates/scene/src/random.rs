@@ -14,6 +14,8 @@ pub enum Purpose {
     Gather,
     /// Points at which paths cross their pixel.
     Pixel,
+    /// Points at which paths cross the lens.
+    Lens,
     /// Points around the first exitant point of a path: place and direction of their light, and the rest.
     NearField,
     NearLight,
@@ -68,6 +70,7 @@ impl Purpose {
             Purpose::NearLight => u64::MAX - 9,
             Purpose::NearPoint => u64::MAX - 10,
             Purpose::Balance => u64::MAX - 11,
+            Purpose::Lens => u64::MAX - 20,
             Purpose::HalfSpaceTable => u64::MAX - 3,
             Purpose::Remainder(k) => 7 + k,
         }

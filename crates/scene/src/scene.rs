@@ -6,6 +6,7 @@ use crate::{
     light::{contract::Light, environment::Environment},
     material::{GlossStated, Material},
     mesh::{Mesh, bounds},
+    panes::Sheet,
     unhonoured::Unhonoured,
     view::Camera,
 };
@@ -41,8 +42,8 @@ pub struct Scene {
     pub rounded_triangles: BTreeMap<u16, u64>,
     /// For each material, how many triangles were left out because another of the same material has the same corners.
     pub duplicate_triangles: BTreeMap<u16, u64>,
-    /// For each material, the relative index of the glass if its surface is a pane.
-    pub(crate) panes: Vec<Option<f64>>,
+    /// For each material, whether its surface is a sheet without an inside.
+    pub(crate) sheets: Vec<Option<Sheet>>,
     /// Why the base color texture of a material cannot be read: a fault only where an opaque surface needs it.
     pub(crate) texture_faults: BTreeMap<u16, String>,
     /// Materials that a primitive of the scene names, though it may have no triangle left.
@@ -67,7 +68,7 @@ impl Scene {
         let select = |accept: fn(&Material) -> bool| -> Vec<u16> {
             (0..used.len()).filter(|k| used[*k] && accept(&self.materials[*k])).map(|k| k as u16).collect()
         };
-        let marked: Vec<u16> = select(|m| m.volume).into_iter().filter(|k| !self.is_pane(*k)).collect();
+        let marked: Vec<u16> = select(|m| m.volume).into_iter().filter(|k| !self.is_sheet(*k)).collect();
         if !marked.is_empty() {
             return Ok((marked, false));
         }
@@ -81,12 +82,6 @@ impl Scene {
         lost.retain(|k| self.materials.get(usize::from(*k)).is_some_and(|m| m.volume));
         self.mesh.triangles.iter().for_each(|t| _ = lost.remove(&t.material));
         lost.into_iter().collect()
-    }
-
-    /// Whether the surface of a material is a sheet of clear glass, which rays pass or are mirrored by. It is none where it
-    /// is sampled as translucent.
-    pub fn is_pane(&self, material: u16) -> bool {
-        self.panes.get(usize::from(material)).is_some_and(Option::is_some)
     }
 
     /// Whether the file has a light that is meant to light the scene. A surface with a few glowing spots is none.

@@ -1,10 +1,14 @@
 //! Cameras: of the glTF file, or of a view file.
 
-use crate::{error::SceneError, import::files};
+use crate::{
+    error::SceneError,
+    import::files,
+    lens::{self, Aperture, Focus, Lens},
+};
 use glam::{DVec2, DVec3};
 use serde::Deserialize;
 use serde_json::Value;
-use std::{collections::HashSet, path::Path};
+use std::{collections::HashSet, fmt::Display, path::Path};
 
 /// How rays leave the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,13 +31,15 @@ pub struct Camera {
     pub up: DVec3,
     pub forward: DVec3,
     pub projection: Projection,
+    /// None if all is in focus.
+    pub lens: Option<Lens>,
     /// Width over height, if the file asks for one.
     pub aspect: Option<f64>,
 }
 
 impl Camera {
-    /// Origin (world, m) and unit direction of the ray through `point` of an image of `size` pixels; the top left
-    /// corner is (0, 0).
+    /// Origin (world, m) and unit direction of the ray through `point` of an image of `size` pixels and, if there is a
+    /// lens, through its middle; the top left corner is (0, 0).
     pub fn ray(&self, point: DVec2, size: DVec2) -> (DVec3, DVec3) {
         let x = (2.0 * point.x - size.x) / size.y;
         let y = 1.0 - 2.0 * point.y / size.y;
@@ -45,6 +51,14 @@ impl Camera {
                 (self.position + half_height * (x * self.right + y * self.up), self.forward)
             }
         }
+    }
+
+    /// The same, through the place on the lens that the uniform numbers `xi` choose.
+    pub fn ray_through(&self, point: DVec2, size: DVec2, xi: [f64; 2]) -> (DVec3, DVec3) {
+        let (origin, direction) = self.ray(point, size);
+        let Some(lens) = self.lens else { return (origin, direction) };
+        let (offset, direction) = lens.ray(direction / direction.dot(self.forward), [self.right, self.up], xi);
+        (origin + offset, direction)
     }
 
     /// `worldToCamera` in OpenEXR's row-vector convention, row-major: the camera looks along −Z, Y is up.
@@ -69,7 +83,7 @@ impl Camera {
         aspect: Option<f64>,
     ) -> Option<Camera> {
         let right = forward.cross(up).try_normalize()?;
-        Some(Camera { name, node, position, right, up: right.cross(forward), forward, projection, aspect })
+        Some(Camera { name, node, position, right, up: right.cross(forward), forward, projection, lens: None, aspect })
     }
 }
 
@@ -87,6 +101,10 @@ pub struct View {
     pub yfov: f64,
     pub width: Option<u32>,
     pub height: Option<u32>,
+    /// The opening of its lens; none lets all be in focus.
+    pub aperture: Option<Aperture>,
+    /// What it focuses on: the target, if none is given.
+    pub focus: Option<Focus>,
 }
 
 fn default_up() -> [f64; 3] {
@@ -104,16 +122,20 @@ impl View {
     /// The text of a view file, in one line.
     pub fn json(&self) -> String {
         let three = |v: [f64; 3]| v.map(|x| x.to_string()).join(",");
-        let size = |name: &str, pixels: Option<u32>| pixels.map_or(String::new(), |n| format!(",\"{name}\":{n}"));
+        fn field<T: Display>(name: &str, value: Option<T>) -> String {
+            value.map_or(String::new(), |value| format!(",\"{name}\":{value}"))
+        }
         let name = self.name.as_ref().map_or(String::new(), |name| format!("\"name\":{},", Value::from(name.as_str())));
         format!(
-            "{{{name}\"eye\":[{}],\"target\":[{}],\"up\":[{}],\"yfov\":{}{}{}}}",
+            "{{{name}\"eye\":[{}],\"target\":[{}],\"up\":[{}],\"yfov\":{}{}{}{}{}}}",
             three(self.eye),
             three(self.target),
             three(self.up),
             self.yfov,
-            size("width", self.width),
-            size("height", self.height)
+            field("width", self.width),
+            field("height", self.height),
+            field("aperture", self.aperture.as_ref()),
+            field("focus", self.focus)
         )
     }
 
@@ -132,7 +154,11 @@ impl View {
         let size = self.width.zip(self.height).filter(|(w, h)| *w > 0 && *h > 0);
         let aspect = size.map(|(w, h)| f64::from(w) / f64::from(h));
         let camera = Camera::looking((name.clone(), name), eye, [forward, up], projection, aspect);
-        Ok((self, camera.ok_or("field `up` is zero or along the line of sight")?))
+        let camera = camera.ok_or("field `up` is zero or along the line of sight")?;
+        let focus = self.focus.unwrap_or(Focus::Point(self.target));
+        let lens = self.aperture.as_ref().map(|aperture| lens::of_view((aperture, focus), (eye, forward), tangent));
+        let lens = lens.transpose()?.flatten();
+        Ok((self, Camera { lens, ..camera }))
     }
 }
 
@@ -150,7 +176,7 @@ const MAX_VIEWS: usize = 10_000;
 /// The largest length of a view's name, bytes.
 const MAX_NAME_BYTES: usize = 100;
 
-const EXPECTED: &str = "expected {\"eye\": [x,y,z], \"target\": [x,y,z], \"up\", \"yfov\" (degrees), \"width\", \"height\"}, or a list of them";
+const EXPECTED: &str = "expected {\"eye\": [x,y,z], \"target\": [x,y,z], \"up\", \"yfov\" (degrees), \"width\", \"height\", \"aperture\" (m or \"f/2.8\"), \"focus\" (m or [x,y,z])}, or a list of them";
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]

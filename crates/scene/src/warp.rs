@@ -34,6 +34,19 @@ pub fn halved_square(xi: [f64; 2], shares: [f64; 2]) -> ([f64; 2], bool) {
     }
 }
 
+/// A uniform point of the unit disc; its density per area is `1/π`. Squares about the middle of the unit square become
+/// circles, so that points which are spread evenly stay so (Shirley and Chiu 1997).
+pub fn disk(xi: [f64; 2]) -> [f64; 2] {
+    let [x, y] = xi.map(|u| 2.0 * u - 1.0);
+    let (radius, angle) = match (x == 0.0 && y == 0.0, x.abs() > y.abs()) {
+        (true, _) => return [0.0; 2],
+        (_, true) => (x, 0.25 * PI * (y / x)),
+        (_, false) => (y, PI * (0.5 - 0.25 * (x / y))),
+    };
+    let (sine, cosine) = angle.sin_cos();
+    [radius * cosine, radius * sine]
+}
+
 /// Cosine-distributed unit direction about the unit `normal`; its density per solid angle is
 /// [`cosine_hemisphere_pdf_solid_angle`].
 pub fn cosine_hemisphere(normal: DVec3, xi: [f64; 2]) -> DVec3 {
@@ -57,6 +70,27 @@ pub fn cosine_hemisphere_pdf_solid_angle(cosine: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Of a uniform point of the disc `r²` is uniform, and no side is preferred.
+    ///
+    /// Seen to catch: a radius that is uniform; the square cut along one diagonal only.
+    #[test]
+    fn the_disc_is_covered_evenly() {
+        let n = 400;
+        let grid = |k: usize| (k as f64 + 0.5) / n as f64;
+        let points: Vec<[f64; 2]> = (0..n * n).map(|k| disk([grid(k / n), grid(k % n)])).collect();
+        let mean = |f: &dyn Fn(f64, f64) -> f64| points.iter().map(|[x, y]| f(*x, *y)).sum::<f64>() / (n * n) as f64;
+        for share in [0.1, 0.5, 0.9, 1.0] {
+            let within = mean(&|x, y| f64::from(u8::from(x * x + y * y <= share)));
+            assert!((within - share).abs() < 5e-3, "{share}: {within}");
+        }
+        for (turn, second) in [(0.0f64, 0.25), (0.3, 0.25), (0.785, 0.25)] {
+            let (sine, cosine) = turn.sin_cos();
+            assert!((mean(&|x, y| (cosine * x + sine * y).powi(2)) - second).abs() < 1e-3);
+            assert!(mean(&|x, y| cosine * x + sine * y).abs() < 1e-12);
+        }
+        assert_eq!(disk([0.5; 2]), [0.0; 2]);
+    }
 
     /// Seen to catch: shares exchanged; a column cut in the middle.
     #[test]

@@ -13,7 +13,6 @@ use crate::{
     path_state::{Layer, ThreadContext},
     pixel_sum::{PixelSum, Sums},
 };
-use glam::DVec2;
 use rayon::prelude::*;
 use scene::{
     random::{Purpose, Stream},
@@ -81,11 +80,7 @@ impl Passes<'_> {
     /// The sums of a pixel of the image with [`PATHS`] paths.
     fn tried(&self, pixel: [usize; 2]) -> Sums {
         let mut context = ThreadContext::new(self.renderer().objects.len());
-        let corner = |[dx, dy]: [usize; 2]| {
-            let point = DVec2::new((pixel[0] + dx) as f64, (pixel[1] + dy) as f64);
-            let (origin, direction) = self.ray_at(point);
-            self.renderer().through(origin, direction, &mut Counts::default())
-        };
+        let corner = |[x, y]: [usize; 2]| self.through_corner([pixel[0] + x, pixel[1] + y], &mut Counts::default());
         let edge = match self.settings().filter {
             Filter::Box => edge::across([[0, 0], [1, 0], [0, 1], [1, 1]].map(corner)),
             Filter::Point => None,

@@ -89,6 +89,8 @@ fn settings(request: &Request, inputs: &LitScene, calibration: Option<&Calibrati
         (None, _) => "none".into(),
     };
     let view = (camera.position, camera.right, camera.up, camera.forward, &camera.projection);
+    // Sums that were kept before there were lenses have none.
+    let lens = camera.lens.map_or(String::new(), |lens| format!(" {lens:?}"));
     let crop = crop.map_or("none".into(), |c| format!("{},{},{},{}", c.x, c.y, c.width, c.height));
     let backdrop = match (request.backdrop, request.outputs.exposure_fixed) {
         (false, _) => "none",
@@ -98,7 +100,7 @@ fn settings(request: &Request, inputs: &LitScene, calibration: Option<&Calibrati
     let mut all = vec![
         format!("gather {}", env!("CARGO_PKG_VERSION")),
         format!("CLOUD {}", hex(&shards::identity(clouds))),
-        format!("--camera {view:?}"),
+        format!("--camera {view:?}{lens}"),
         format!("--width {width}"),
         format!("--height {height}"),
         format!("--crop {crop}"),

@@ -77,9 +77,9 @@ fn points(renderer: &Renderer, stream: Stream) -> Vec<Vec<SurfacePoint>> {
         if missing == 0 {
             break;
         }
-        let [x, y, ..] = spread.point(index);
-        let (origin, direction) = input.camera.ray(DVec2::new(x, y) * size, size);
-        let Some(hit) = input.rays.closest(origin - input.scene.origin, direction, None) else {
+        let [x, y, u, v] = spread.point(index);
+        let (origin, direction) = renderer.camera_ray(DVec2::new(x, y) * size, input.camera.lens.map(|_| [u, v]));
+        let Some(hit) = input.rays.closest(origin, direction, None) else {
             continue;
         };
         let point = input.scene.mesh.point(hit.triangle, hit.weights, renderer.settings.normals);

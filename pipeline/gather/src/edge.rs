@@ -34,9 +34,10 @@ struct Half {
     through_rays: f64,
 }
 
-/// The sums of a pixel if it is an edge pixel, by the transmittance at its corners.
-pub fn across(corners: [f64; 4]) -> Option<Box<Edge>> {
-    let spread = corners.into_iter().fold(0.0, f64::max) - corners.into_iter().fold(1.0, f64::min);
+/// The sums of a pixel if it is an edge pixel, by the least and largest transmittance at its corners.
+pub fn across(corners: [[f64; 2]; 4]) -> Option<Box<Edge>> {
+    let highest = corners.into_iter().map(|[_, high]| high).fold(0.0, f64::max);
+    let spread = highest - corners.into_iter().map(|[low, _]| low).fold(1.0, f64::min);
     (spread > MIN_SPREAD).then(Box::default)
 }
 

@@ -230,6 +230,7 @@ mod tests {
             up: DVec3::Y,
             forward: DVec3::NEG_Z,
             projection: Projection::Perspective { tangent: 0.2 },
+            lens: None,
             aspect: None,
         };
         let turned = super::turned(&camera, DVec3::new(1.0, 2.0, 2.0), 90.0);

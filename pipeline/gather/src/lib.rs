@@ -64,6 +64,7 @@ pub mod renderer;
 mod state;
 mod subsurface;
 mod walked;
+mod wall;
 mod watch;
 
 pub use balance::unmeasured as accuracy_of_unknown_noise;

@@ -10,7 +10,7 @@ use crate::{
     image::{Filter, Input, Rendered, Settings},
     objects::objects,
     path_state::{PathIndex, ThreadContext},
-    pixel_numbers::{PixelNumbers, halves},
+    pixel_numbers::{PixelNumbers, Streams, halves},
     pixel_sum::{PixelSum, Sums},
     reference::{Walks, meets_light},
     renderer::Renderer,
@@ -34,6 +34,19 @@ pub(crate) const TILE: usize = 8;
 /// A ray that crosses a surface undeflected continues at this distance beyond it, as a share of the scene's diagonal.
 const CLEARANCE: f64 = 1e-9;
 
+/// The middle of a lens, and places around its rim, by the numbers that choose them.
+const ACROSS_THE_LENS: [Option<[f64; 2]>; 9] = [
+    None,
+    Some([0.0, 0.0]),
+    Some([0.5, 0.0]),
+    Some([1.0, 0.0]),
+    Some([0.0, 0.5]),
+    Some([1.0, 0.5]),
+    Some([0.0, 1.0]),
+    Some([0.5, 1.0]),
+    Some([1.0, 1.0]),
+];
+
 /// An image to which paths are added in passes.
 pub struct Passes<'a> {
     renderer: Renderer<'a>,
@@ -45,9 +58,8 @@ pub struct Passes<'a> {
     /// Paths that each pixel has so far.
     paths: u32,
     counts: Counts,
-    pixel_stream: Stream,
-    /// The first four numbers of near fields, and the rest.
-    near_streams: [Stream; 2],
+    /// Random numbers of all pixels.
+    streams: Streams,
     edge_stream: Stream,
 }
 
@@ -76,6 +88,13 @@ impl<'a> Passes<'a> {
             walk_starts: Stream::new(settings.seed, Purpose::WalkStart),
             near_points: Stream::new(settings.seed, Purpose::NearPoint),
         };
+        let stream = |purpose: Purpose| Stream::new(settings.seed, purpose);
+        let streams = Streams {
+            places: stream(Purpose::Pixel),
+            lens: input.camera.lens.map(|_| stream(Purpose::Lens)),
+            walks: settings.reference.then_some(renderer.walk_starts),
+            near: renderer.surroundings.is_some().then(|| [Purpose::NearField, Purpose::NearLight].map(stream)),
+        };
         let mut passes = Passes {
             renderer,
             edges: vec![None; settings.part().pixels()],
@@ -83,9 +102,8 @@ impl<'a> Passes<'a> {
             part: settings.part(),
             paths: 0,
             counts: Counts::default(),
-            pixel_stream: Stream::new(settings.seed, Purpose::Pixel),
-            near_streams: [Purpose::NearField, Purpose::NearLight].map(|purpose| Stream::new(settings.seed, purpose)),
-            edge_stream: Stream::new(settings.seed, Purpose::Edge),
+            streams,
+            edge_stream: stream(Purpose::Edge),
         };
         let walks = passes.renderer.objects.iter().flatten().filter_map(|object| object.walks.as_ref());
         passes.counts.reflections_left_out = walks.map(Walks::incomplete).sum();
@@ -123,9 +141,9 @@ impl<'a> Passes<'a> {
         &self.renderer
     }
 
-    /// Finds edge pixels by the transmittance at the corners of all pixels. There are none with one path per pixel,
-    /// which has no second half to estimate the factor of the control variate from, nor with rays through pixel
-    /// centers, which are all the same.
+    /// Finds edge pixels by the transmittance at the corners of all pixels, and across the lens if there is one. There
+    /// are none with one path per pixel, which has no second half to estimate the factor of the control variate from,
+    /// nor with rays through pixel centers, which are all the same.
     fn find_edges(&mut self) {
         let settings = &self.renderer.settings;
         if settings.paths_per_pixel == 1 || settings.filter == Filter::Point {
@@ -134,13 +152,10 @@ impl<'a> Passes<'a> {
         let Crop { x: left, y: upper, width, height } = self.part;
         let row = |y: usize| {
             let mut counts = Counts::default();
-            let corner = |x: usize, counts: &mut Counts| {
-                let (origin, direction) = self.ray_at(DVec2::new((left + x) as f64, (upper + y) as f64));
-                self.renderer.through(origin, direction, counts)
-            };
-            ((0..=width).map(|x| corner(x, &mut counts)).collect::<Vec<f64>>(), counts)
+            let corner = |x: usize, counts: &mut Counts| self.through_corner([left + x, upper + y], counts);
+            ((0..=width).map(|x| corner(x, &mut counts)).collect::<Vec<[f64; 2]>>(), counts)
         };
-        let rows: Vec<(Vec<f64>, Counts)> = (0..=height).into_par_iter().map(row).collect();
+        let rows: Vec<(Vec<[f64; 2]>, Counts)> = (0..=height).into_par_iter().map(row).collect();
         for index in 0..width * height {
             let (x, y) = (index % width, index / width);
             let corners = [rows[y].0[x], rows[y].0[x + 1], rows[y + 1].0[x], rows[y + 1].0[x + 1]];
@@ -148,6 +163,17 @@ impl<'a> Passes<'a> {
         }
         rows.iter().for_each(|(_, counts)| self.counts.add(counts));
         self.counts.edge_pixels = self.edges.iter().flatten().count() as u64;
+    }
+
+    /// The least and the largest transmittance at the upper left corner of a pixel, through all of the lens.
+    pub(crate) fn through_corner(&self, [x, y]: [usize; 2], counts: &mut Counts) -> [f64; 2] {
+        let lens: &[Option<[f64; 2]>] = if self.streams.lens.is_some() { &ACROSS_THE_LENS } else { &[None] };
+        let range = |[low, high]: [f64; 2], lens: &Option<[f64; 2]>| {
+            let (origin, direction) = self.renderer.camera_ray(DVec2::new(x as f64, y as f64), *lens);
+            let through = self.renderer.through(origin, direction, counts);
+            [low.min(through), high.max(through)]
+        };
+        lens.iter().fold([1.0, 0.0], range)
     }
 
     /// The indices of the pixels of a tile, row by row.
@@ -163,11 +189,10 @@ impl<'a> Passes<'a> {
         self.part.width.div_ceil(TILE) * self.part.height.div_ceil(TILE)
     }
 
-    /// The ray through a point of the image, pixels.
-    pub(crate) fn ray_at(&self, point: DVec2) -> (DVec3, DVec3) {
-        let Renderer { input, settings, .. } = &self.renderer;
-        let (origin, direction) = input.camera.ray(point, settings.size());
-        (origin - input.scene.origin, direction)
+    /// The ray through a point of a pixel, `offset` pixels from its corner, and through the place on the lens that
+    /// `lens` chooses, or its middle.
+    fn ray(&self, [x, y]: [usize; 2], offset: DVec2, lens: Option<[f64; 2]>) -> (DVec3, DVec3) {
+        self.renderer.camera_ray(DVec2::new(x as f64, y as f64) + offset, lens)
     }
 
     /// The sums of a pixel of the part with more paths.
@@ -179,17 +204,14 @@ impl<'a> Passes<'a> {
     /// The sums of any pixel of the image, by its column and row, with more paths.
     pub(crate) fn add_to(
         &self,
-        [x, y]: [usize; 2],
+        at: [usize; 2],
         (mut sum, edge): Sums,
         paths: Range<u32>,
         context: &mut ThreadContext,
     ) -> Sums {
         let settings = &self.renderer.settings;
-        let corner = DVec2::new(x as f64, y as f64);
-        let pixel = (y * settings.width + x) as u64;
-        let walk_starts = settings.reference.then_some(self.renderer.walk_starts);
-        let near_streams = self.renderer.surroundings.is_some().then_some(self.near_streams);
-        let numbers = PixelNumbers::new(pixel, self.pixel_stream, walk_starts, near_streams);
+        let pixel = (at[1] * settings.width + at[0]) as u64;
+        let numbers = PixelNumbers::new(pixel, self.streams);
         let mut edge = edge.map(|edge| (edge, halves(self.edge_stream, pixel)));
         let alone = settings.paths_per_pixel == 1;
         for path in paths {
@@ -197,7 +219,7 @@ impl<'a> Passes<'a> {
                 Filter::Point => DVec2::splat(0.5),
                 Filter::Box => DVec2::from_array(numbers.place(path)),
             };
-            let (origin, direction) = self.ray_at(corner + offset);
+            let (origin, direction) = self.ray(at, offset, numbers.lens(path));
             let path_index = PathIndex { pixel, path, walks: numbers.walks(path), near: numbers.near(path) };
             let light = self.renderer.trace(path_index, origin, direction, context);
             sum.add(path, alone, &light);
@@ -205,8 +227,8 @@ impl<'a> Passes<'a> {
                 let half = path as usize % 2;
                 edge.add_path(half, &light);
                 for ray in 0..edge::RAYS {
-                    let [x, y, ..] = spread[half].point(path / 2 * edge::RAYS + ray);
-                    let (origin, direction) = self.ray_at(corner + DVec2::new(x, y));
+                    let [x, y, u, v] = spread[half].point(path / 2 * edge::RAYS + ray);
+                    let (origin, direction) = self.ray(at, DVec2::new(x, y), self.streams.lens.map(|_| [u, v]));
                     edge.add_ray(half, self.renderer.through(origin, direction, &mut context.counts));
                 }
             }
@@ -215,8 +237,7 @@ impl<'a> Passes<'a> {
     }
 
     fn pixel(&self, index: usize) -> Pixel {
-        let [x, y] = self.part.pixel(index);
-        let (origin, direction) = self.ray_at(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+        let (origin, direction) = self.ray(self.part.pixel(index), DVec2::splat(0.5), None);
         self.sums[index].pixel(self.edges[index].as_deref(), self.renderer.guide(origin, direction))
     }
 

@@ -171,6 +171,11 @@ impl Renderer<'_> {
             let emission = self.input.scene.emission(hit.triangle, hit.weights);
             light.add(state, Layer::Emission, emission * self.share_of(state, point.material));
         }
+        if let Some(wall) = self.input.scene.wall(hit.triangle, hit.weights) {
+            let scattered = self.wall_light(state, (point, side), &wall, counts);
+            light.add(state, Layer::Diffuse, scattered);
+            return false;
+        }
         // A ray meets a pane only where that mirrors.
         let is_pane = self.input.scene.is_pane(point.material);
         if !is_pane && let Some(stated) = self.input.scene.gloss(hit.triangle, hit.weights) {

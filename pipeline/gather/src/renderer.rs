@@ -7,6 +7,7 @@ use crate::{
 use bsdf::{RoughBoundary, SMOOTH_BELOW, Surface};
 use bssrdf::{Medium, RoughEntry};
 use calibration::Factors;
+use glam::DVec2;
 use near_field::{NearField, Surroundings};
 use scene::{DVec3, Hit, Material, Scene, light::LightTree, random::Stream};
 use std::ops::Range;
@@ -66,6 +67,19 @@ impl Rough {
     /// How light enters.
     pub fn entry(&self) -> RoughEntry {
         RoughEntry::new(&self.boundary, self.mean)
+    }
+}
+
+impl Renderer<'_> {
+    /// Origin, m from the scene's, and unit direction of the ray through a point of the image, pixels, and through the
+    /// place on the camera's lens that `lens` chooses, or its middle.
+    pub fn camera_ray(&self, point: DVec2, lens: Option<[f64; 2]>) -> (DVec3, DVec3) {
+        let Renderer { input, settings, .. } = self;
+        let (origin, direction) = match lens {
+            None => input.camera.ray(point, settings.size()),
+            Some(xi) => input.camera.ray_through(point, settings.size(), xi),
+        };
+        (origin - input.scene.origin, direction)
     }
 }
 

@@ -64,6 +64,12 @@ impl<'a> Facts<'a> {
         let text = |s: &str| Attribute::Text(s.to_owned());
         let version = env!("CARGO_PKG_VERSION");
         put("worldToCamera", Attribute::Matrix(self.job.camera.world_to_camera()));
+        if let (Some(lens), scene::Projection::Perspective { tangent }) =
+            (self.job.camera.lens, self.job.camera.projection)
+        {
+            put("aperture", Attribute::Float(lens.f_number(tangent) as f32));
+            put("focus", Attribute::Float(lens.focus as f32));
+        }
         put("comments", text("W/(m^2 sr), scene-linear; lengths in m"));
         put("software", Attribute::Text(format!("gather {version}")));
         // Rec. 709 primaries and D65.

@@ -7,7 +7,10 @@ use crate::{
     renderer::Renderer,
 };
 use bsdf::fresnel;
-use scene::{DVec3, Hit, SurfacePoint, light::all_light_at};
+use scene::{
+    DVec3, Hit, SurfacePoint,
+    light::{all_light_at, reflected},
+};
 use std::f64::consts::PI;
 use walks::{Connections, End, Exit, Sequence, Start, observed_walk};
 
@@ -78,9 +81,13 @@ impl Renderer<'_> {
         if self.objects[point.material as usize].is_some() || scene.is_pane(point.material) {
             return emitted;
         }
-        let albedo = scene.diffuse(triangle, weights);
         let point = point.facing(-exit.direction);
         let xi = || [random.uniform(), random.uniform()];
-        emitted + albedo / PI * all_light_at(&self.lights, self.input.rays, &point, xi, &mut counts.shadow_rays)
+        let shadow_rays = &mut counts.shadow_rays;
+        if scene.is_wall(point.material) {
+            return emitted + reflected(scene, &self.lights, (self.input.rays, &hit), &point, xi, shadow_rays) / PI;
+        }
+        let albedo = scene.diffuse(triangle, weights);
+        emitted + albedo / PI * all_light_at(&self.lights, self.input.rays, &point, xi, shadow_rays)
     }
 }

@@ -104,6 +104,7 @@ pub fn orthographic(towards: DVec3, half_height: f64) -> Camera {
         up: right.cross(forward),
         forward,
         projection: Projection::Orthographic { half_height },
+        lens: None,
         aspect: None,
     }
 }

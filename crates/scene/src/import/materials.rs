@@ -24,9 +24,17 @@ pub(super) struct Context<'a> {
     pub used: &'a BTreeSet<u16>,
 }
 
-/// The materials of a file, and why the base color texture of some cannot be read: whether they need it is not known
-/// yet.
-pub(super) fn read(context: &Context, warnings: &mut Vec<String>) -> Result<(Vec<Material>, BTreeMap<u16, String>)> {
+/// The materials of a file.
+pub(super) struct ReadMaterials {
+    pub materials: Vec<Material>,
+    /// Why the base color texture of some cannot be read: whether they need it is not known yet.
+    pub faults: BTreeMap<u16, String>,
+    /// Warnings about the media of materials with thin walls, which hold if those are rendered as solids.
+    pub of_solids: Vec<(u16, String)>,
+}
+
+/// Reads the materials of a file.
+pub(super) fn read(context: &Context, warnings: &mut Vec<String>) -> Result<ReadMaterials> {
     let root = &context.document.root;
     let count = root.materials.len();
     if count > MAX_MATERIALS {
@@ -35,10 +43,16 @@ pub(super) fn read(context: &Context, warnings: &mut Vec<String>) -> Result<(Vec
         ));
     }
     let (mut textures, mut faults, mut materials) = (Textures::new(context.document), BTreeMap::new(), Vec::new());
+    let mut of_solids = Vec::new();
     for (index, m) in (0u16..).zip(&root.materials) {
         let name = m.name.clone().unwrap_or_else(|| format!("material{index}"));
         let named = |e| format!("material `{name}`: {e}");
-        let mut material = material(name.clone(), m, context, warnings).map_err(named)?;
+        let (mut material, notes) = material(name.clone(), m, context, warnings).map_err(named)?;
+        let notes = notes.into_iter().map(&named);
+        match material.wall {
+            Some(_) => of_solids.extend(notes.map(|note| (index, note))),
+            None => warnings.extend(notes),
+        }
         let is_used = context.used.contains(&index);
         let note = |what| warnings.push(format!("material `{name}`: {what}"));
         let textures_of_used = is_used.then_some(&mut textures);
@@ -60,7 +74,7 @@ pub(super) fn read(context: &Context, warnings: &mut Vec<String>) -> Result<(Vec
         }
         materials.push(material);
     }
-    Ok((materials, faults))
+    Ok(ReadMaterials { materials, faults, of_solids })
 }
 
 fn base_texture(m: &json::Material, textures: &mut Textures) -> Result<Option<Texture>> {
@@ -114,13 +128,20 @@ fn default_named(name: String) -> Material {
         gloss: None,
         volume: false,
         thin: false,
+        wall: None,
         stated: None,
         medium: None,
         double_sided: false,
     }
 }
 
-fn material(name: String, m: &json::Material, context: &Context, warnings: &mut Vec<String>) -> Result<Material> {
+/// A material, and the warnings about its medium.
+fn material(
+    name: String,
+    m: &json::Material,
+    context: &Context,
+    warnings: &mut Vec<String>,
+) -> Result<(Material, Vec<String>)> {
     let strength = m.extensions.as_ref().and_then(|e| e.emissive_strength.as_ref());
     let strength = strength.map_or(1.0, |s| f64::from(s.emissive_strength.0));
     let emission = DVec3::from_array(m.emissive_factor.0.map(f64::from)) * strength;
@@ -138,8 +159,9 @@ fn material(name: String, m: &json::Material, context: &Context, warnings: &mut 
     }
     let mut note = |what| warnings.push(format!("material `{name}`: {what}"));
     let stated = extras::medium(m, &mut note);
-    let medium = volumes::read(m, context.metres_per_unit, note)?;
-    Ok(Material {
+    let mut notes = Vec::new();
+    let medium = volumes::read(m, context.metres_per_unit, |what| notes.push(what))?;
+    let material = Material {
         base_color,
         alpha: match m.alpha_mode {
             Checked::Valid(AlphaMode::Opaque) => Alpha::Ignored,
@@ -149,9 +171,11 @@ fn material(name: String, m: &json::Material, context: &Context, warnings: &mut 
         emission: emission * context.units.emission.watts(),
         volume: stated.is_some() || volumes::is_marked(m),
         thin: stated.is_none() && volumes::is_thin(m),
+        wall: volumes::wall(m).filter(|_| stated.is_none()),
         stated,
         medium,
         double_sided: m.double_sided,
         ..default_named(name)
-    })
+    };
+    Ok((material, notes))
 }

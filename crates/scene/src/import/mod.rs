@@ -53,6 +53,7 @@ use geometry::{Geometry, Instance};
 use glam::DVec3;
 use gltf::json::Root;
 use instancing::Copies;
+use materials::ReadMaterials;
 use nodes::SceneNode;
 pub use options::{ImportOptions, LightUnit, Pose};
 use pose::Posed;
@@ -97,7 +98,7 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
     let units = units::decide(root, &nodes, options);
     let (metres_per_unit, claimed) = (options.metres_per_unit, claimed(root, &nodes));
     let context = materials::Context { document, metres_per_unit, units: &units, used: &claimed };
-    let (mut materials, texture_faults) = materials::read(&context, &mut warnings)?;
+    let ReadMaterials { mut materials, faults: texture_faults, of_solids } = materials::read(&context, &mut warnings)?;
     let placed = geometry(document, &nodes, &posed, &mut warnings)?;
     let Geometry { mut mesh, origin, normal_coordinates, tangents, degenerate, rounded } = placed;
     if mesh.triangles.iter().any(|t| usize::from(t.material) == materials.len()) {
@@ -115,9 +116,10 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
     let cameras = cameras::read(root, &nodes, metres_per_unit)?;
     let parts = RenderedParts { mesh: &mesh, nodes: &nodes, cameras: &cameras, origin, metres_per_unit };
     let unhonoured = [features::undeclared_effects(root, &document.survey), unhonoured::of(document, &parts)].concat();
-    let panes = panes::find(&mesh, &materials);
+    let sheets = panes::find(&mesh, &materials);
+    warnings.extend(of_solids.into_iter().filter(|(k, _)| sheets[usize::from(*k)].is_none()).map(|(_, note)| note));
     Ok(Scene {
-        panes,
+        sheets,
         files: document.files.borrow().read.clone(),
         claimed,
         texture_faults,

@@ -1,7 +1,7 @@
 //! Import of the media below materials.
 
 use super::fault::Result;
-use crate::material::{Scatter, ScatterExtension, Volume};
+use crate::material::{Scatter, ScatterExtension, Volume, Wall};
 use glam::DVec3;
 use gltf::json::{
     self,
@@ -41,13 +41,44 @@ pub(super) fn is_thin(m: &json::Material) -> bool {
     m.extensions.as_ref().is_some_and(|e| transmission(e) > 0.0 && no_volume(e) && drafts(e).next().is_none())
 }
 
+/// How walls without thickness scatter light, if the material describes such walls: by the newer draft for scattering, or
+/// by KHR_materials_diffuse_transmission. Numbers out of range are moved into it.
+pub(super) fn wall(m: &json::Material) -> Option<Wall> {
+    let e = m.extensions.as_ref().filter(|e| e.volume.as_ref().is_none_or(|v| v.thickness_factor.0 <= 0.0))?;
+    let within = |x: f64| x.clamp(0.0, 1.0);
+    let entering = within(f64::from(transmission(e)));
+    match drafts(e).next() {
+        None => {
+            let share = within(diffuse_transmission(e));
+            let color = e.others.get(DIFFUSE).and_then(|d| d.get("diffuseTransmissionColorFactor"));
+            let color = color.and_then(|c| <[f64; 3]>::deserialize(c).ok()).unwrap_or([1.0; 3]);
+            let through = share * DVec3::from_array(color.map(within));
+            let is_wall = share > 0.0 && entering < 1.0;
+            is_wall.then_some(Wall { base: 1.0 - share, back: DVec3::ZERO, through, clear: entering })
+        }
+        Some((ScatterExtension::Scatter, value)) => {
+            let fields = Fields::deserialize(value).ok()?;
+            let scattered = entering * within(fields.scatter_strength_factor.unwrap_or(0.0));
+            let color = fields.multiscatter_color_factor.or(fields.multiscatter_color).unwrap_or([1.0; 3]);
+            let g = fields.scatter_anisotropy.clamp(-1.0, 1.0);
+            let clear = entering - scattered;
+            let color = DVec3::from_array(color.map(within)) * (scattered / (1.0 - clear));
+            let [back, through] = [color * 0.5 * (1.0 - g), color * 0.5 * (1.0 + g)];
+            (scattered > 0.0).then_some(Wall { base: (1.0 - entering) / (1.0 - clear), back, through, clear })
+        }
+        Some((ScatterExtension::VolumeScatter, _)) => None,
+    }
+}
+
 fn transmission(e: &material::Material) -> f32 {
     e.transmission.as_ref().map_or(0.0, |t| t.transmission_factor.0)
 }
 
+const DIFFUSE: &str = "KHR_materials_diffuse_transmission";
+
 /// The factor of KHR_materials_diffuse_transmission.
 fn diffuse_transmission(e: &material::Material) -> f64 {
-    let factor = e.others.get("KHR_materials_diffuse_transmission").and_then(|d| d.get("diffuseTransmissionFactor"));
+    let factor = e.others.get(DIFFUSE).and_then(|d| d.get("diffuseTransmissionFactor"));
     factor.and_then(Value::as_f64).unwrap_or(0.0)
 }
 

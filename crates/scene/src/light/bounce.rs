@@ -8,7 +8,7 @@ use super::{
 use crate::{
     mesh::{Mesh, NormalKind, SurfacePoint},
     random::Item,
-    rays::Rays,
+    rays::{Hit, Rays},
     scene::Scene,
     warp,
 };
@@ -51,6 +51,24 @@ impl LitSurface<'_> {
     }
 }
 
+/// `π L` of the light that an opaque surface reflects where a ray meets it, or that a thin wall scatters to that side, W/m².
+/// The normals of the point are on the side of the ray. Each call of `xi` gives two uniform numbers.
+pub fn reflected(
+    scene: &Scene,
+    lights: &LightTree,
+    (rays, hit): (&Rays, &Hit),
+    at: &SurfacePoint,
+    mut xi: impl FnMut() -> [f64; 2],
+    shadow_rays: &mut u64,
+) -> DVec3 {
+    let Some(wall) = scene.wall(hit.triangle, hit.weights) else {
+        return scene.diffuse(hit.triangle, hit.weights) * all_light_at(lights, rays, at, xi, shadow_rays);
+    };
+    let behind = at.facing(-at.geometric_normal);
+    let [front, behind] = [at, &behind].map(|side| all_light_at(lights, rays, side, &mut xi, shadow_rays));
+    wall.back * front + wall.through * behind
+}
+
 /// The opaque surfaces of a scene.
 pub struct Bounce<'a> {
     scene: &'a Scene,
@@ -64,7 +82,7 @@ impl<'a> Bounce<'a> {
         let reflects = |k: usize| {
             let material = &scene.materials[k];
             let is_metal = material.gloss.as_ref().is_some_and(|g| g.metallic == 1.0 && g.texture.is_none());
-            material.base_color.truncate() != DVec3::ZERO && !is_metal
+            (material.base_color.truncate() != DVec3::ZERO && !is_metal) || scene.is_wall(k as u16)
         };
         let diffuse = |k: usize| !translucent(k as u16) && !scene.is_pane(k as u16) && reflects(k);
         let opaque: Vec<bool> = (0..scene.materials.len()).map(diffuse).collect();
@@ -91,13 +109,12 @@ impl<'a> Bounce<'a> {
         if !self.opaque[point.material as usize] {
             return Lit::NoBounce;
         }
-        let albedo = self.scene.diffuse(hit.triangle, hit.weights);
         let mut dimension = 0;
         let xi = || {
             dimension += 2;
             [dimension - 2, dimension - 1].map(|d| random.uniform(d))
         };
-        let irradiance = albedo * all_light_at(&surface.lights, surface.rays, &point, xi, rays);
+        let irradiance = reflected(self.scene, &surface.lights, (surface.rays, &hit), &point, xi, rays);
         if irradiance == DVec3::ZERO { Lit::NoBounce } else { Lit::Light { direction, irradiance } }
     }
 }

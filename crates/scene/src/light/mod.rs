@@ -18,7 +18,7 @@ mod texel_sums;
 mod tree;
 
 pub use area::AreaLight;
-pub use bounce::{Bounce, LitSurface};
+pub use bounce::{Bounce, LitSurface, reflected};
 pub use bounds::{LightBounds, ReceiverBounds};
 pub use choice::{LightChoice, Pick};
 pub use contract::{Delta, Illumination, Light};

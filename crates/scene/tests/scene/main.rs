@@ -30,3 +30,4 @@ mod panes;
 mod rays;
 mod shadows;
 mod unhonoured;
+mod walls;
