@@ -57,6 +57,8 @@ fn image(world: &World, cloud: &Cloud, medium: &Medium, tints: &[Option<Tinted>]
 
 /// A texture of one color is the same factor on the light that is scattered if the file states the medium by colors; below
 /// any other medium it has no effect, for the medium is that of its mean.
+///
+/// Seen to catch: the whole factor at each crossing; no factor at the exit; near points without factor.
 #[test]
 fn a_constant_texture_is_a_factor() {
     /// The linear value of the code 188 of sRGB (IEC 61966-2-1).
