@@ -202,6 +202,7 @@ fn striped_model(albedo: f64, factors: [f64; 2], period: f64, bins: usize) -> Ve
 /// Stripes whose reflectance is `1 ± contrast` times that of the medium: beyond one mean free path from their edges the
 /// model with a texture is within 10 % of random walks through stripes of the albedos with these reflectances.
 ///
+/// Seen to catch: the whole factor at the exit; one color.
 #[test]
 fn stripes_reflect_as_striped_media() {
     const PERIOD: f64 = 16.0;
