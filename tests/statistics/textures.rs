@@ -57,6 +57,8 @@ fn image(world: &World, cloud: &Cloud, medium: &Medium, tints: &[Option<Tinted>]
 
 /// A texture of one color is the same factor on the light that is scattered if the file states the medium by colors; below
 /// any other medium it has no effect, for the medium is that of its mean.
+///
+/// Seen to catch: the whole factor at each crossing; no factor at the exit; near points without factor.
 #[test]
 fn a_constant_texture_is_a_factor() {
     /// The linear value of the code 188 of sRGB (IEC 61966-2-1).
@@ -200,6 +202,7 @@ fn striped_model(albedo: f64, factors: [f64; 2], period: f64, bins: usize) -> Ve
 /// Stripes whose reflectance is `1 ± contrast` times that of the medium: beyond one mean free path from their edges the
 /// model with a texture is within 10 % of random walks through stripes of the albedos with these reflectances.
 ///
+/// Seen to catch: the whole factor at the exit; one color.
 #[test]
 fn stripes_reflect_as_striped_media() {
     const PERIOD: f64 = 16.0;

@@ -117,6 +117,9 @@ impl NormalMap {
 
 impl Bumps {
     /// The point with its normal tilted (docs/method.md 19.1), if its material has a normal map that has a frame there.
+    // Scenes without normal maps do not pay for this code where points are made.
+    #[cold]
+    #[inline(never)]
     pub(crate) fn tilted(&self, mesh: &Mesh, point: SurfacePoint, weights: [f64; 3]) -> SurfacePoint {
         let map = self.maps.get(usize::from(point.material)).and_then(Option::as_ref);
         let (Some(map), Some(corners)) = (map, self.frames.get(point.triangle as usize)) else { return point };

@@ -59,6 +59,7 @@ pub struct SurfacePoint {
 
 impl SurfacePoint {
     /// A point of a smooth surface.
+    #[inline]
     pub fn smooth(position: DVec3, normal: DVec3, geometric_normal: DVec3, triangle: u32, material: u16) -> Self {
         let (smooth_normal, bump) = (normal, Bump::default());
         SurfacePoint { position, normal, smooth_normal, bump, geometric_normal, triangle, material }

@@ -36,8 +36,6 @@ mod tests {
     use crate::built_in;
 
     /// The standard dipole's closed form (docs/method.md 3.5), which leaves in proportion to `1/π` and not to `T21`.
-    ///
-    /// Seen to catch: rings of the width of their ends.
     #[test]
     fn the_standard_dipole_has_its_closed_form() {
         for name in ["skin1", "ketchup", "marble", "skimmilk"] {
