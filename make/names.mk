@@ -11,4 +11,4 @@ check_name = $(if $(and $(CHECKED),$(call odd_in,$(2))),$(error $(1)=$(2): make 
 # $(call check_names,VARIABLES) checks the values of variables.
 check_names = $(foreach v,$(1),$(call check_name,$(v),$($(v))))
 
-$(call check_names,OUT SCENE MEDIUM ENVIRONMENT SIZE BACKDROP SAMPLES SEED MODEL CALIBRATE WALKS WIDTH ERROR)
+$(call check_names,OUT SCENE MEDIUM ENVIRONMENT SIZE TIME BACKDROP SAMPLES SEED MODEL CALIBRATE WALKS WIDTH ERROR)
