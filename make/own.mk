@@ -13,10 +13,6 @@
 
 .PHONY: own
 
-# The environment may have a variable of this name, which is the format of the program `time`.
-ifneq ($(filter environment%,$(origin TIME)),)
-override TIME :=
-endif
 ifneq ($(and $(SCENE),$(CHECKED)),)
 OWN := $(OUT)/$(notdir $(basename $(SCENE)))/$(RUN_NAME)
 own_scene   = $(if $(ENVIRONMENT),--environment $(ENVIRONMENT)) $(if $(SIZE),--size $(SIZE)) $(if $(TIME),--time $(TIME)) $(if \
