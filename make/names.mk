@@ -11,4 +11,9 @@ check_name = $(if $(and $(CHECKED),$(call odd_in,$(2))),$(error $(1)=$(2): make 
 # $(call check_names,VARIABLES) checks the values of variables.
 check_names = $(foreach v,$(1),$(call check_name,$(v),$($(v))))
 
-$(call check_names,OUT SCENE MEDIUM ENVIRONMENT SIZE BACKDROP SAMPLES SEED MODEL CALIBRATE WALKS WIDTH ERROR)
+# The environment may have a variable of this name, which is the format of the program `time`.
+ifneq ($(filter environment%,$(origin TIME)),)
+override TIME :=
+endif
+
+$(call check_names,OUT SCENE MEDIUM ENVIRONMENT SIZE TIME BACKDROP SAMPLES SEED MODEL CALIBRATE WALKS WIDTH ERROR)

@@ -5,6 +5,7 @@
 #                             one scatters; with an empty MEDIUM= the file's own media
 #   ENVIRONMENT=studio|sky|sky.exr|R,G,B  light from all around; a scene without any light has the studio
 #   SIZE=0.1                  the largest extent of the translucent surfaces, m
+#   TIME=0.5 ANIMATION='walk' the pose of a scene with animations, s; at rest without both
 #   BACKDROP=yes              the camera sees a plain dark gray instead of the light from all around
 #   TRANSLUCENT='Wax Skin'    the translucent materials, by name
 #   EXPOSURE=1                stops by which the previews are brightened beyond their own exposure
@@ -14,7 +15,8 @@
 
 ifneq ($(and $(SCENE),$(CHECKED)),)
 OWN := $(OUT)/$(notdir $(basename $(SCENE)))/$(RUN_NAME)
-own_scene   = $(if $(ENVIRONMENT),--environment $(ENVIRONMENT)) $(if $(SIZE),--size $(SIZE))
+own_scene   = $(if $(ENVIRONMENT),--environment $(ENVIRONMENT)) $(if $(SIZE),--size $(SIZE)) $(if $(TIME),--time $(TIME)) $(if \
+  $(ANIMATION),--animation $(call quoted,$(ANIMATION)))
 $(eval $(call settings,$(OWN),$$(strip $$(own_scene) $$(TRANSLUCENT)),$(SCENE) $(wildcard $(ENVIRONMENT))))
 # Without MEDIUM, the media of a file are taken that gives all translucent surfaces media of which one scatters.
 ifeq ($(origin MEDIUM)$(if $(filter all own truth,$(or $(MAKECMDGOALS),all)),,: not a picture),undefined)

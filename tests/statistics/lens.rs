@@ -41,8 +41,8 @@ fn light(world: &World, lens: Option<Lens>, filter: Filter) -> [f64; 2] {
 /// A point of the lamp becomes a disc of the radius `R |z − F|/(z F)`, as a slope, and the mean square of a disc is half
 /// of that of its radius. The lens sees the lamp at other angles than the camera's place, which is less than 0.1 % here.
 ///
-/// Seen to catch: a radius that is doubled, points that are denser in the middle of the lens, the random numbers of the
-/// pixel used for the lens again, the same place on the lens for all paths.
+/// Seen to catch: the random numbers of the pixel used for the lens again, its order used for the lens too, the same place on
+/// the lens for all paths.
 #[test]
 fn a_lamp_out_of_focus_is_a_disc() {
     let world = lamp();
@@ -61,7 +61,6 @@ fn a_lamp_out_of_focus_is_a_disc() {
     }
 }
 
-/// Seen to catch: a focus from the lens's plane along each ray.
 #[test]
 fn a_lamp_in_focus_is_as_without_a_lens() {
     let world = lamp();

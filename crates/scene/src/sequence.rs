@@ -130,7 +130,7 @@ mod tests {
     /// Two sequences in the same order are strongly related: of the boxes of their first coordinates together many stay
     /// empty. In another order each box has its share, and the first 2^m points are still a net.
     ///
-    /// Seen to catch: the order left as it is, an order that mixes upwards.
+    /// Seen to catch: the order left as it is.
     #[test]
     fn in_another_order_two_sequences_are_independent() {
         let (m, n) = (10, 1u32 << 10);

@@ -202,6 +202,45 @@ fn draco_streams_are_decoded() {
     }
 }
 
+/// Colors of a stream in bytes are shares of 255, and opaque if they have no alpha.
+///
+/// Seen to catch: normalized integers as they are; alpha as of a number that is not there.
+#[test]
+fn colors_of_draco_streams() {
+    let mut mesh = Mesh::new();
+    let mut positions = PointAttribute::new();
+    positions.init(GeometryAttributeType::Position, 3, DataType::Float32, false, 4);
+    positions.buffer_mut().update_f32s_le(0, TETRAHEDRON.as_flattened());
+    mesh.add_attribute(positions);
+    let mut colors = PointAttribute::new();
+    colors.init(GeometryAttributeType::Color, 3, DataType::Uint8, true, 4);
+    colors.buffer_mut().update(&[255, 51, 0].repeat(4), None);
+    mesh.add_attribute(colors);
+    mesh.set_num_points(4);
+    mesh.set_num_faces(TETRAHEDRON_SIDES.len() / 3);
+    mesh.set_faces_from_flat_indices(&TETRAHEDRON_SIDES.map(u32::from));
+    let mut encoder = MeshEncoder::new();
+    encoder.set_mesh(mesh);
+    let mut buffer = EncoderBuffer::new();
+    encoder.encode(&EncoderOptions::new(), &mut buffer).expect("it encodes");
+    let mut asset = tetrahedron();
+    let view = json!({ "buffer": 0, "byteOffset": asset.binary.len(), "byteLength": buffer.data().len() });
+    asset.binary.extend(buffer.data());
+    let view = asset.push("bufferViews", view);
+    let color = json!({ "componentType": 5121, "normalized": true, "type": "VEC3", "count": 4 });
+    let color = asset.push("accessors", color);
+    asset.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(color);
+    asset.json["meshes"][0]["primitives"][0]["attributes"].as_object_mut().expect("an object").remove("NORMAL");
+    let compressed = json!({ "bufferView": view, "attributes": { "POSITION": 0, "COLOR_0": 1 } });
+    asset.set("/meshes/0/primitives/0/extensions", json!({ "KHR_draco_mesh_compression": compressed }));
+    let scene = asset.import().expect("a good file");
+    assert!(!scene.mesh.colors.is_empty());
+    for color in &scene.mesh.colors {
+        let close = color.iter().zip([1.0, 0.2, 0.0, 1.0]).all(|(a, b)| (a - b).abs() < 1e-3);
+        assert!(close, "{color:?}");
+    }
+}
+
 /// Streams that are cut or have other bits are refused, or give some mesh: nothing else happens.
 ///
 /// Seen to catch: another attribute instead of one that the stream does not have.

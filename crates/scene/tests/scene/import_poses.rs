@@ -239,9 +239,9 @@ fn skinned() -> Asset {
     asset
 }
 
-/// At rest the mesh is where it was bound; it follows its joints, and not its node.
+/// At rest the mesh is where it was bound; it follows its joints, and not its node, in as many sets of four as there are.
 ///
-/// Seen to catch: weights that are not scaled to a sum of 1.
+/// Seen to catch: weights that are not scaled to a sum of 1; the first set of four alone; copies of a skinned mesh.
 #[test]
 fn skins_follow_their_joints() {
     let mut asset = skinned();
@@ -262,6 +262,18 @@ fn skins_follow_their_joints() {
     let weights = floats(&mut heavy, "VEC4", &[3.0, 1.0, 0.0, 0.0].repeat(4), 4);
     heavy.set("/meshes/0/primitives/0/attributes/WEIGHTS_0", json!(weights));
     let expected: Vec<DVec3> = corners().iter().map(|p| *p + DVec3::Z * 0.25).collect();
+    assert_close(&world(&heavy.import().expect("a good file")), &expected);
+    // The second set has the tip alone, with as much weight as the first: of 8 parts 5 follow the tip.
+    let joints = heavy.accessor(&[1, 9, 9, 9].repeat(4), "VEC4", UNSIGNED_BYTE, 4);
+    let weights = floats(&mut heavy, "VEC4", &[4.0, 0.0, 0.0, 0.0].repeat(4), 4);
+    heavy.set("/meshes/0/primitives/0/attributes/JOINTS_1", json!(joints));
+    heavy.set("/meshes/0/primitives/0/attributes/WEIGHTS_1", json!(weights));
+    let expected: Vec<DVec3> = corners().iter().map(|p| *p + DVec3::Z * 0.625).collect();
+    assert_close(&world(&heavy.import().expect("a good file")), &expected);
+    // A skinned mesh is where its joints are: copies would all lie there.
+    let places = heavy.vectors(&[[0.0; 3], [4.0, 0.0, 0.0]]);
+    let attributes = json!({ "attributes": { "TRANSLATION": places } });
+    heavy.set("/nodes/0/extensions", json!({ "EXT_mesh_gpu_instancing": attributes }));
     assert_close(&world(&heavy.import().expect("a good file")), &expected);
 }
 

@@ -57,8 +57,8 @@ fn assert_wall(extensions: Value, expected: Wall) {
 
 /// By hand: the numbers of the extensions in the formulas of docs/method.md (13.8).
 ///
-/// Seen to catch: the shares of the two sides exchanged; the strength left out; a thickness of 0 taken as a volume; the
-/// default color of the older draft.
+/// Seen to catch: the shares of the two sides exchanged; the default color of the older draft; a warning about a solid where
+/// there is a wall.
 #[test]
 fn files_describe_walls() {
     let of_diffuse = Wall { base: 0.25, back: DVec3::ZERO, through: DVec3::new(0.75, 0.375, 0.1875), clear: 0.0 };
@@ -79,7 +79,7 @@ fn files_describe_walls() {
 /// What has a volume, the older draft, nothing that scatters, a medium of its own, or no other translucent surface beside
 /// it is no wall. Of those the draft's warning is said.
 ///
-/// Seen to catch: walls beside which nothing is sampled; a warning about a solid where there is a wall.
+/// Seen to catch: walls beside which nothing is sampled.
 #[test]
 fn what_is_no_wall() {
     let mut solid = diffuse(0.75);

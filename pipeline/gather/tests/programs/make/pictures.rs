@@ -164,6 +164,50 @@ fn a_scene_without_cameras_is_seen_by_those_that_are_made() {
     assert_eq!(tree.make(&backdrop).made(), ["gather", "gather"]);
 }
 
+/// TIME and ANIMATION pose the scene, whatever characters a name has, and a picture of another pose is made again.
+#[test]
+fn a_picture_is_of_the_pose_that_was_asked_for() {
+    let tree = Tree::new();
+    let text = tree.scene("thing.gltf", 1.0);
+    let mut root: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
+    let floats = [0.0f32, 1.0, 0.0, 0.0, 0.0, 0.001, 0.0, 0.0];
+    tree.write("pose.bin", floats.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>());
+    let push = |list: &mut serde_json::Value, item: serde_json::Value| {
+        list.as_array_mut().expect("a list").push(item);
+        list.as_array().map_or(0, Vec::len) - 1
+    };
+    let buffer = push(&mut root["buffers"], json!({ "uri": "pose.bin", "byteLength": 32 }));
+    let accessor = |root: &mut serde_json::Value, offset: u32, length: u32, kind: &str| {
+        let view = json!({ "buffer": buffer, "byteOffset": offset, "byteLength": length });
+        let view = push(&mut root["bufferViews"], view);
+        let fields = json!({ "bufferView": view, "componentType": 5126, "count": 2, "type": kind });
+        push(&mut root["accessors"], fields)
+    };
+    let (input, output) = (accessor(&mut root, 0, 8, "SCALAR"), accessor(&mut root, 8, 24, "VEC3"));
+    root["accessors"][input]["min"] = json!([0.0]);
+    root["accessors"][input]["max"] = json!([1.0]);
+    let node = root["nodes"].as_array().expect("nodes").iter().position(|n| n.get("mesh").is_some()).expect("a mesh");
+    root["animations"] = json!([{
+        "name": "walk|on it", "samplers": [{ "input": input, "output": output }],
+        "channels": [{ "sampler": 0, "target": { "node": node, "path": "translation" } }],
+    }]);
+    tree.write("thing.gltf", root.to_string());
+    let at_rest = ["SCENE=thing.gltf", "MEDIUM=marble", "CALIBRATE=no", "SPP=1"];
+    let pose = || {
+        let image = fs::read(tree.path(IMAGES).join("camera0.exr")).expect("reads");
+        let image = formats::Image::decode(&image).expect("an image");
+        image.attributes.get("pcsss/pose").map(|pose| format!("{pose:?}"))
+    };
+    assert_eq!(tree.make(&at_rest).made(), ["sample-surface", "gather"]);
+    assert_eq!(pose(), None);
+    let half = [&at_rest[..], &["TIME=0.5", "ANIMATION=walk|on it"]].concat();
+    assert_eq!(tree.make(&half).made(), ["sample-surface", "gather"]);
+    assert!(pose().is_some_and(|pose| pose.contains("walk|on it") && pose.contains("0.5")), "{:?}", pose());
+    assert!(tree.make(&half).made().is_empty());
+    let end = [&at_rest[..], &["TIME=1"]].concat();
+    assert_eq!(tree.make(&end).made(), ["sample-surface", "gather"]);
+}
+
 /// Without MEDIUM, a file that states the media of its surfaces is rendered in these, and another one in marble.
 ///
 /// Seen to catch: marble for every file.
