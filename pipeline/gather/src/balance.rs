@@ -3,7 +3,7 @@
 //!
 //! A few pixels all over the image are rendered with a few paths, and rendered again with the same paths and other
 //! random numbers of the cut. The two images have the error of paths and cloud in common: the mean product of their
-//! halves' differences expects its square, whatever the cut adds to each (docs/method.md 13.7).
+//! halves' differences expects its square, whatever the cut adds to each (docs/method.md 13.9).
 
 use crate::{
     counts::Counts,

@@ -1,6 +1,10 @@
 //! The calibration that images are rendered with: of a file, or made in memory before the first image.
 
-use crate::settings::{CalibrationSource, Request};
+use crate::{
+    Prepared,
+    settings::{CalibrationSource, Request},
+    steps::Clock,
+};
 use bssrdf::{Medium, MediumFile, Model, Optics, Unit};
 use calibration::{CalibrateError, Task, WALKS, calibrate};
 use cli::{Failure, LitScene, Progress, quoted};
@@ -74,9 +78,19 @@ pub fn check_fit(request: &Request, lit: &LitScene, kept: &Calibration) -> Resul
     Ok(())
 }
 
+/// The share of the time left that a calibration may take, and the share of the walks that tells how long all would.
+const TIME_SHARE: f64 = 0.3;
+const TRIED: u64 = 32;
+
 /// Calibrates in memory if the request leaves that to the program and the model is made for it. A scene that cannot be
-/// calibrated is rendered without, with a warning.
-pub fn make(request: &Request, lit: &LitScene, rays: &Rays, model: Model) -> Result<Option<Calibration>, Failure> {
+/// calibrated is rendered without, with a warning. If the time is limited, there may be fewer walks.
+pub fn make(
+    request: &Request,
+    prepared: &Prepared,
+    rays: &Rays,
+    clock: &Clock,
+) -> Result<Option<Calibration>, Failure> {
+    let (lit, model) = (&prepared.inputs, prepared.model);
     let automatic =
         request.calibration == CalibrationSource::Automatic && model.is_for_calibration() && !request.reference;
     if !automatic || lit.media.iter().all(Medium::is_clear) {
@@ -86,10 +100,24 @@ pub fn make(request: &Request, lit: &LitScene, rays: &Rays, model: Model) -> Res
     lit.warn_of_smooth_walks("the calibration", common);
     let normals = cli::normal_kind(request.scene.how.normals);
     let (clouds, media, seed) = (lit.clouds(), &lit.media, common.seed);
-    let task = Task { scene: &lit.scene, rays, clouds, media, model, normals, walks: WALKS, seed };
-    let progress = Progress::start(common, "calibrating", task.work(), "walks and points");
-    let made = common.in_pool(|| calibrate(&task, |done| progress.add(done)))?;
-    let seconds = progress.finish();
+    let run = |walks: u64| {
+        let task = Task { scene: &lit.scene, rays, clouds, media, model, normals, walks, seed };
+        let progress = Progress::start(common, "calibrating", task.work(), "walks and points");
+        let made = common.in_pool(|| calibrate(&task, |done| progress.add(done)))?;
+        Ok::<_, Failure>((made, progress.finish()))
+    };
+    let (made, seconds) = match clock.left().map(|left| TIME_SHARE * left) {
+        None => run(WALKS)?,
+        Some(time) => {
+            let (tried, seconds) = run(WALKS / TRIED)?;
+            let walks = walks_in(time - seconds, seconds);
+            if walks < WALKS {
+                let share = 100.0 * walks.max(WALKS / TRIED) as f64 / WALKS as f64;
+                common.say(format_args!("--time-limit: calibrating with {share:.0} % of the walks"));
+            }
+            if walks > WALKS / TRIED && tried.is_ok() { run(walks)? } else { (tried, seconds) }
+        }
+    };
     match made {
         Ok(calibration) => {
             let command = command(request);
@@ -101,6 +129,12 @@ pub fn make(request: &Request, lit: &LitScene, rays: &Rays, model: Model) -> Res
             Ok(None)
         }
     }
+}
+
+/// The walks that `time` is enough for, given how long a few of them took, s.
+fn walks_in(time: f64, of_few: f64) -> u64 {
+    let share = time / (TRIED as f64 * of_few.max(1e-9));
+    (WALKS as f64 * share.clamp(0.0, 1.0)) as u64
 }
 
 /// The command that keeps the calibration in a file.
@@ -115,4 +149,17 @@ fn command(request: &Request) -> String {
     }
     words.extend(["-o".into(), request.clouds[0].with_extension("calibration").display().to_string()]);
     words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A thirty-second of the walks in a second: all in 32, half in 16, and none where no time is left.
+    ///
+    /// Seen to catch: the walks of the trial for those of the whole; no bound.
+    #[test]
+    fn walks_fit_into_the_time() {
+        assert_eq!([32.0, 100.0, 16.0, 0.0, -1.0].map(|time| walks_in(time, 1.0)), [WALKS, WALKS, WALKS / 2, 0, 0]);
+    }
 }

@@ -66,7 +66,7 @@ fn render(request: &Request) -> Result<(), Failure> {
     let rays = seconds.time("ray_tree", || request.common.in_pool(|| prepared.inputs.rays()))?;
     let made = match prepared.kept {
         Some(_) => None,
-        None => seconds.time("calibrate", || calibrated::make(request, &prepared.inputs, &rays, prepared.model))?,
+        None => seconds.time("calibrate", || calibrated::make(request, &prepared, &rays, &clock))?,
     };
     let tints = textured::make(request, &prepared.inputs, &rays, prepared.model)?;
     seconds.time("exposure", || exposed::expose(request, (&prepared.inputs, &tints), &rays, &mut prepared.jobs))?;

@@ -42,6 +42,11 @@ impl Clock {
         Clock { end: limit.and_then(|limit| Instant::now().checked_add(limit)) }
     }
 
+    /// The seconds that are left, if the time is limited.
+    pub fn left(&self) -> Option<f64> {
+        Some(self.end?.saturating_duration_since(Instant::now()).as_secs_f64())
+    }
+
     /// When the next of so many images must be rendered, so that it can be written and the others have their share.
     pub fn deadline(&self, job: &ImageJob, images: usize, threads: NonZeroUsize) -> Option<Instant> {
         let now = Instant::now();

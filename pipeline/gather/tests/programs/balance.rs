@@ -11,10 +11,10 @@ fn gather(name: &str, bench: &Bench, output: &str, more: &[&str]) {
     bench.succeed("gather", &[&own[..], &["--calibration", "none", "--no-timings", "--quiet"], more].concat());
 }
 
-/// A cloud of few samples of a figure with sharp features, and of enough of a sphere.
-fn bench() -> Bench {
+/// A cloud of few samples of a figure with sharp features, and of many of a sphere.
+fn bench(of_sphere: &str) -> Bench {
     let bench = Bench::new();
-    for (name, count) in [("figure", "5k"), ("sphere", "20k")] {
+    for (name, count) in [("figure", "5k"), ("sphere", of_sphere)] {
         let (scene, cloud) = (data(&format!("scenes/{name}.glb")), format!("{name}.cloud"));
         bench.succeed("sample-surface", &[&scene, "-n", count, "-o", &cloud, "--quiet"]);
     }
@@ -31,7 +31,7 @@ const SIZE: [&str; 4] = ["--width", "100", "--height", "90"];
 
 #[test]
 fn it_follows_the_noise_of_the_paths() {
-    let bench = bench();
+    let bench = bench("100k");
     let of = |scene: &str, more: &[&str]| {
         gather(scene, &bench, "x.exr", more);
         accuracy(&bench, "x.json")
@@ -39,8 +39,9 @@ fn it_follows_the_noise_of_the_paths() {
     let fixed = of("figure", &["--width", "40", "--height", "30"]);
     assert_eq!(fixed, 0.005);
     let [smooth, rough] = ["sphere", "figure"].map(|scene| of(scene, &SIZE));
-    println!("{smooth}, {rough}");
-    assert!(smooth < 0.5 * fixed && rough > 2.0 * fixed, "{smooth}, {rough}");
+    // The least that is asked, which is less than what the cut adds while the noise is measured.
+    assert_eq!(smooth, 0.00125);
+    assert!(rough > 2.0 * fixed, "{rough}");
     assert_eq!(of("figure", &[&SIZE[..], &["--accuracy", "0.013"]].concat()), 0.013);
     assert_eq!(of("figure", &[&SIZE[..], &["--target-error", "0.08"]].concat()), 0.04);
 }
@@ -48,7 +49,7 @@ fn it_follows_the_noise_of_the_paths() {
 /// A gather is as accurate whatever the number of paths, in a crop, and where an image goes on.
 #[test]
 fn it_is_the_same_for_all_paths_of_an_image_and_its_crops() {
-    let bench = bench();
+    let bench = bench("20k");
     let all = [&SIZE[..], &["--crop", "30,20,20,20"]].concat();
     let render = |output: &str, more: &[&str]| gather("sphere", &bench, output, &[&all[..], more].concat());
     render("whole.exr", &["--spp", "16", "--keep-sums"]);
