@@ -4,14 +4,17 @@
 # scene:medium. A scene with several media has a list of MATERIAL=medium in MEDIA_<name>, and <name> stands for the
 # list. ENVIRONMENT_<scene> is the light from all around, in both programs: a picture or R,G,B. EXPOSURE_<scene> is added
 # to the preview's own exposure.
-GALLERY := gummies:fruit chess:stones piglet:skin2 candle:candle_wax milk:wholemilk
+GALLERY := peach:stone_fruit gummies:fruit chess:stones piglet:skin2 candle:candle_wax milk:wholemilk
+MEDIA_stone_fruit := Peach=peach Slice=peach_flesh
 MEDIA_fruit  := Cherry=cherry Orange=orange Lime=lime
 MEDIA_stones := Marble=marble Jade=jade
+ENVIRONMENT_peach   := data/environments/studio.hdr
 ENVIRONMENT_gummies := 0.1,0.11,0.13
 ENVIRONMENT_chess   := 0.05,0.06,0.08
 ENVIRONMENT_piglet  := 0.08,0.09,0.11
 ENVIRONMENT_candle  := 0.006,0.008,0.013
 ENVIRONMENT_milk    := data/environments/sky.hdr
+EXPOSURE_peach   := 0.2
 EXPOSURE_gummies := 0.4
 EXPOSURE_chess   := -0.2
 EXPOSURE_piglet  := 0.4

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::field::{Shape, smooth_max, smooth_min};
 use crate::mesh::Mesh;
-use crate::scene::{Light, LightKind, Part, Scene, Surface};
+use crate::scene::{Indices, Light, LightKind, Part, Scene, Surface};
 use crate::sculpture::{Stroke, blob, join, limb, sculpt};
 use crate::studio::{backdrop, lamp, view};
 use crate::surface_nets::{Grid, polygonise};
@@ -38,6 +38,7 @@ pub fn scene() -> Scene {
             position: DVec3::new(-0.12, 0.35, 0.16),
             direction: DVec3::new(0.12, -0.35, -0.16),
         }],
+        indices: Indices::Short,
         cameras: views.iter().map(|v| v.shot).collect(),
         views,
     }

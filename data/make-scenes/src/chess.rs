@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::mesh::Mesh;
-use crate::scene::{Part, Scene, Surface};
+use crate::scene::{Indices, Part, Scene, Surface};
 use crate::studio::{GAP_M, lamp, view};
 use crate::turned::turn;
 
@@ -30,6 +30,7 @@ pub fn scene() -> Scene {
             lamp("Room", [-0.25, 0.25, 0.15], [0.0, 0.0, 0.0], [0.05, 0.05], [7.5, 8.2, 9.5]),
         ],
         lights: Vec::new(),
+        indices: Indices::Short,
         cameras: views.iter().map(|v| v.shot).collect(),
         views,
     }

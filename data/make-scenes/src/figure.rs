@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use crate::field::{Shape, smooth_max, smooth_min};
 use crate::mesh::Mesh;
-use crate::scene::{Light, LightKind, Part, Scene, Shot, Surface, View};
+use crate::scene::{Indices, Light, LightKind, Part, Scene, Shot, Surface, View};
 use crate::sculpture::{Stroke, blob, carve, join, limb, mirrored, sculpt};
 use crate::surface_nets::{Grid, polygonise};
 
@@ -32,10 +32,11 @@ pub fn scene() -> Scene {
             Part { name: "Floor", mesh: floor_mesh(), surface: Surface::Opaque { base_color: FLOOR_COLOR } },
         ],
         lights: lights(),
+        indices: Indices::Long,
         cameras: vec![front, three_quarter],
         views: vec![
-            View { name: "front", shot: front, side_pixels: 320 },
-            View { name: "back-left", shot: back_left, side_pixels: 320 },
+            View { name: "front", shot: front, side_pixels: 320, lens: None },
+            View { name: "back-left", shot: back_left, side_pixels: 320, lens: None },
         ],
     }
 }

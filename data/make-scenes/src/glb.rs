@@ -1,9 +1,10 @@
 //! Writes a scene as binary glTF 2.0: one JSON chunk, one binary chunk.
 
 use glam::{DQuat, DVec3, Vec3};
+use picture::Picture;
 use serde_json::{Value, json};
 
-use crate::scene::{Light, LightKind, Part, Scene, Shot, Surface};
+use crate::scene::{Indices, Light, LightKind, Part, Pictures, Scene, Shot, Surface};
 
 /// Numbers that the glTF 2.0 specification fixes, sections 3.6, 5.1 and 5.11.
 const MAGIC: u32 = 0x4654_6C67;
@@ -12,6 +13,7 @@ const JSON_CHUNK: u32 = 0x4E4F_534A;
 const BINARY_CHUNK: u32 = 0x004E_4942;
 const FLOAT: u32 = 5126;
 const UNSIGNED_INT: u32 = 5125;
+const UNSIGNED_SHORT: u32 = 5123;
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
@@ -20,7 +22,8 @@ const NEAR_M: f64 = 0.001;
 
 pub fn encode(scene: &Scene) -> Vec<u8> {
     let mut buffer = Buffer::default();
-    let meshes: Vec<_> = scene.parts.iter().enumerate().map(|(i, p)| buffer.mesh(i, p)).collect();
+    let meshes: Vec<_> = scene.parts.iter().enumerate().map(|(i, p)| buffer.mesh(i, p, scene.indices)).collect();
+    let textures = textures(&mut buffer, scene);
     let mut document = json!({
         "asset": { "version": "2.0", "generator": "make-scenes" },
         "extensionsUsed": extensions(scene),
@@ -29,12 +32,16 @@ pub fn encode(scene: &Scene) -> Vec<u8> {
         "scenes": [{ "name": scene.name, "nodes": (0..node_count(scene)).collect::<Vec<_>>() }],
         "nodes": nodes(scene),
         "cameras": list(&scene.cameras, camera),
-        "materials": list(&scene.parts, material),
+        "materials": materials(scene),
         "meshes": meshes,
         "accessors": buffer.accessors,
         "bufferViews": buffer.views,
         "buffers": [{ "byteLength": buffer.bytes.len() }],
     });
+    if !textures.is_empty() {
+        document["images"] = textures.into();
+        document["textures"] = (0..buffer.pictures).map(|k| json!({ "source": k })).collect();
+    }
     // Whether serde_json keeps the order of insertion depends on the features that other crates enable. Sorted keys
     // make the bytes independent of that.
     document.sort_all_objects();
@@ -94,12 +101,37 @@ fn camera(shot: &Shot) -> Value {
     })
 }
 
+/// The pictures of all parts, in the order in which `materials` counts them.
+fn textures(buffer: &mut Buffer, scene: &Scene) -> Vec<Value> {
+    let pictures = scene.parts.iter().filter_map(|part| part.surface.pictures());
+    let pictures = pictures.flat_map(|p| [Some(p.base_color), p.bumps.map(|bumps| bumps.picture)]);
+    pictures.flatten().map(|picture| buffer.picture(&picture())).collect()
+}
+
+fn materials(scene: &Scene) -> Vec<Value> {
+    let mut texture = 0;
+    let dressed = scene.parts.iter().map(|part| {
+        let mut value = material(part);
+        if let Some(Pictures { bumps, .. }) = part.surface.pictures() {
+            value["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": texture });
+            texture += 1;
+            if let Some(bumps) = bumps {
+                let scale = json!({ "scale": [bumps.repeats, bumps.repeats] });
+                value["normalTexture"] = json!({ "index": texture, "extensions": { "KHR_texture_transform": scale } });
+                texture += 1;
+            }
+        }
+        value
+    });
+    dressed.collect()
+}
+
 fn material(part: &Part) -> Value {
     let reflectance = |[r, g, b]: [f64; 3]| json!({ "baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.0 });
     match part.surface {
-        Surface::Translucent { index_of_refraction } => json!({
+        Surface::Translucent { index_of_refraction, finish } => json!({
             "name": part.name,
-            "pbrMetallicRoughness": { "metallicFactor": 0.0, "roughnessFactor": 0.0 },
+            "pbrMetallicRoughness": { "metallicFactor": 0.0, "roughnessFactor": finish.roughness },
             "extensions": {
                 "KHR_materials_ior": { "ior": index_of_refraction },
                 "KHR_materials_transmission": { "transmissionFactor": 1.0 },
@@ -109,6 +141,13 @@ fn material(part: &Part) -> Value {
         }),
         Surface::Opaque { base_color } => {
             json!({ "name": part.name, "pbrMetallicRoughness": reflectance(base_color) })
+        }
+        Surface::Pictured { .. } => json!({ "name": part.name, "pbrMetallicRoughness": reflectance([1.0; 3]) }),
+        Surface::Glossy { finish } => {
+            let mut shown = reflectance(finish.base_color);
+            shown["metallicFactor"] = json!(finish.metallic);
+            shown["roughnessFactor"] = json!(finish.roughness);
+            json!({ "name": part.name, "pbrMetallicRoughness": shown })
         }
         Surface::Emitting { radiance } => {
             // The factor may not exceed 1.
@@ -123,12 +162,14 @@ fn material(part: &Part) -> Value {
     }
 }
 
-/// The extensions of every scene, and the one of scenes with an emitting surface.
+/// The extensions of every scene, and those of scenes with an emitting surface or a normal map.
 fn extensions(scene: &Scene) -> Vec<&'static str> {
     let shines = scene.parts.iter().any(|part| matches!(part.surface, Surface::Emitting { .. }));
     let mut names =
         vec!["KHR_lights_punctual", "KHR_materials_ior", "KHR_materials_transmission", "KHR_materials_volume"];
     names.extend(shines.then_some("KHR_materials_emissive_strength"));
+    let bumps = |part: &Part| part.surface.pictures()?.bumps;
+    names.extend(scene.parts.iter().find_map(bumps).map(|_| "KHR_texture_transform"));
     names
 }
 
@@ -138,11 +179,13 @@ struct Buffer {
     bytes: Vec<u8>,
     views: Vec<Value>,
     accessors: Vec<Value>,
+    /// Number of the pictures.
+    pictures: usize,
 }
 
 impl Buffer {
     /// Stores the mesh and describes it; its material has the same index as its part.
-    fn mesh(&mut self, index: usize, part: &Part) -> Value {
+    fn mesh(&mut self, index: usize, part: &Part, indices: Indices) -> Value {
         let mesh = &part.mesh;
         let (low, high) = mesh.bounds();
         let mut positions = vectors(&mesh.positions);
@@ -152,9 +195,19 @@ impl Buffer {
         if !mesh.normals.is_empty() {
             attributes["NORMAL"] = json!(self.add(vectors(&mesh.normals), bytes_of(&mesh.normals)));
         }
+        if let Some(pictures) = part.surface.pictures() {
+            let coordinates = |p: &Vec3| (pictures.coordinates)(p.as_dvec3()).as_vec2().to_array();
+            let bytes = mesh.positions.iter().flat_map(coordinates).flat_map(f32::to_le_bytes).collect();
+            let pairs = json!({ "componentType": FLOAT, "count": mesh.positions.len(), "type": "VEC2" });
+            attributes["TEXCOORD_0"] = json!(self.add(pairs, bytes));
+        }
         let corners = mesh.triangles.as_flattened();
-        let indices = json!({ "componentType": UNSIGNED_INT, "count": corners.len(), "type": "SCALAR" });
-        let index_bytes = corners.iter().flat_map(|corner| corner.to_le_bytes()).collect();
+        // The largest number of 16 bits is no index in glTF.
+        let short = indices == Indices::Short && mesh.positions.len() < usize::from(u16::MAX);
+        let width = if short { 2 } else { 4 };
+        let kind = if short { UNSIGNED_SHORT } else { UNSIGNED_INT };
+        let index_bytes = corners.iter().flat_map(|corner| corner.to_le_bytes().into_iter().take(width)).collect();
+        let indices = json!({ "componentType": kind, "count": corners.len(), "type": "SCALAR" });
         let primitive = json!({
             "attributes": attributes,
             "indices": self.add(indices, index_bytes),
@@ -163,8 +216,18 @@ impl Buffer {
         json!({ "name": part.name, "primitives": [primitive] })
     }
 
-    /// Appends an array in a view of its own; returns the index of its accessor. Every element is a multiple of four
-    /// bytes long, so that every array starts aligned.
+    /// Appends a picture as a PNG file, padded to four bytes; returns its description.
+    fn picture(&mut self, picture: &Picture) -> Value {
+        let bytes = picture.encode(png::Compression::High, &[]).expect("a picture of the scene has texels");
+        self.views.push(json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() }));
+        self.bytes.extend(bytes);
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        self.pictures += 1;
+        json!({ "bufferView": self.views.len() - 1, "mimeType": "image/png" })
+    }
+
+    /// Appends an array in a view of its own; returns the index of its accessor. Arrays are padded to four
+    /// bytes, so that every one starts aligned.
     fn add(&mut self, mut accessor: Value, bytes: Vec<u8>) -> usize {
         let target = if accessor["type"] == "SCALAR" { ELEMENT_ARRAY_BUFFER } else { ARRAY_BUFFER };
         accessor["bufferView"] = json!(self.views.len());
@@ -172,6 +235,7 @@ impl Buffer {
             "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len(), "target": target,
         }));
         self.bytes.extend(bytes);
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
         self.accessors.push(accessor);
         self.accessors.len() - 1
     }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::figure;
 use crate::mesh::Mesh;
-use crate::scene::{Part, Scene, Surface};
+use crate::scene::{Indices, Part, Scene, Surface};
 use crate::studio::{backdrop, lamp, view};
 use crate::surface_nets::{Grid, polygonise};
 
@@ -29,6 +29,7 @@ pub fn scene() -> Scene {
             lamp("Front", [-0.08, 0.14, 0.12], [0.0, 0.0, 0.0], [0.03, 0.03], [4.6, 4.9, 5.4]),
         ],
         lights: Vec::new(),
+        indices: Indices::Short,
         cameras: views.iter().map(|v| v.shot).collect(),
         views,
     }

@@ -1,7 +1,8 @@
 //! The scenes of `data/`, each built from a few numbers.
 //!
 //! Every file has the same bytes on every run and machine: the shapes use only sums, products, quotients and square
-//! roots, which IEEE 754 rounds alike everywhere, and no order depends on a hash. The files can therefore be committed,
+//! roots, which IEEE 754 rounds alike everywhere, and numbers that look
+//! random are products of integers, and no order depends on a hash. The files can therefore be committed,
 //! and a byte that changes means that the scene has changed.
 //!
 //! ```
@@ -14,12 +15,16 @@ pub mod candle;
 pub mod chess;
 pub mod field;
 pub mod figure;
+pub mod fruit;
 pub mod glb;
 pub mod gummies;
 pub mod lattice;
 pub mod mesh;
 pub mod milk;
+pub mod noise;
 pub mod panorama;
+pub mod peach;
+pub mod peel;
 pub mod piglet;
 pub mod scene;
 pub mod sculpture;
@@ -46,6 +51,7 @@ pub fn all() -> Vec<Scene> {
         piglet::scene(),
         candle::scene(),
         milk::scene(),
+        peach::scene(),
     ]
 }
 

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use crate::field::smooth_min;
 use crate::field::{Shape, smooth_max};
 use crate::mesh::Mesh;
-use crate::scene::{Part, Scene, Surface};
+use crate::scene::{Indices, Part, Scene, Surface};
 use crate::studio::{GAP_M, view};
 use crate::surface_nets::{Grid, polygonise};
 use crate::turned::{circle, turn};
@@ -32,6 +32,7 @@ pub fn scene() -> Scene {
             opaque("Table", table, [0.1, 0.085, 0.075]),
         ],
         lights: Vec::new(),
+        indices: Indices::Short,
         cameras: views.iter().map(|v| v.shot).collect(),
         views,
     }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::field::{Shape, smooth_max, smooth_min};
 use crate::mesh::Mesh;
-use crate::scene::{Part, Scene, Surface};
+use crate::scene::{Indices, Part, Scene, Surface};
 use crate::sculpture::{Stroke, blob, carve, join, limb, mirrored, sculpt};
 use crate::studio::{backdrop, lamp, view};
 use crate::surface_nets::{Grid, polygonise};
@@ -37,6 +37,7 @@ pub fn scene() -> Scene {
             lamp("Front", [-0.2, 0.22, 0.24], [0.0, 0.05, 0.0], [0.05, 0.05], [17.0, 16.0, 14.6]),
         ],
         lights: Vec::new(),
+        indices: Indices::Short,
         cameras: views.iter().map(|v| v.shot).collect(),
         views,
     }

@@ -1,6 +1,7 @@
 //! The content of a scene file and its view files. Lengths are in metres, Y is up.
 
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec2, DVec3};
+use picture::Picture;
 
 use crate::mesh::Mesh;
 
@@ -12,8 +13,18 @@ pub struct Scene {
     pub name: &'static str,
     pub parts: Vec<Part>,
     pub lights: Vec<Light>,
+    pub indices: Indices,
     pub cameras: Vec<Shot>,
     pub views: Vec<View>,
+}
+
+/// How a file counts vertices.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Indices {
+    /// By 32 bits.
+    Long,
+    /// By 16 bits where a mesh is small enough.
+    Short,
 }
 
 /// A mesh and what it is made of; the node, the mesh and the material share the name.
@@ -26,15 +37,63 @@ pub struct Part {
 #[derive(Clone, Copy)]
 pub enum Surface {
     /// Marked by glTF as a volume that transmits: its surface is sampled into the cloud.
-    Translucent { index_of_refraction: f64 },
+    Translucent { index_of_refraction: f64, finish: Finish },
     /// Lambertian with this reflectance.
     Opaque { base_color: [f64; 3] },
+    /// Lambertian, with the colors of these pictures.
+    Pictured { pictures: Pictures },
+    /// Opaque by the metallic-roughness model of glTF.
+    Glossy { finish: Finish },
     /// Emits this radiance, W/(m² sr), to the side that it faces.
     Emitting { radiance: [f64; 3] },
 }
 
 impl Surface {
-    pub const TRANSLUCENT: Self = Self::Translucent { index_of_refraction: INDEX_OF_REFRACTION };
+    pub const TRANSLUCENT: Self = Self::rough(0.0);
+
+    /// Translucent, with this roughness.
+    pub const fn rough(roughness: f64) -> Self {
+        let finish = Finish { roughness, ..Finish::SMOOTH };
+        Self::Translucent { index_of_refraction: INDEX_OF_REFRACTION, finish }
+    }
+
+    pub fn pictures(&self) -> Option<Pictures> {
+        match *self {
+            Self::Translucent { finish, .. } | Self::Glossy { finish } => finish.pictures,
+            Self::Pictured { pictures } => Some(pictures),
+            Self::Opaque { .. } | Self::Emitting { .. } => None,
+        }
+    }
+}
+
+/// What a surface looks like from near.
+#[derive(Clone, Copy)]
+pub struct Finish {
+    /// A factor of the picture; translucent surfaces have none.
+    pub base_color: [f64; 3],
+    pub metallic: f64,
+    pub roughness: f64,
+    pub pictures: Option<Pictures>,
+}
+
+impl Finish {
+    pub const SMOOTH: Self = Self { base_color: [1.0; 3], metallic: 0.0, roughness: 0.0, pictures: None };
+}
+
+/// The pictures on a surface.
+#[derive(Clone, Copy)]
+pub struct Pictures {
+    /// The texture coordinates of a place of the scene, m.
+    pub coordinates: fn(DVec3) -> DVec2,
+    pub base_color: fn() -> Picture,
+    pub bumps: Option<Bumps>,
+}
+
+/// A normal map, which repeats so many times where the base color is shown once.
+#[derive(Clone, Copy)]
+pub struct Bumps {
+    pub picture: fn() -> Picture,
+    pub repeats: f64,
 }
 
 pub struct Light {
@@ -65,11 +124,22 @@ pub struct Shot {
     pub yfov_degrees: f64,
 }
 
+/// The lens of a view.
+#[derive(Clone, Copy)]
+pub struct Lens {
+    /// Radius of its opening, m.
+    pub aperture: f64,
+    /// How far the plane in focus is, m.
+    pub focus: f64,
+}
+
 /// A view file: a shot with a resolution in pixels. Square, as every view here is.
 pub struct View {
     pub name: &'static str,
     pub shot: Shot,
     pub side_pixels: u32,
+    /// None if all is in focus.
+    pub lens: Option<Lens>,
 }
 
 impl Shot {
@@ -90,9 +160,12 @@ impl View {
     /// The text is formatted by hand to keep the order of the fields.
     pub fn to_json(&self) -> String {
         let Shot { eye, target, up, yfov_degrees, .. } = self.shot;
+        let lens = self.lens.map_or(String::new(), |Lens { aperture, focus }| {
+            format!(",\n  \"aperture\": {aperture},\n  \"focus\": {focus}")
+        });
         let triple = |v: DVec3| format!("[{}, {}, {}]", v.x, v.y, v.z);
         format!(
-            "{{\n  \"eye\": {},\n  \"target\": {},\n  \"up\": {},\n  \"yfov\": {yfov_degrees},\n  \"width\": {},\n  \"height\": {}\n}}\n",
+            "{{\n  \"eye\": {},\n  \"target\": {},\n  \"up\": {},\n  \"yfov\": {yfov_degrees},\n  \"width\": {},\n  \"height\": {}{lens}\n}}\n",
             triple(eye),
             triple(target),
             triple(up),
@@ -133,7 +206,9 @@ mod tests {
                 let value: serde_json::Value = serde_json::from_str(&view.to_json()).expect("valid JSON");
                 let mut fields: Vec<_> = value.as_object().expect("an object").keys().cloned().collect();
                 fields.sort();
-                assert_eq!(fields, ["eye", "height", "target", "up", "width", "yfov"]);
+                let with_lens = ["aperture", "eye", "focus", "height", "target", "up", "width", "yfov"];
+                let without = ["eye", "height", "target", "up", "width", "yfov"];
+                assert_eq!(fields, if view.lens.is_some() { with_lens.as_slice() } else { &without });
             }
         }
     }

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use crate::lattice::{Lattice, even_cuts};
 use crate::mesh::Mesh;
-use crate::scene::{Light, LightKind, Part, Scene, Shot, Surface, View};
+use crate::scene::{Indices, Light, LightKind, Part, Scene, Shot, Surface, View};
 
 const HALF_WIDTH_M: f64 = 0.1;
 const DEPTH_M: f64 = 0.05;
@@ -25,8 +25,9 @@ pub fn scene() -> Scene {
             position: DVec3::new(0.0, 0.3, 0.0),
             direction: DVec3::NEG_Y,
         }],
+        indices: Indices::Long,
         cameras: vec![top],
-        views: vec![View { name: "top", shot: top, side_pixels: 128 }],
+        views: vec![View { name: "top", shot: top, side_pixels: 128, lens: None }],
     }
 }
 

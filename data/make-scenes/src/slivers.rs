@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::lattice::{Lattice, even_cuts};
 use crate::mesh::Mesh;
-use crate::scene::{Light, LightKind, Part, Scene, Shot, Surface, View};
+use crate::scene::{Indices, Light, LightKind, Part, Scene, Shot, Surface, View};
 
 const HALF_WIDTH_M: f64 = 0.025;
 const ROUNDING_M: f64 = 0.006;
@@ -30,8 +30,9 @@ pub fn scene() -> Scene {
         name: "slivers",
         parts: vec![Part { name: "Slivers", mesh: mesh(), surface: Surface::TRANSLUCENT }],
         lights: lights(),
+        indices: Indices::Long,
         cameras: vec![front],
-        views: vec![View { name: "front", shot: front, side_pixels: 256 }],
+        views: vec![View { name: "front", shot: front, side_pixels: 256, lens: None }],
     }
 }
 

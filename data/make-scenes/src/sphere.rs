@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use crate::mesh::Mesh;
-use crate::scene::{Light, LightKind, Part, Scene, Shot, Surface, View};
+use crate::scene::{Indices, Light, LightKind, Part, Scene, Shot, Surface, View};
 
 const RADIUS_M: f64 = 0.02;
 /// 20 * 4^5 = 20480 triangles.
@@ -28,8 +28,9 @@ pub fn scene() -> Scene {
             position: 0.2 * to_sun,
             direction: -to_sun,
         }],
+        indices: Indices::Long,
         cameras: vec![front],
-        views: vec![View { name: "front", shot: front, side_pixels: 256 }],
+        views: vec![View { name: "front", shot: front, side_pixels: 256, lens: None }],
     }
 }
 

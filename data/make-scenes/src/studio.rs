@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3, Vec3};
 
 use crate::mesh::Mesh;
-use crate::scene::{Part, Shot, Surface, View};
+use crate::scene::{Lens, Part, Shot, Surface, View};
 use crate::turned;
 
 /// Gap between an object and the surface below it: of surfaces that coincide, rounding would decide which one a ray
@@ -47,5 +47,10 @@ pub fn backdrop(half_width: f64, depth: f64, base_color: [f64; 3]) -> Part {
 
 pub fn view(name: &'static str, eye: [f64; 3], target: [f64; 3], yfov_degrees: f64) -> View {
     let [eye, target] = [eye, target].map(DVec3::from_array);
-    View { name, shot: Shot { name, eye, target, up: DVec3::Y, yfov_degrees }, side_pixels: SIDE_PIXELS }
+    View { name, shot: Shot { name, eye, target, up: DVec3::Y, yfov_degrees }, side_pixels: SIDE_PIXELS, lens: None }
+}
+
+/// A view through a lens.
+pub fn focused(name: &'static str, eye: [f64; 3], target: [f64; 3], yfov_degrees: f64, lens: Lens) -> View {
+    View { lens: Some(lens), ..view(name, eye, target, yfov_degrees) }
 }

@@ -115,13 +115,14 @@ impl Shape {
                 position: self.to_sun,
                 direction: -self.to_sun,
             }],
+            indices: make_scenes::scene::Indices::Long,
             cameras: vec![shot],
             views: Vec::new(),
         };
         let name = format!("{}-{}", self.name, medium.name);
         let [file, view] = ["glb", "json"].map(|kind| folder.join(format!("{name}.{kind}")));
         fs::write(&file, glb::encode(&scene)).map_err(Error::file(&file))?;
-        let camera = View { name: "front", shot, side_pixels: 128 };
+        let camera = View { name: "front", shot, side_pixels: 128, lens: None };
         fs::write(&view, camera.to_json()).map_err(Error::file(&view))?;
         Ok(Files { scene: file, view: ["--view".into(), view.display().to_string()] })
     }

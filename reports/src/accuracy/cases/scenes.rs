@@ -80,6 +80,7 @@ impl Case {
             name: self.name,
             parts: (self.parts)(),
             lights: self.light.lights(),
+            indices: make_scenes::scene::Indices::Long,
             cameras: Vec::new(),
             views: Vec::new(),
         };
@@ -103,7 +104,7 @@ impl Case {
         }
         let view = |name: &str, eye: DVec3| -> Result<Vec<String>, Error> {
             let shot = Shot { name: "View", eye, target: self.target, up: DVec3::Y, yfov_degrees: self.yfov_degrees };
-            let text = View { name: "view", shot, side_pixels: 128 }.to_json();
+            let text = View { name: "view", shot, side_pixels: 128, lens: None }.to_json();
             Ok(vec!["--view".to_owned(), put(name, text.as_bytes())?.display().to_string()])
         };
         let views = [view("front.json", self.eye)?, view("back.json", 2.0 * self.target - self.eye)?];
