@@ -6,7 +6,7 @@
 #   gallery.mk   the scenes of data/                  table.mk    the table of the half-space model
 #   own.mk       your own scene: make SCENE=...       clean.mk    removal of what was made
 #   truth.mk     your own scene beside the truth      install.mk  the programs, their manual pages and completions
-#   blender.mk   scenes that Blender exports
+#   blender.mk   scenes that Blender exports          cycles.mk  our pictures beside those of Cycles
 #
 # Every recipe that renders is $(SUBMIT) PROGRAM --threads $(THREADS) ... -o $@: it reads files, writes one and never
 # asks, so that SUBMIT may hand it to a queue of machines (docs/farm.md).
@@ -60,6 +60,7 @@ include $(MAKE_FILES)/own.mk
 include $(MAKE_FILES)/truth.mk
 include $(MAKE_FILES)/tests.mk
 include $(MAKE_FILES)/blender.mk
+include $(MAKE_FILES)/cycles.mk
 include $(MAKE_FILES)/check.mk
 include $(MAKE_FILES)/reports.mk
 include $(MAKE_FILES)/table.mk

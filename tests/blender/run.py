@@ -1,8 +1,8 @@
 """Renders scenes that Blender exports: python3 run.py --programs FOLDER --folder FOLDER, which `make blender-test` does.
 
-Blender's Python module, bpy, is installed into a virtual environment. Where that cannot be, one sentence says so, and
-the exit code is 0. The scenes are those of scene.py. Checked are: the camera's place and field of view; the media of
-custom properties; units, by the light that Cycles sees in the same scene; and that the objects of a picture glow.
+Blender's Python module, bpy, is installed into a virtual environment (environment.py). The scenes are those of
+scene.py. Checked are: the camera's place and field of view; the media of custom properties; units, by the light that
+Cycles sees in the same scene; and that the objects of a picture glow.
 
 Planted errors that these checks caught: lamps taken as watts, emission divided by 683, custom properties left out of the
 export, a medium that needs a name of its own, a field of view of the other axis.
@@ -10,55 +10,10 @@ export, a medium that needs a name of its own, a field of view of the other axis
 
 import argparse
 import pathlib
-import shutil
 import subprocess
 import sys
-import venv
 
-HERE = pathlib.Path(__file__).resolve().parent
-PACKAGES = ["bpy", "OpenEXR", "numpy"]
-# Each release of bpy is for one version of Python.
-PYTHONS = [sys.executable, "python3.11", "python3.13", "python3.12"]
-
-
-def enter(environment, arguments):
-    """Runs this script again in its virtual environment, which is made if it does not exist."""
-    if pathlib.Path(sys.prefix).resolve() == environment.resolve():
-        return
-    python = environment / "bin" / "python"
-    if not (environment / "complete").exists():
-        fault = install(environment)
-        if fault:
-            print(f"blender-test: not run: Blender's Python module cannot be installed here ({fault})")
-            sys.exit(0)
-    sys.exit(subprocess.run([python, "-B", __file__, *arguments]).returncode)
-
-
-def install(environment):
-    """Makes the environment with the first Python that a release of bpy is for; why not, if there is none."""
-    faults = []
-    for name in PYTHONS:
-        python = shutil.which(name)
-        if python is None:
-            continue
-        # A Python without the module venv, a network or a release for it ends in an error.
-        steps = [
-            [python, "-m", "venv", "--clear", environment],
-            [environment / "bin" / "python", "-m", "pip", "install", "--quiet", "--only-binary=:all:", *PACKAGES],
-            [environment / "bin" / "python", "-c", "import bpy, OpenEXR"],
-        ]
-        done = next((done for done in map(tried, steps) if done.returncode != 0), None)
-        if done is None:
-            (environment / "complete").touch()
-            return None
-        lines = (done.stderr or done.stdout).strip().splitlines() or ["no message"]
-        faults.append(f"{pathlib.Path(python).name}: {lines[-1]}")
-    of_pip = [fault for fault in faults if "ERROR" in fault]
-    return (of_pip + faults + ["no Python is found"])[0]
-
-
-def tried(command):
-    return subprocess.run(command, capture_output=True, text=True)
+from environment import enter
 
 
 def check(what, good, found):
@@ -161,7 +116,7 @@ def main():
     parser.add_argument("--programs", type=pathlib.Path, required=True)
     parser.add_argument("--folder", type=pathlib.Path, required=True)
     options = parser.parse_args()
-    enter(options.folder / "environment", sys.argv[1:])
+    enter("blender-test", options.folder / "environment", __file__)
     import bpy
 
     print(f"Blender {bpy.app.version_string}")
