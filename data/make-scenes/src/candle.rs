@@ -24,7 +24,7 @@ pub fn scene() -> Scene {
     Scene {
         name: "candle",
         parts: vec![
-            Part { name: "Wax", mesh: wax(), surface: Surface::TRANSLUCENT },
+            Part { name: "Wax", mesh: wax(), surface: Surface::rough(0.35) },
             opaque("Wick", turned(WICK), [0.05, 0.04, 0.035]),
             Part { name: "Flame", mesh: turned(FLAME), surface: Surface::Emitting { radiance: [66.0, 29.0, 8.0] } },
             backdrop(1.0, 0.3, [0.34, 0.25, 0.19]),

@@ -17,15 +17,15 @@ pub fn scene() -> Scene {
         view("board", [-0.05, 0.115, 0.185], [0.0, 0.0135, -0.001], 20.0),
         view("close", [0.07, 0.08, 0.115], [-0.001, 0.0165, -0.002], 21.0),
     ];
-    let stone = |name, mesh| Part { name, mesh, surface: Surface::TRANSLUCENT };
-    let opaque = |name, mesh, base_color| Part { name, mesh, surface: Surface::Opaque { base_color } };
+    let stone = |name, mesh| Part { name, mesh, surface: Surface::rough(0.12) };
+    let lacquered = |name, mesh, base_color| Part { name, mesh, surface: Surface::glossy(base_color, 0.35) };
     Scene {
         name: "chess",
         parts: vec![
             stone("Marble", piece(QUEEN, -0.5, -0.5).and(piece(PAWN, -1.5, 0.5))),
             stone("Jade", piece(BISHOP, 0.5, 0.5).and(piece(PAWN, 1.5, -0.5))),
-            opaque("Light squares", squares(0), [0.62, 0.5, 0.36]),
-            opaque("Dark squares", squares(1), [0.13, 0.075, 0.045]),
+            lacquered("Light squares", squares(0), [0.62, 0.5, 0.36]),
+            lacquered("Dark squares", squares(1), [0.13, 0.075, 0.045]),
             lamp("Window", [0.16, 0.14, -0.2], [0.0, 0.015, 0.0], [0.035, 0.035], [76.0, 70.0, 60.0]),
             lamp("Room", [-0.25, 0.25, 0.15], [0.0, 0.0, 0.0], [0.05, 0.05], [7.5, 8.2, 9.5]),
         ],

@@ -28,7 +28,7 @@ pub fn scene() -> Scene {
         name: "milk",
         parts: vec![
             Part { name: "Milk", mesh: milk(), surface: Surface::TRANSLUCENT },
-            opaque("Bowl", bowl(), [0.05, 0.14, 0.3]),
+            Part { name: "Bowl", mesh: bowl(), surface: Surface::glossy([0.05, 0.14, 0.3], 0.12) },
             opaque("Table", table, [0.1, 0.085, 0.075]),
         ],
         lights: Vec::new(),

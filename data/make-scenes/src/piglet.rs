@@ -30,8 +30,8 @@ pub fn scene() -> Scene {
     Scene {
         name: "piglet",
         parts: vec![
-            Part { name: "Skin", mesh: skin(), surface: Surface::TRANSLUCENT },
-            Part { name: "Eyes", mesh: eyes(), surface: Surface::Opaque { base_color: [0.02, 0.015, 0.012] } },
+            Part { name: "Skin", mesh: skin(), surface: Surface::rough(0.4) },
+            Part { name: "Eyes", mesh: eyes(), surface: Surface::glossy([0.02, 0.015, 0.012], 0.08) },
             backdrop(2.0, 0.4, [0.24, 0.42, 0.46]),
             lamp("Back", [0.07, 0.24, -0.16], [0.0, 0.08, 0.0], [0.03, 0.03], [130.0, 120.0, 104.0]),
             lamp("Front", [-0.2, 0.22, 0.24], [0.0, 0.05, 0.0], [0.05, 0.05], [17.0, 16.0, 14.6]),

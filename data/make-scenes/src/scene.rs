@@ -57,6 +57,11 @@ impl Surface {
         Self::Translucent { index_of_refraction: INDEX_OF_REFRACTION, finish }
     }
 
+    /// A plastic, a glaze or a varnish of this roughness.
+    pub const fn glossy(base_color: [f64; 3], roughness: f64) -> Self {
+        Self::Glossy { finish: Finish { base_color, roughness, ..Finish::SMOOTH } }
+    }
+
     pub fn pictures(&self) -> Option<Pictures> {
         match *self {
             Self::Translucent { finish, .. } | Self::Glossy { finish } => finish.pictures,
