@@ -267,7 +267,7 @@ fn deviation(place: &Place) -> f64 {
 /// Points are lit several times in each estimate, so that the choice of a light is not most of the noise: the deviation
 /// is 0.10, and would be 0.79 with one lighting.
 ///
-/// Seen to catch: one lighting; the same light in all of them.
+/// Seen to catch: one lighting.
 #[test]
 fn the_choice_of_a_light_is_hardly_noise() {
     let of_plane = deviation(&scenes::open_plane());

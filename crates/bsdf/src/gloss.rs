@@ -265,7 +265,7 @@ impl Bsdf for Gloss {
         }
         let frame = Frame::new(view.normal);
         let share = self.single_share(cosine);
-        let ([choice, _], xi) = (xi(), xi());
+        let (xi, [choice, _]) = (xi(), xi());
         let direction = if choice < share {
             let local = frame.local(view.direction);
             let normal = self.ggx.sample_visible(local, xi);

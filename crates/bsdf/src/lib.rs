@@ -100,7 +100,7 @@ pub trait Bsdf {
     fn density(&self, view: &View, towards_light: DVec3) -> f64;
 
     /// Samples a direction of one lobe; none if the lobe is empty. Each call of `xi` returns two uniform numbers in
-    /// [0, 1).
+    /// [0, 1); those of the first call choose the direction, and are best spread evenly.
     fn sample(&self, view: &View, lobe: Lobe, xi: impl FnMut() -> [f64; 2]) -> Option<Sample>;
 }
 

@@ -243,7 +243,7 @@ impl Bsdf for RoughDielectric<'_> {
     fn sample(&self, view: &View, lobe: Lobe, mut xi: impl FnMut() -> [f64; 2]) -> Option<Sample> {
         let [of_lobe, single] = self.shares(view, lobe);
         let frame = Frame::new(view.normal);
-        let ([choice, _], xi) = (xi(), xi());
+        let (xi, [choice, _]) = (xi(), xi());
         let direction = if choice < single {
             let normal = frame.world(self.ggx.sample_visible(frame.local(view.direction), xi)).normalize();
             match lobe {

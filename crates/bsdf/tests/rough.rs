@@ -19,7 +19,7 @@ fn random(state: &mut u64) -> f64 {
 /// The mean weight of the samples of a lobe.
 fn albedo(bsdf: &impl Bsdf, view: &View, lobe: Lobe, count: usize) -> DVec3 {
     let one = |[a, b, c]: [f64; 3]| {
-        let mut calls = [[a, 0.0], [b, c]].into_iter();
+        let mut calls = [[b, c], [a, 0.0]].into_iter();
         bsdf.sample(view, lobe, || calls.next().expect("two calls")).map_or(DVec3::ZERO, |sample| sample.weight)
     };
     even(count).map(one).sum::<DVec3>() / count as f64

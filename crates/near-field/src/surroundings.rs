@@ -6,6 +6,7 @@ use scene::{
     Hit, NormalKind, Rays, Scene, SurfacePoint,
     light::{Bounce, LightChoice, LightTree, Lit, LitSurface, ReceiverBounds},
     random::Item,
+    sequence::turned,
 };
 
 /// The translucent surfaces of a scene and their light, as samples are lit.
@@ -21,10 +22,6 @@ pub struct Surroundings<'a> {
 /// light. A figure of 0.3 m and the first skin, lit by lamps and sky, then errs by 0.3 times what it does with one, in
 /// 1.5 times the time; with sixteen, by 0.2 times in 2.1 times the time.
 const LIGHTINGS: usize = 8;
-
-/// Steps of the two numbers that choose a direction towards a light, from one lighting to the next: those of a sequence
-/// that fills the square evenly (Roberts 2018).
-const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
 
 /// The numbers by which points are lit once: the first chooses the light, two its direction, and the item lights what
 /// reflects.
@@ -48,8 +45,8 @@ impl<'a> Surroundings<'a> {
     pub(crate) fn lightings(&self, [choice, a, b]: [f64; 3], random: Item) -> impl Iterator<Item = Lighting> + use<> {
         let count = self.lightings;
         (0..count).map(move |k| {
-            let [da, db] = STEPS.map(|step| k as f64 * step);
-            let light = [(choice + k as f64) / count as f64, (a + da).fract(), (b + db).fract()];
+            let [a, b] = turned([a, b], k);
+            let light = [(choice + k as f64) / count as f64, a, b];
             Lighting { light, random: random.part(k as u64) }
         })
     }

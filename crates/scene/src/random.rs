@@ -25,6 +25,8 @@ pub enum Purpose {
     Edge,
     /// Points at which phase two corrects the error that the cut predicts.
     CutCorrection,
+    /// Directions towards lights, and of what is mirrored, at the first surface of a path that has many.
+    FirstSurface,
     /// Pixels by which phase two chooses the accuracy of the cut, and their gathers.
     Balance,
     /// Scrambles of the sequences of phase one.
@@ -69,6 +71,7 @@ impl Purpose {
             Purpose::NearField => u64::MAX - 8,
             Purpose::NearLight => u64::MAX - 9,
             Purpose::NearPoint => u64::MAX - 10,
+            Purpose::FirstSurface => u64::MAX - 12,
             Purpose::Balance => u64::MAX - 11,
             Purpose::Lens => u64::MAX - 20,
             Purpose::HalfSpaceTable => u64::MAX - 3,

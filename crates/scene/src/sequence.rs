@@ -71,6 +71,14 @@ impl Sequence {
     }
 }
 
+/// The point that a point of the square becomes at the step `index` of a sequence that fills the square evenly (Roberts
+/// 2018); the first is the point itself.
+pub fn turned([x, y]: [f64; 2], index: usize) -> [f64; 2] {
+    const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
+    let steps = STEPS.map(|step| index as f64 * step);
+    [(x + steps[0]).fract(), (y + steps[1]).fract()]
+}
+
 /// Another place in the order of a sequence for each place, which random `bits` choose: sequences of which one is taken in
 /// this order are independent of each other, where the same index of two is a point of one curve. Aligned points stay
 /// together, `2^k` for each k (Burley 2020), and are spread as evenly as before.

@@ -114,7 +114,7 @@ mod tests {
     /// Paths of the noise 0.3, and cuts that add twice as much: only the first counts. A fourth of the squared
     /// differences of 20,000 pixels has a standard deviation of 4 %, so that the tolerance is five of them.
     ///
-    /// Seen to catch: the square of one image in place of the product; the error of a pixel in place of that of a path.
+    /// Seen to catch: the square of one image in place of the product; the error of a pixel for that of a path.
     #[test]
     fn what_the_cut_adds_is_not_counted() {
         let stream = Stream::new(3, Purpose::Balance);

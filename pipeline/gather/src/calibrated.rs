@@ -156,8 +156,6 @@ mod tests {
     use super::*;
 
     /// A thirty-second of the walks in a second: all in 32, half in 16, and none where no time is left.
-    ///
-    /// Seen to catch: the walks of the trial for those of the whole; no bound.
     #[test]
     fn walks_fit_into_the_time() {
         assert_eq!([32.0, 100.0, 16.0, 0.0, -1.0].map(|time| walks_in(time, 1.0)), [WALKS, WALKS, WALKS / 2, 0, 0]);

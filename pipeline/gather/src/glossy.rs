@@ -79,8 +79,8 @@ impl Renderer<'_> {
                 diffuse: diffuse * arriving.irradiance,
             }
         };
-        let xi = || [state.uniform(), state.uniform()];
-        let reflected = all_lights_at(&self.lights, self.input.rays, &at, xi, &mut counts.shadow_rays, reflect);
+        let (rays, xi) = (self.input.rays, state.light_numbers());
+        let reflected = all_lights_at(&self.lights, rays, &at, xi, &mut counts.shadow_rays, reflect);
         light.add(state, Layer::Diffuse, reflected.diffuse);
         light.add(state, Layer::Specular, reflected.mirrored);
     }

@@ -40,7 +40,9 @@ impl Meeting<'_> {
     /// there is none.
     pub fn scatter(&self, state: &mut PathState, lobe: Lobe, event: Layer, counts: &mut Counts) -> bool {
         let geometric = self.point.geometric_normal;
-        let mut sample = |view: &View| self.bsdf.sample(view, lobe, || [state.uniform(), state.uniform()]);
+        let mut first = if self.bsdf.is_specular() { None } else { state.mirrored.take() };
+        let mut xi = || first.take().unwrap_or_else(|| [state.uniform(), state.uniform()]);
+        let mut sample = |view: &View| self.bsdf.sample(view, lobe, &mut xi);
         let mut sampled = sample(&self.view);
         let on_wrong_side = |direction: DVec3| match lobe {
             Lobe::Reflection => direction.dot(geometric) <= 0.0,

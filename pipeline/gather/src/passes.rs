@@ -13,7 +13,7 @@ use crate::{
     pixel_numbers::{PixelNumbers, Streams, halves},
     pixel_sum::{PixelSum, Sums},
     reference::{Walks, meets_light},
-    renderer::Renderer,
+    renderer::{Renderer, TranslucentObject},
     state::State,
     watch::{Tile, Watch},
 };
@@ -89,11 +89,13 @@ impl<'a> Passes<'a> {
             near_points: Stream::new(settings.seed, Purpose::NearPoint),
         };
         let stream = |purpose: Purpose| Stream::new(settings.seed, purpose);
+        let many_directions = |object: &Option<_>| object.as_ref().is_none_or(TranslucentObject::is_rough);
         let streams = Streams {
             places: stream(Purpose::Pixel),
             lens: input.camera.lens.map(|_| stream(Purpose::Lens)),
             walks: settings.reference.then_some(renderer.walk_starts),
             near: renderer.surroundings.is_some().then(|| [Purpose::NearField, Purpose::NearLight].map(stream)),
+            surface: renderer.objects.iter().any(many_directions).then(|| stream(Purpose::FirstSurface)),
         };
         let mut passes = Passes {
             renderer,
@@ -220,7 +222,13 @@ impl<'a> Passes<'a> {
                 Filter::Box => DVec2::from_array(numbers.place(path)),
             };
             let (origin, direction) = self.ray(at, offset, numbers.lens(path));
-            let path_index = PathIndex { pixel, path, walks: numbers.walks(path), near: numbers.near(path) };
+            let path_index = PathIndex {
+                pixel,
+                path,
+                walks: numbers.walks(path),
+                near: numbers.near(path),
+                surface: numbers.surface(path),
+            };
             let light = self.renderer.trace(path_index, origin, direction, context);
             sum.add(path, alone, &light);
             if let Some((edge, spread)) = &mut edge {

@@ -33,6 +33,8 @@ impl Renderer<'_> {
             shard_pick: self.pick_shard(index),
             walks: index.walks,
             near: index.near,
+            light: index.surface.map(|numbers| numbers.light),
+            mirrored: index.surface.map(|numbers| numbers.mirrored),
             random: self.paths.item(item),
             dimension: 0,
             key: self.gathers.item(item),
@@ -190,8 +192,8 @@ impl Renderer<'_> {
             return meeting.scatter(state, Lobe::Reflection, Layer::Specular, counts);
         }
         let view = View { normal: point.normal, direction: -state.direction, side };
-        let xi = || [state.uniform(), state.uniform()];
-        let irradiance = all_light_at(&self.lights, self.input.rays, point, xi, &mut counts.shadow_rays);
+        let shadow_rays = &mut counts.shadow_rays;
+        let irradiance = all_light_at(&self.lights, self.input.rays, point, state.light_numbers(), shadow_rays);
         // A diffuse BSDF has one value for all directions, which the irradiance of all lights is multiplied by.
         light.add(state, Layer::Diffuse, bsdf.evaluate(&view, view.normal) * irradiance);
         false

@@ -1,7 +1,7 @@
 //! The state of one camera path, the light that it gathers, and the memory of its thread.
 
 use crate::{counts::Counts, estimator::Scratch};
-use scene::{DVec3, SurfacePoint, random::Item};
+use scene::{DVec3, SurfacePoint, random::Item, sequence::turned};
 use sums::drawn::ShardPick;
 
 /// The index of a path.
@@ -14,6 +14,15 @@ pub struct PathIndex {
     pub walks: Option<WalkStarts>,
     /// The numbers of its points around the first exitant point, if it draws any.
     pub near: Option<near_field::Numbers>,
+    /// The numbers at its first surface with many directions, if there may be one.
+    pub surface: Option<SurfaceNumbers>,
+}
+
+/// Numbers at a surface: those that choose a direction towards a light, and those of a direction that is mirrored.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceNumbers {
+    pub light: [f64; 2],
+    pub mirrored: [f64; 2],
 }
 
 /// The first numbers of the walks of three channels.
@@ -73,6 +82,9 @@ pub struct PathState {
     pub walks: Option<WalkStarts>,
     /// The numbers of the points around the first exitant point, until they are used.
     pub near: Option<near_field::Numbers>,
+    /// The numbers at the first surface with many directions, until they are used.
+    pub light: Option<[f64; 2]>,
+    pub mirrored: Option<[f64; 2]>,
     /// Random numbers of its other points around exitant points.
     pub near_points: Item,
     /// Random numbers of the path, and the dimension of the next one.
@@ -87,6 +99,18 @@ impl PathState {
     pub fn uniform(&mut self) -> f64 {
         self.dimension += 1;
         self.random.uniform(self.dimension - 1)
+    }
+
+    /// The numbers that choose directions towards lights, one pair for each call.
+    pub fn light_numbers(&mut self) -> impl FnMut() -> [f64; 2] + use<'_> {
+        let (first, mut index) = (self.light.take(), 0);
+        move || match first {
+            None => [self.uniform(), self.uniform()],
+            Some(first) => {
+                index += 1;
+                turned(first, index - 1)
+            }
+        }
     }
 
     /// Sends the path on from a surface point. The layer of its light becomes `event` if this is its first event.

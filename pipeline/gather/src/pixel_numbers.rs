@@ -1,6 +1,6 @@
 //! The random numbers of a pixel's paths that are spread evenly over all of them.
 
-use crate::path_state::WalkStarts;
+use crate::path_state::{SurfaceNumbers, WalkStarts};
 use near_field::Numbers;
 use scene::{
     random::Stream,
@@ -18,17 +18,38 @@ pub struct Streams {
     pub walks: Option<Stream>,
     /// The first four numbers of the points around exitant points, and the rest.
     pub near: Option<[Stream; 2]>,
+    pub surface: Option<Stream>,
 }
 
 /// The sequences of a pixel. Even and odd paths are independent: each half is spread by sequences of its own.
 pub struct PixelNumbers {
     places: [Sequence; 2],
-    /// Of each half, with the bits of its order: the place in the pixel and that on the lens must not go together.
-    lens: Option<[(Sequence, u64); 2]>,
+    /// Of each half: the place in the pixel and that on the lens must not go together.
+    lens: Option<[Ordered; 2]>,
+    /// The same of the first surface.
+    surface: Option<[Ordered; 2]>,
     /// Of each half, the channels' walks.
     walks: Option<[[Sequence; 3]; 2]>,
     /// The first four numbers of the points around exitant points, and the rest.
     near: Option<[[Sequence; 2]; 2]>,
+}
+
+/// A sequence in an order of its own, which random bits choose.
+struct Ordered {
+    sequence: Sequence,
+    order: u64,
+}
+
+impl Ordered {
+    fn halves(stream: Stream, pixel: u64) -> [Ordered; 2] {
+        let [even, odd] = halves(stream, pixel);
+        let order = |half: u64| stream.item(2 * pixel + half).bits(ORDER);
+        [Ordered { sequence: even, order: order(0) }, Ordered { sequence: odd, order: order(1) }]
+    }
+
+    fn point(&self, index: u32) -> [f64; 4] {
+        self.sequence.point(shuffled(index, self.order))
+    }
 }
 
 /// The sequences of the halves of a pixel.
@@ -39,7 +60,7 @@ pub fn halves(stream: Stream, pixel: u64) -> [Sequence; 2] {
 impl PixelNumbers {
     /// The numbers of one pixel, with those of the lens, of walks and of points around exitant points if there are any.
     pub fn new(pixel: u64, streams: Streams) -> PixelNumbers {
-        let Streams { places, lens, walks, near } = streams;
+        let Streams { places, lens, walks, near, surface } = streams;
         let walks_of = |stream: Stream| {
             let of = |half: u64| {
                 [0, 1, 2].map(|channel| Sequence::new(stream.item((2 * pixel + half) * 3 + channel), stream))
@@ -47,12 +68,9 @@ impl PixelNumbers {
             [0, 1].map(of)
         };
         let near_of = |streams: [Stream; 2]| streams.map(|stream| halves(stream, pixel));
-        let order = |stream: Stream, half: u64| stream.item(2 * pixel + half).bits(ORDER);
-        let lens = lens.map(|stream| {
-            let [even, odd] = halves(stream, pixel);
-            [(even, order(stream, 0)), (odd, order(stream, 1))]
-        });
-        PixelNumbers { places: halves(places, pixel), lens, walks: walks.map(walks_of), near: near.map(near_of) }
+        let [lens, surface] = [lens, surface].map(|stream| Some(Ordered::halves(stream?, pixel)));
+        let places = halves(places, pixel);
+        PixelNumbers { places, lens, surface, walks: walks.map(walks_of), near: near.map(near_of) }
     }
 
     /// Where the path crosses the pixel, in pixels from its corner.
@@ -63,9 +81,14 @@ impl PixelNumbers {
 
     /// The numbers of the point where the path crosses the lens.
     pub fn lens(&self, path: u32) -> Option<[f64; 2]> {
-        let (sequence, order) = &self.lens.as_ref()?[path as usize % 2];
-        let [x, y, ..] = sequence.point(shuffled(path / 2, *order));
+        let [x, y, ..] = self.lens.as_ref()?[path as usize % 2].point(path / 2);
         Some([x, y])
+    }
+
+    /// The numbers at the first surface of the path that has many directions.
+    pub fn surface(&self, path: u32) -> Option<SurfaceNumbers> {
+        let [a, b, c, d] = self.surface.as_ref()?[path as usize % 2].point(path / 2);
+        Some(SurfaceNumbers { light: [a, b], mirrored: [c, d] })
     }
 
     /// The first numbers of the walks that the path begins.
@@ -79,5 +102,30 @@ impl PixelNumbers {
         let [[radius, azimuth, l1, l2], [axis, light, ..]] =
             by_stream.each_ref().map(|by_half| by_half[path as usize % 2].point(path / 2));
         Some([radius, azimuth, axis, light, l1, l2])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use scene::random::Purpose;
+
+    /// Of sixteen paths of a half, one chooses a light's direction in each of sixteen squares; so do the next sixteen.
+    ///
+    /// Seen to catch: numbers by the path instead of its place in the half.
+    #[test]
+    fn directions_at_the_first_surface_are_spread_over_paths() {
+        let stream = Stream::new(1, Purpose::FirstSurface);
+        let streams = Streams { places: stream, lens: None, walks: None, near: None, surface: Some(stream) };
+        let numbers = PixelNumbers::new(7, streams);
+        for (half, block) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            let mut squares = [false; 16];
+            for k in 0..16 {
+                let of_path = numbers.surface(32 * block + 2 * k + half).expect("there is a stream");
+                let [x, y] = of_path.light.map(|u| (4.0 * u) as usize);
+                squares[4 * y + x] = true;
+            }
+            assert!(squares.iter().all(|hit| *hit), "half {half}, block {block}: {squares:?}");
+        }
     }
 }

@@ -106,6 +106,11 @@ pub struct TranslucentObject<'a> {
 }
 
 impl TranslucentObject<'_> {
+    /// Whether it mirrors in many directions.
+    pub fn is_rough(&self) -> bool {
+        self.rough.is_some()
+    }
+
     /// What happens to light at a point of its surface.
     pub fn surface(&self, scene: &Scene, hit: &Hit) -> Surface<'_> {
         let Some(rough) = &self.rough else { return Surface::dielectric(self.medium.eta) };

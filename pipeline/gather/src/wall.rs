@@ -17,7 +17,7 @@ impl Renderer<'_> {
         let view = View { normal: point.normal, direction: -state.direction, side };
         let behind = point.facing(-point.geometric_normal);
         let mut of_side = |at: &SurfacePoint| {
-            let xi = || [state.uniform(), state.uniform()];
+            let xi = state.light_numbers();
             // A diffuse BSDF has one value for all directions of a side, which the irradiance of all lights is multiplied by.
             let irradiance = all_light_at(&self.lights, self.input.rays, at, xi, &mut counts.shadow_rays);
             wall.evaluate(&view, at.normal) * irradiance

@@ -1,6 +1,7 @@
 //! The default accuracy of the cut, which the noise of the paths decides in images of 8,192 pixels or more.
 //!
-//! Seen to catch: PLANT
+//! Seen to catch: the accuracy not in proportion to the root of the paths; files that state the accuracy of the settings in place of
+//! the chosen one.
 
 use test_support::{Bench, data};
 
