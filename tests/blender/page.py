@@ -221,8 +221,7 @@ Scattered light by the cosine between the view and the normal, ratios with stand
 ## Noise and time
 
 At one path for each pixel the metal has a noise of {one_mine} % in ours and {one_other} % in Cycles: lights and
-mirrored directions are sampled equally well. Noise falls with the root of the number of paths in ours, whose random
-numbers are independent, and faster in Cycles, which draws them from Sobol' sequences: with {paths} paths of ours and
-{samples} of Cycles it is {many_mine} % and {many_other} %. With the translucent spheres it is the other way round: ours
+mirrored directions are sampled equally well. Both spread directions evenly over the paths of a pixel, ours at the
+first surface alone: with {paths} paths of ours and {samples} of Cycles it is {many_mine} % and {many_other} %. With the translucent spheres it is the other way round: ours
 sums over a cloud what Cycles follows from collision to collision, and has a small part of its noise in a like time.
 """
