@@ -3,10 +3,7 @@
 //! The bumps tilt the normal that cosines are taken with. Light below the surface sees the smooth surface: its samples keep
 //! the smooth normal, and the flux that falls on them is that on the bumps.
 
-use crate::{
-    mesh::{Mesh, SurfacePoint},
-    texture::Texture,
-};
+use crate::texture::Texture;
 use glam::{DVec2, DVec3, Vec3};
 
 /// A picture of normals, in the frame of tangent, bitangent and normal.
@@ -38,6 +35,16 @@ pub(crate) struct Frame {
     /// The bitangent, which points up in the picture, is this times `normal × tangent`: 1, or -1 where the picture is
     /// mirrored.
     pub sign: f32,
+}
+
+/// A place on a mesh.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    pub triangle: u32,
+    pub vertices: [u32; 3],
+    pub material: u16,
+    /// Barycentric weights of the vertices.
+    pub weights: [f64; 3],
 }
 
 /// The bumps at a point, as far as they change how much light falls on it.
@@ -116,29 +123,25 @@ impl NormalMap {
 }
 
 impl Bumps {
-    /// The point with its normal tilted (docs/method.md 19.1), if its material has a normal map that has a frame there.
+    /// The normal of the bumps at a place where the smooth surface has the normal `smooth`, as it is interpolated and not
+    /// normalized (docs/method.md 19.1), and the bumps; none if its material has no normal map, or that has no frame there.
     // Scenes without normal maps do not pay for this code where points are made.
     #[cold]
     #[inline(never)]
-    pub(crate) fn tilted(&self, mesh: &Mesh, point: SurfacePoint, weights: [f64; 3]) -> SurfacePoint {
-        let map = self.maps.get(usize::from(point.material)).and_then(Option::as_ref);
-        let (Some(map), Some(corners)) = (map, self.frames.get(point.triangle as usize)) else { return point };
+    pub(crate) fn tilted(&self, at: Place, smooth: DVec3) -> Option<(DVec3, Bump)> {
+        let map = self.maps.get(usize::from(at.material)).and_then(Option::as_ref)?;
+        let corners = self.frames.get(at.triangle as usize)?;
         let [a, b, c] = corners.map(|corner| corner.tangent.as_dvec3());
-        let tangent = a * weights[0] + b * weights[1] + c * weights[2];
+        let tangent = a * at.weights[0] + b * at.weights[1] + c * at.weights[2];
         if tangent.length_squared() < 1e-12 {
-            return point;
+            return None;
         }
         let of =
             |i: u32| DVec2::from_array(self.coordinates.get(i as usize).copied().unwrap_or_default().map(f64::from));
-        let local = map.at(mesh.interpolated(point.triangle, weights, of));
-        // The interpolated normal is not normalized, as those who make pictures with MikkTSpace have it.
-        let sum = mesh.normal_sum(point.triangle, weights);
-        let smooth = if sum.length_squared() > 1e-12 { sum } else { point.normal };
+        let [a, b, c] = at.vertices.map(of);
+        let local = map.at(a * at.weights[0] + b * at.weights[1] + c * at.weights[2]);
         let bitangent = smooth.cross(tangent) * f64::from(corners[0].sign);
-        let Some(normal) = (local.x * tangent + local.y * bitangent + local.z * smooth).try_normalize() else {
-            return point;
-        };
-        let bump = Bump { stretch: 1.0 / local.z.max(1.0 / MAX_STRETCH), slope: map.slope };
-        SurfacePoint { normal, bump, ..point }
+        let normal = (local.x * tangent + local.y * bitangent + local.z * smooth).try_normalize()?;
+        Some((normal, Bump { stretch: 1.0 / local.z.max(1.0 / MAX_STRETCH), slope: map.slope }))
     }
 }

@@ -1,6 +1,6 @@
 //! Triangles: normals, areas, interpolation.
 
-use crate::bumps::{Bump, Bumps};
+use crate::bumps::{Bump, Bumps, Place};
 use glam::{DVec2, DVec3, DVec4, Vec3};
 use std::ops::{Add, Mul};
 
@@ -103,8 +103,21 @@ impl Mesh {
         let position = a * weights[0] + b * weights[1] + c * weights[2];
         let point = SurfacePoint::smooth(position, normal, geometric_normal, triangle, self.triangles[index].material);
         match (&self.bumps, kind) {
-            (Some(bumps), NormalKind::Shading) => bumps.tilted(self, point, weights),
+            (Some(bumps), NormalKind::Shading) => self.bumpy(bumps, point, weights),
             _ => point,
+        }
+    }
+
+    /// The point with the normal of its bumps, if it has any.
+    #[cold]
+    fn bumpy(&self, bumps: &Bumps, point: SurfacePoint, weights: [f64; 3]) -> SurfacePoint {
+        let Triangle { vertices, material } = self.triangles[point.triangle as usize];
+        // The interpolated normal is not normalized, as those who make pictures with MikkTSpace have it.
+        let sum = self.normal_sum(point.triangle, weights);
+        let smooth = if sum.length_squared() > 1e-12 { sum } else { point.normal };
+        match bumps.tilted(Place { triangle: point.triangle, vertices, material, weights }, smooth) {
+            Some((normal, bump)) => SurfacePoint { normal, bump, ..point },
+            None => point,
         }
     }
 

@@ -1,8 +1,8 @@
 //! Sheets, which have no inside. Panes are of clear glass: a ray goes straight on, or is mirrored, by Fresnel's
 //! equations. Thin walls scatter light to both sides.
 
-use crate::{material::Material, mesh::Mesh, scene::Scene};
-use bsdf::{ThinWall, fresnel};
+use crate::{material::Material, mesh::Mesh};
+use bsdf::fresnel;
 use glam::DVec3;
 
 /// A surface of area `A` that encloses less than this share of `A^(3/2)` is a sheet. A ball encloses 0.094, a cube
@@ -37,32 +37,6 @@ pub(crate) fn find(mesh: &Mesh, materials: &[Material]) -> Vec<Option<Sheet>> {
     }
     let is_solid = |(k, m): (usize, &Material)| m.volume && sheets[k].is_none() && shapes[k].area > 0.0;
     if materials.iter().enumerate().any(is_solid) { sheets } else { vec![None; materials.len()] }
-}
-
-impl Scene {
-    /// Whether the surface of a material has no inside, and is not translucent by default.
-    pub(crate) fn is_sheet(&self, material: u16) -> bool {
-        self.sheets.get(usize::from(material)).is_some_and(Option::is_some)
-    }
-
-    /// Whether the surface of a material is a sheet of clear glass, which rays pass or are mirrored by. It is none where it
-    /// is sampled as translucent.
-    pub fn is_pane(&self, material: u16) -> bool {
-        matches!(self.sheets.get(usize::from(material)), Some(Some(Sheet::Pane(_))))
-    }
-
-    /// Whether it is a thin wall, which scatters light to both sides. It is none where it is sampled as translucent.
-    pub fn is_wall(&self, material: u16) -> bool {
-        self.sheets.get(usize::from(material)) == Some(&Some(Sheet::Wall))
-    }
-
-    /// The thin wall at the point of a triangle with these barycentric weights, if its surface is one.
-    pub fn wall(&self, triangle: u32, weights: [f64; 3]) -> Option<ThinWall> {
-        let material = self.mesh.triangles[triangle as usize].material;
-        let wall = self.materials[usize::from(material)].wall.filter(|_| self.is_wall(material))?;
-        let color = self.color(triangle, weights).truncate();
-        Some(ThinWall { back: wall.base * color + wall.back, through: wall.through })
-    }
 }
 
 /// Sums over the triangles of a surface.

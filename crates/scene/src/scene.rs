@@ -10,6 +10,7 @@ use crate::{
     unhonoured::Unhonoured,
     view::Camera,
 };
+use bsdf::ThinWall;
 use glam::{DVec3, DVec4};
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -115,6 +116,30 @@ impl Scene {
         let texture = material.base_texture.as_ref();
         let texel = texture.map_or(DVec4::ONE, |t| t.at(self.mesh.coordinates(triangle, weights)));
         material.base_color * texel * self.mesh.color(triangle, weights)
+    }
+
+    /// Whether the surface of a material has no inside, and is not translucent by default.
+    pub(crate) fn is_sheet(&self, material: u16) -> bool {
+        self.sheets.get(usize::from(material)).is_some_and(Option::is_some)
+    }
+
+    /// Whether the surface of a material is a sheet of clear glass, which rays pass or are mirrored by. It is none where it
+    /// is sampled as translucent.
+    pub fn is_pane(&self, material: u16) -> bool {
+        matches!(self.sheets.get(usize::from(material)), Some(Some(Sheet::Pane(_))))
+    }
+
+    /// Whether it is a thin wall, which scatters light to both sides. It is none where it is sampled as translucent.
+    pub fn is_wall(&self, material: u16) -> bool {
+        self.sheets.get(usize::from(material)) == Some(&Some(Sheet::Wall))
+    }
+
+    /// The thin wall at the point of a triangle with these barycentric weights, if its surface is one.
+    pub fn wall(&self, triangle: u32, weights: [f64; 3]) -> Option<ThinWall> {
+        let material = self.mesh.triangles[triangle as usize].material;
+        let wall = self.materials[usize::from(material)].wall.filter(|_| self.is_wall(material))?;
+        let color = self.color(triangle, weights).truncate();
+        Some(ThinWall { back: wall.base * color + wall.back, through: wall.through })
     }
 
     /// How an opaque surface mirrors at the point of a triangle with these barycentric weights; none if it is matt.
