@@ -14,6 +14,7 @@ mod import_compressed;
 mod import_faults;
 mod import_files;
 mod import_formats;
+mod import_instancing;
 mod import_lights;
 mod import_poses;
 mod import_quantized;
