@@ -5,6 +5,7 @@
 //! the decisions once in a thousand runs (`test_support::FALSE_ALARM_RATE`). The feature `slow` runs the same
 //! statistics with more samples.
 
+mod blends;
 mod bounce;
 mod calibration;
 mod cut;

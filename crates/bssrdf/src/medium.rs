@@ -128,6 +128,31 @@ impl Medium {
         self.map(|c| 1.0 / c.extinction())
     }
 
+    /// The medium between this one and another of the same index: of the other's coefficients this share, by volume. The
+    /// mean cosine is that of all scattering.
+    pub fn mixed(&self, other: &Medium, share: f64) -> Medium {
+        let mean = |a: f64, b: f64| a * (1.0 - share) + b * share;
+        let channel = |c: usize| {
+            let (a, b) = (self.channels[c], other.channels[c]);
+            let sigma_s = mean(a.sigma_s, b.sigma_s);
+            let along = mean(a.sigma_s * a.asymmetry, b.sigma_s * b.asymmetry);
+            let asymmetry = match share {
+                0.0 => a.asymmetry,
+                1.0 => b.asymmetry,
+                _ if sigma_s > 0.0 => along / sigma_s,
+                _ => 0.0,
+            };
+            Coefficients { sigma_a: mean(a.sigma_a, b.sigma_a), sigma_s, asymmetry }
+        };
+        Medium {
+            name: format!("{} and {}", self.name, other.name),
+            source: format!("{}; {}", self.source, other.source),
+            channels: [0, 1, 2].map(channel),
+            eta: self.eta,
+            interface: self.interface,
+        }
+    }
+
     /// True if no channel scatters: then no light leaves by subsurface scattering.
     pub fn is_clear(&self) -> bool {
         !self.channels.iter().any(Coefficients::scatters)

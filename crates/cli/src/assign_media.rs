@@ -1,9 +1,9 @@
 //! Assigns a medium to each sampled material.
 
-use crate::{Candidate, ReadMediumError, Unclear, quoted, read_medium, scene_medium, the_one, word_for};
+use crate::{Blended, Candidate, ReadMediumError, Unclear, quoted, read_medium, scene_medium, the_one, word_for};
 use bssrdf::Medium;
 use formats::cloud::SampledMaterial;
-use scene::Material;
+use scene::Scene;
 
 /// Why media cannot be assigned.
 #[derive(Debug, thiserror::Error)]
@@ -23,11 +23,11 @@ pub enum AssignError {
 }
 
 /// The medium of each sampled material: that of the arguments `[MATERIAL=]NAME|FILE.json`, or else that of the scene's
-/// `materials`.
+/// file. Of two that the alpha of a texture blends, it is their mean.
 pub fn assign_media(
     arguments: &[String],
     sampled: &[SampledMaterial],
-    materials: &[Material],
+    scene: &Scene,
 ) -> Result<Vec<Medium>, AssignError> {
     let names = material_names(sampled);
     let mut for_all: Option<&str> = None;
@@ -53,7 +53,11 @@ pub fn assign_media(
         if let Some(name) = one.or(for_all) {
             return Ok(read_medium(name)?);
         }
-        let own = materials.get(usize::from(m.index)).map(scene_medium).transpose().map_err(AssignError::Scene)?;
+        if let Some(blended) = Blended::of(scene, m.index).map_err(AssignError::Scene)? {
+            return Ok(blended.mean);
+        }
+        let own =
+            scene.materials.get(usize::from(m.index)).map(scene_medium).transpose().map_err(AssignError::Scene)?;
         own.flatten().ok_or_else(|| missing(m))
     });
     chosen.collect()

@@ -28,6 +28,7 @@
 mod allocator;
 mod asked;
 mod assign_media;
+mod blended;
 mod cloud_files;
 mod common;
 mod count;
@@ -53,6 +54,7 @@ mod values;
 
 pub use asked::Asked;
 pub use assign_media::{AssignError, assign_media};
+pub use blended::Blended;
 pub use cloud_files::CloudFiles;
 pub use common::{Common, print};
 pub use count::{count, count_up, parse_count};
@@ -61,7 +63,7 @@ pub use failure::{Failure, run};
 pub use files::{Files, file_name, is_same_file};
 pub use lit_scene::{LitScene, Media, declare_inputs};
 pub use manual::parse;
-pub use medium::{ReadMediumError, is_file, read_medium, scene_medium};
+pub use medium::{ReadMediumError, blended_media, is_file, read_medium, scene_medium};
 pub use memory::{Need, available_memory_bytes, peak_memory_bytes, require_memory};
 pub use named::{Candidate, Unclear, the_one, word_for};
 pub use progress::Progress;

@@ -1,6 +1,6 @@
 //! A scene with its clouds and media: what every stage after sampling starts from.
 
-use crate::{CloudFiles, Common, Failure, Files, SceneSettings, assign_media, is_file};
+use crate::{AssignError, Blended, CloudFiles, Common, Failure, Files, SceneSettings, assign_media, is_file};
 use bssrdf::Medium;
 use formats::cloud::{Cloud, shards};
 use scene::{Framing, MeshDefects, Rays, Scene};
@@ -47,7 +47,7 @@ impl LitScene {
         let is_sampled = |material| sampled.iter().any(|m| m.index == material);
         settings.check_mesh(&mut scene, is_sampled, defects, &about_scene)?;
         let media = match media {
-            Media::Named(arguments) => assign_media(arguments, sampled, &scene.materials)?,
+            Media::Named(arguments) => assign_media(arguments, sampled, &scene)?,
             Media::Known(media) => media,
         };
         Ok(LitScene { cloud_files, scene, media, defects })
@@ -72,6 +72,25 @@ impl LitScene {
             let path = path.unwrap_or_default();
             common.warn(format_args!("{path}: {walks} takes the rough surface of {names} as smooth; docs/guide.md"));
         }
+    }
+
+    /// Warns of surfaces of two media, of which `walks` take the mean.
+    pub fn warn_of_blends(&self, walks: &str, common: &Common) -> Result<(), Failure> {
+        for (material, medium) in shards::materials(self.clouds()).iter().zip(&self.media) {
+            if self.blend(material.index, medium)?.is_some() {
+                let path = self.scene.files.first().map(|p| p.display().to_string()).unwrap_or_default();
+                let name = &material.name;
+                common.warn(format_args!("{path}: material `{name}`: {walks} takes the mean of its two media"));
+            }
+        }
+        Ok(())
+    }
+
+    /// The two media of a material, if the file states two and `medium`, which it has here, is their mean: another one
+    /// was asked for otherwise.
+    pub fn blend(&self, material: u16, medium: &Medium) -> Result<Option<Blended>, Failure> {
+        let blended = Blended::of(&self.scene, material).map_err(AssignError::Scene)?;
+        Ok(blended.filter(|blended| blended.mean.channels == medium.channels && blended.mean.eta == medium.eta))
     }
 
     fn is_sampled(&self, material: u16) -> bool {

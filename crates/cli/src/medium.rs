@@ -17,8 +17,14 @@ pub enum ReadMediumError {
     Read { path: String, source: std::io::Error },
     #[error("material `{material}` of SCENE (eta is its KHR_materials_ior): {source}; give --medium {}", quoted(&format!("{material}=NAME")))]
     Scene { material: String, source: MediumError },
-    #[error("material `{material}` of SCENE: extras.medium: {source}; or give --medium {material}=NAME")]
-    Stated { material: String, source: MediumError },
+    #[error("material `{material}` of SCENE: extras.{field}: {source}; or give --medium {}", quoted(&format!("{material}=NAME")))]
+    Stated { material: String, field: &'static str, source: MediumError },
+    #[error(
+        "material `{material}` of SCENE: extras.medium_blend: a medium of index {second}, and that of extras.medium has \
+         {first}: they have one surface, so give both one eta, or give --medium {}",
+        quoted(&format!("{material}=NAME"))
+    )]
+    Indices { material: String, first: f64, second: f64 },
 }
 
 /// Whether the name of a medium is a path: it ends in `.json` or contains a slash.
@@ -47,12 +53,7 @@ fn read_text(name: &str) -> io::Result<String> {
 /// precedence; a name there is that of a built-in medium and never a path.
 pub fn scene_medium(material: &Material) -> Result<Option<Medium>, ReadMediumError> {
     if let Some(stated) = &material.stated {
-        let medium = match stated {
-            StatedMedium::Name(name) => built_in(name),
-            StatedMedium::Json(text) => Medium::from_json(&with_name(text, &material.name)),
-        };
-        let fault = |source| ReadMediumError::Stated { material: material.name.clone(), source };
-        return medium.map(Some).map_err(fault);
+        return read_stated(material, stated, "medium").map(Some);
     }
     let Some(volume) = &material.medium else { return Ok(None) };
     let scatter = volume.scatter.as_ref();
@@ -77,6 +78,27 @@ pub fn scene_medium(material: &Material) -> Result<Option<Medium>, ReadMediumErr
     };
     let fault = |source| ReadMediumError::Scene { material: material.name.clone(), source };
     Medium::new(file).map(Some).map_err(fault)
+}
+
+/// The two media that the alpha of a material's texture blends, if its extras state two: the first is where alpha is 1.
+pub fn blended_media(material: &Material) -> Result<Option<[Medium; 2]>, ReadMediumError> {
+    let (Some(first), Some(second)) = (&material.stated, &material.blend) else { return Ok(None) };
+    let [first, second] =
+        [(first, "medium"), (second, "medium_blend")].map(|(m, field)| read_stated(material, m, field));
+    let (first, second) = (first?, second?);
+    if first.eta != second.eta {
+        let (material, first, second) = (material.name.clone(), first.eta, second.eta);
+        return Err(ReadMediumError::Indices { material, first, second });
+    }
+    Ok(Some([first, second]))
+}
+
+fn read_stated(material: &Material, stated: &StatedMedium, field: &'static str) -> Result<Medium, ReadMediumError> {
+    let medium = match stated {
+        StatedMedium::Name(name) => built_in(name),
+        StatedMedium::Json(text) => Medium::from_json(&with_name(text, &material.name)),
+    };
+    medium.map_err(|source| ReadMediumError::Stated { material: material.name.clone(), field, source })
 }
 
 /// The JSON of a medium; one without a name has that of its material.
@@ -122,6 +144,7 @@ mod tests {
                 thin: false,
                 wall: None,
                 stated: Some(stated),
+                blend: None,
                 medium: Some(volume.clone()),
                 double_sided: false,
             };

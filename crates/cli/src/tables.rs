@@ -1,6 +1,6 @@
 //! Lists of what a scene holds, as the programs print them.
 
-use crate::{Candidate, Failure, printable, scene_medium};
+use crate::{Candidate, Failure, blended_media, printable, scene_medium};
 use bssrdf::Medium;
 use scene::{Camera, DVec3, Framing, Placed, Projection, Scene};
 
@@ -142,8 +142,9 @@ pub fn material_table(scene: &Scene) -> Result<String, Failure> {
             let (absorbs, scatters) = (three(m.map(|c| c.sigma_a)), three(m.map(|c| c.sigma_s)));
             format!("{absorbs}, {scatters}, g {}, eta {} ({})", m.channels[0].asymmetry, m.eta, m.name)
         };
-        let medium = match scene_medium(material) {
-            Ok(medium) => medium.map_or_else(|| "-".into(), text),
+        let medium = match blended_media(material).and_then(|two| Ok((two, scene_medium(material)?))) {
+            Ok((Some(two), _)) => two.map(text).join(", blended with "),
+            Ok((None, medium)) => medium.map_or_else(|| "-".into(), text),
             Err(fault) => fault.to_string(),
         };
         let (count, area) = (counts[index].to_string(), format!("{:.4e}", areas[index]));

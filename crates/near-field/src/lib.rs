@@ -42,7 +42,7 @@ pub struct Place {
     pub position: DVec3,
     /// The normal that the model is given, without normal maps.
     pub normal: DVec3,
-    /// The factor of light that crosses the surface there, by its texture.
+    /// The factor of light that enters there, by its texture.
     pub crossing: DVec3,
 }
 
@@ -213,7 +213,7 @@ impl Around<'_> {
         if let Some(tint) = &near.tint {
             let scene = surroundings.scene;
             let own = hits.iter().filter(|hit| scene.mesh.triangles[hit.triangle as usize].material == near.material);
-            found.crossings.extend(own.map(|hit| tint.at(scene, hit.triangle, hit.weights)));
+            found.crossings.extend(own.map(|hit| tint.entering(scene.texture_color(hit.triangle, hit.weights))));
         }
         found.axes.resize(found.points.len() - 1, axis);
     }

@@ -26,6 +26,8 @@ pub struct Material {
     pub wall: Option<Wall>,
     /// The medium that its `extras` state; it takes precedence over that of extensions.
     pub stated: Option<StatedMedium>,
+    /// The medium where the alpha of its texture is 0, by its `extras`; that of the material is where it is 1.
+    pub blend: Option<StatedMedium>,
     /// The medium of that volume, if the file describes it.
     pub medium: Option<Volume>,
     /// Whether it emits to both sides.

@@ -171,12 +171,12 @@ impl Scene {
         }
     }
 
-    /// The base color there without its factor, which tints translucent surfaces.
-    pub fn texture_color(&self, triangle: u32, weights: [f64; 3]) -> DVec3 {
+    /// The base color there without its factor, which tints translucent surfaces, and alpha, which blends their media.
+    pub fn texture_color(&self, triangle: u32, weights: [f64; 3]) -> DVec4 {
         let material = &self.materials[self.mesh.triangles[triangle as usize].material as usize];
         let texture = material.base_texture.as_ref();
         let texel = texture.map_or(DVec4::ONE, |t| t.at(self.mesh.coordinates(triangle, weights)));
-        (texel * self.mesh.color(triangle, weights)).truncate()
+        texel * self.mesh.color(triangle, weights)
     }
 
     /// Radiance that the point of a triangle with these barycentric weights emits, W/(m² sr).

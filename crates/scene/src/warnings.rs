@@ -42,9 +42,11 @@ impl Scene {
             colored[t.material as usize] |= t.vertices.iter().any(|i| self.mesh.vertex_color(*i) != [1.0; 4]);
         }
         for (k, material) in self.materials.iter().enumerate() {
+            // Alpha that blends media is used, whatever the mode.
+            let alpha = Some(material.alpha).filter(|_| material.blend.is_none());
             let unused = [
-                (matches!(material.alpha, Alpha::Cutoff(_)), "alphaMode MASK"),
-                (material.alpha == Alpha::Coverage, "alphaMode BLEND"),
+                (matches!(alpha, Some(Alpha::Cutoff(_))), "alphaMode MASK"),
+                (alpha == Some(Alpha::Coverage), "alphaMode BLEND"),
                 (colored[k] && material.base_texture.is_none(), "vertex colors"),
             ];
             let unused: Vec<&str> = unused.iter().filter(|u| u.0).map(|u| u.1).collect();

@@ -4,16 +4,16 @@
 //! A texture says how much light its places reflect, relative to the medium below. Half of that, as a factor, acts where
 //! light enters and half where it leaves: the square root at each crossing. The samples of a cloud do not know their
 //! texture coordinates; [`Tinted`] finds them on the mesh and keeps tinted copies.
+//!
+//! The alpha of the texture may blend two media: of the light that enters at a place, the share alpha enters the first.
 
-mod mean;
 mod samples;
 
-pub use samples::{Half, Tinted};
+pub use samples::{Blend, Half, Tinted};
 
 use bssrdf::{Medium, Model};
-use glam::DVec3;
-use mean::Mean;
-use scene::{ScatterExtension, Scene};
+use glam::{DVec3, DVec4};
+use scene::{ScatterExtension, Scene, SurfaceColors};
 
 /// The tint of one material.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +22,27 @@ pub struct Tint {
     scale: DVec3,
     /// The largest such ratio: all that enters leaves.
     limit: DVec3,
+    /// The medium whose share of the light this is, if there are two.
+    share: Option<Share>,
+}
+
+/// One of the two media that the alpha of a texture blends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Share {
+    /// The medium where alpha is 1.
+    First,
+    Second,
+}
+
+impl Share {
+    /// The share of a place of this color.
+    pub fn of(self, color: DVec4) -> f64 {
+        let alpha = color.w.clamp(0.0, 1.0);
+        match self {
+            Share::First => alpha,
+            Share::Second => 1.0 - alpha,
+        }
+    }
 }
 
 /// What is said of the tint of a material.
@@ -44,21 +65,33 @@ impl Tint {
         }
         let drafts = [ScatterExtension::Scatter, ScatterExtension::VolumeScatter];
         let is_of_colors = drafts.iter().any(|draft| draft.extension() == medium.name);
-        let mean = Mean::new(scene, material);
+        let surface = SurfaceColors::new(scene, material);
+        let mean = surface.mean.truncate();
         let relative = |mean: f64| if mean > 0.0 { 1.0 / mean } else { 1.0 };
-        let scale = if is_of_colors { DVec3::ONE } else { mean.color.map(relative) };
+        let scale = if is_of_colors { DVec3::ONE } else { mean.map(relative) };
         let limit = DVec3::from_array(model.reflectance(medium)).map(|r| if r > 0.0 { 1.0 / r } else { f64::INFINITY });
-        let limited = mean.share(|color| (color * scale).cmpgt(limit).any());
-        Some((Tint { scale, limit }, TintFacts { mean: mean.color, limited }))
+        let limited = surface.mean_of(|color| f64::from(u8::from((color.truncate() * scale).cmpgt(limit).any())));
+        Some((Tint { scale, limit, share: None }, TintFacts { mean, limited }))
     }
 
-    /// The factor of light that enters or leaves where the texture has this color (docs/method.md 20.1).
-    pub fn crossing(&self, color: DVec3) -> DVec3 {
-        (color * self.scale).min(self.limit).map(f64::sqrt)
+    /// The same for the light of one of two media.
+    pub fn of(self, share: Share) -> Tint {
+        Tint { share: Some(share), ..self }
     }
 
-    /// The same at the point of a triangle with these barycentric weights.
-    pub fn at(&self, scene: &Scene, triangle: u32, weights: [f64; 3]) -> DVec3 {
-        self.crossing(scene.texture_color(triangle, weights))
+    /// The factor of light that leaves where the texture has this color (docs/method.md 20.1).
+    pub fn leaving(&self, color: DVec4) -> DVec3 {
+        (color.truncate() * self.scale).min(self.limit).map(f64::sqrt)
+    }
+
+    /// The factor of light that enters there. Of two media it is one's share.
+    pub fn entering(&self, color: DVec4) -> DVec3 {
+        let factor = self.leaving(color);
+        self.share.map_or(factor, |share| factor * share.of(color))
+    }
+
+    /// The factor of samples whose place is not known.
+    fn lost(&self) -> f64 {
+        if self.share.is_some() { 0.5 } else { 1.0 }
     }
 }

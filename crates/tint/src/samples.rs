@@ -1,6 +1,7 @@
 //! The samples of a cloud, tinted: copies with another flux.
 
-use crate::Tint;
+use crate::{Share, Tint};
+use bssrdf::Medium;
 use formats::cloud::{Cloud, Group, Node, Record, TILE, Tile, first_leaf};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -14,6 +15,18 @@ pub struct Tinted {
     pub shards: Vec<[Half; 2]>,
     /// Samples that lie on no triangle of the material; they have the mean of the texture.
     pub lost: u64,
+    /// The second of two media that the texture blends; the samples above are then those of the first.
+    pub blend: Option<Box<Blend>>,
+}
+
+/// A second medium below a surface.
+pub struct Blend {
+    /// Where alpha is 1, where it is 0, and the one that light crosses from one to the other.
+    pub first: Medium,
+    pub second: Medium,
+    pub between: Medium,
+    /// The samples of the second.
+    pub samples: Tinted,
 }
 
 /// The tinted samples of one half, with the tree over them.
@@ -42,7 +55,21 @@ impl Tinted {
             material.halves.each_ref().map(|group| half(cloud, group, material.index))
         };
         let shards = clouds.iter().map(of_cloud).collect();
-        Tinted { tint, shards, lost }
+        Tinted { tint, shards, lost, blend: None }
+    }
+
+    /// The same where the texture's alpha blends two media.
+    pub fn blended(
+        scene: &Scene,
+        rays: &Rays,
+        clouds: &[Cloud],
+        (slot, tint): (usize, Tint),
+        [first, second]: &[Medium; 2],
+    ) -> Tinted {
+        let own = |share: Share| Tinted::new(scene, rays, clouds, slot, tint.of(share));
+        let (first, second, between) = (first.clone(), second.clone(), first.mixed(second, 0.5));
+        let blend = Blend { first, second, between, samples: own(Share::Second) };
+        Tinted { blend: Some(Box::new(blend)), ..own(Share::First) }
     }
 
     /// The samples, whose light enters a medium of relative index `eta`.
@@ -84,12 +111,15 @@ impl Find<'_> {
             return true;
         }
         let sample = record.sample();
-        let Some(hit) = self.triangle(sample.position.as_dvec3(), sample.normal, material, hits) else { return false };
-        let crossing = self.tint.at(self.scene, hit.triangle, hit.weights).to_array();
-        for (flux, crossing) in record.flux.iter_mut().zip(crossing) {
-            *flux = (f64::from(*flux) * crossing).min(f64::from(f32::MAX)) as f32;
+        let hit = self.triangle(sample.position.as_dvec3(), sample.normal, material, hits);
+        let entering = match &hit {
+            Some(hit) => self.tint.entering(self.scene.texture_color(hit.triangle, hit.weights)),
+            None => DVec3::splat(self.tint.lost()),
+        };
+        for (flux, entering) in record.flux.iter_mut().zip(entering.to_array()) {
+            *flux = (f64::from(*flux) * entering).min(f64::from(f32::MAX)) as f32;
         }
-        true
+        hit.is_some()
     }
 
     /// The triangle of the material that is nearest to a point along its normal.

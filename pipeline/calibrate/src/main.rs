@@ -36,6 +36,7 @@ fn run(mut arguments: Arguments) -> Result<(), Failure> {
         seed: common.seed,
     };
     lit.warn_of_smooth_walks("the calibration", common);
+    lit.warn_of_blends("the calibration", common)?;
     let calibration = seconds.time("walks", || match request.arguments.target_error {
         None => once(&task, common),
         Some(target) => until(target, &task, common),

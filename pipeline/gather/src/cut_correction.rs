@@ -40,11 +40,14 @@ pub fn correct(renderer: &mut Renderer) {
     let stream = Stream::new(renderer.settings.seed, Purpose::CutCorrection);
     let points = points(renderer, stream);
     for (material, points) in points.iter().enumerate() {
-        let mut measured = Vec::new();
-        for round in 0..ROUNDS {
-            measured.extend(measure(renderer, material, points, stream, round));
-            if let Some(object) = &mut renderer.objects[material] {
-                object.summation.correction = fit(&measured);
+        let parts = renderer.objects[material].as_ref().map_or(0, |object| object.parts.len());
+        for part in 0..parts {
+            let mut measured = Vec::new();
+            for round in 0..ROUNDS {
+                measured.extend(measure(renderer, (material, part), points, stream, round));
+                if let Some(object) = &mut renderer.objects[material] {
+                    object.parts[part].summation.correction = fit(&measured);
+                }
             }
         }
     }
@@ -103,17 +106,24 @@ struct Measured {
     excess: f64,
 }
 
-/// Sums at each point of a material; none if it is opaque.
-fn measure(renderer: &Renderer, material: usize, points: &[SurfacePoint], stream: Stream, round: u64) -> Vec<Measured> {
+/// Sums at each point of one part of the light of a material; none if it is opaque.
+fn measure(
+    renderer: &Renderer,
+    (material, part): (usize, usize),
+    points: &[SurfacePoint],
+    stream: Stream,
+    round: u64,
+) -> Vec<Measured> {
     let estimator = renderer.estimator_for(1.0);
     let (Some(object), Some(accuracy)) = (&renderer.objects[material], estimator.accuracy()) else {
         return Vec::new();
     };
-    let summation = &object.summation;
+    let part = &object.parts[part];
+    let summation = &part.summation;
     let at = |(index, point): (usize, &SurfacePoint)| {
         let mut context = ThreadContext::new(renderer.objects.len());
         let item = stream.item(1 + (material * POINTS + index) as u64);
-        let nearby = renderer.nearby_at(object, point, item, &mut context);
+        let nearby = renderer.nearby_at(part, point, item, &mut context);
         let sum = |replicate: u64| {
             let exit = Exit::new(point.position, point.smooth_normal, item.bits(round * REPLICATES + replicate));
             let exit = exit.besides(nearby);

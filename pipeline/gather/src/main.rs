@@ -90,6 +90,7 @@ fn prepare(request: &Request) -> Result<Prepared, Failure> {
     scale::show(request, &inputs, model);
     if request.reference {
         inputs.warn_of_smooth_walks("--reference", &request.common);
+        inputs.warn_of_blends("--reference", &request.common)?;
     }
     inputs::declare_continued(&mut files, request, &jobs)?;
     outputs::declare(&mut files, &request.outputs, &jobs)?;

@@ -3,7 +3,7 @@
 use crate::{
     image::{Input, Settings},
     reference::Walks,
-    renderer::{Rough, TranslucentObject},
+    renderer::{Rough, Scattering, TranslucentObject},
 };
 use bssrdf::{Medium, Partition};
 use calibration::Factors;
@@ -12,28 +12,45 @@ use near_field::NearField;
 use scene::DVec3;
 use std::sync::Arc;
 use sums::{Summation, drawn::DrawnCounts, estimator::Scatterer};
+use tint::Tinted;
 
 /// The translucent objects by the materials of the scene; none for opaque ones.
 pub fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<TranslucentObject<'a>>> {
     let mut objects: Vec<Option<TranslucentObject>> = input.scene.materials.iter().map(|_| None).collect();
     for (slot, (sampled, medium)) in shards::materials(input.clouds).iter().zip(input.media).enumerate() {
         let tinted = input.tints.get(slot).and_then(Option::as_ref);
-        let tint = tinted.map(|tinted| tinted.tint);
-        let near = || Some(NearField::of_clouds(settings.model, medium, input.clouds, slot)?.tinted(tint));
-        let near = settings.near_field.then(near).flatten();
         let rough = Rough::new(&input.scene.materials[sampled.index as usize], medium.eta);
         let entry = rough.as_ref().map(Rough::entry);
-        let near = match &entry {
-            None => near,
-            Some(entry) => near.map(|near| near.behind(entry)),
+        let scattering = |medium: &Medium, tinted: Option<&'a Tinted>| {
+            let tint = tinted.map(|tinted| tinted.tint);
+            let near = || Some(NearField::of_clouds(settings.model, medium, input.clouds, slot)?.tinted(tint));
+            let near = settings.near_field.then(near).flatten();
+            let near = match &entry {
+                None => near,
+                Some(entry) => near.map(|near| near.behind(entry)),
+            };
+            let partition = near.as_ref().map_or(Partition::NONE, NearField::partition);
+            let scatterer = Arc::new(Scatterer::new(settings.model, medium, sampled.area_m2.sqrt()).far(partition));
+            let summation = match tinted {
+                Some(tinted) => Summation::new(scatterer, tinted.samples(medium.eta), DrawnCounts::of(input.clouds)),
+                None => Summation::of_clouds(scatterer, input.clouds, slot),
+            };
+            let summation = match &entry {
+                None => summation,
+                Some(entry) => summation.behind(entry),
+            };
+            Scattering { summation, near, tint }
         };
-        let partition = near.as_ref().map_or(Partition::NONE, NearField::partition);
-        let scatterer = Arc::new(Scatterer::new(settings.model, medium, sampled.area_m2.sqrt()).far(partition));
+        let parts = match tinted.and_then(|tinted| Some((tinted, tinted.blend.as_ref()?))) {
+            None => vec![scattering(medium, tinted)],
+            Some((first, blend)) => {
+                let second = &blend.samples;
+                let parts =
+                    [(&blend.first, first), (&blend.between, second), (&blend.second, second), (&blend.between, first)];
+                parts.map(|(medium, samples)| scattering(medium, Some(samples))).into()
+            }
+        };
         let is_translucent = |material| shards::materials(input.clouds).iter().any(|m| m.index == material);
-        let summation = match tinted {
-            Some(tinted) => Summation::new(scatterer, tinted.samples(medium.eta), DrawnCounts::of(input.clouds)),
-            None => Summation::of_clouds(scatterer, input.clouds, slot),
-        };
         let walks = settings.reference.then(|| Walks::new(input, sampled.index, medium, is_translucent));
         let extinction = || medium.map(|c| c.extinction());
         objects[sampled.index as usize] = Some(TranslucentObject {
@@ -41,13 +58,8 @@ pub fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<Translu
             walks: walks.flatten(),
             factors: input.calibration.map(|c| Factors::new(&c.materials[slot])),
             lobe: settings.model.exit_lobe(medium),
-            summation: match &entry {
-                None => summation,
-                Some(entry) => summation.behind(entry),
-            },
+            parts,
             rough,
-            tint,
-            near,
             color: color_of(medium),
             medium: medium.clone(),
         });

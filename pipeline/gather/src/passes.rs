@@ -67,7 +67,7 @@ impl<'a> Passes<'a> {
     /// Prepares an image; the cut is as accurate as `settings.paths_per_pixel` paths need, or as their noise deserves.
     pub fn new(input: &Input<'a>, settings: &Settings) -> Self {
         let objects = objects(input, settings);
-        let is_near = objects.iter().flatten().any(|object| object.near.is_some());
+        let is_near = objects.iter().flatten().any(|object| object.parts.iter().any(|part| part.near.is_some()));
         let translucent = |material: u16| objects[material as usize].is_some();
         let surroundings = || Surroundings::new(input.scene, input.rays, settings.normals, translucent);
         let surroundings = is_near.then(surroundings);

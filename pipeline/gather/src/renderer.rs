@@ -12,7 +12,7 @@ use near_field::{NearField, Surroundings};
 use scene::{DVec3, Hit, Material, Scene, light::LightTree, random::Stream};
 use std::ops::Range;
 use sums::{Summation, drawn::DrawnCounts};
-use tint::Tint;
+use tint::{Share, Tint};
 
 /// The data of an image, shared by all threads.
 pub struct Renderer<'a> {
@@ -83,6 +83,21 @@ impl Renderer<'_> {
     }
 }
 
+/// Light of some samples that one medium scatters.
+pub struct Scattering<'a> {
+    pub summation: Summation<'a>,
+    /// The near part, if the samples are too far apart for it; the summation then has the far part alone.
+    pub near: Option<NearField>,
+    /// What the texture does to light that enters and leaves; the samples are tinted.
+    pub tint: Option<Tint>,
+}
+
+impl Scattering<'_> {
+    fn is_dark(&self) -> bool {
+        self.near.is_none() && self.summation.is_empty()
+    }
+}
+
 /// A translucent material with its medium and its samples.
 pub struct TranslucentObject<'a> {
     pub medium: Medium,
@@ -94,11 +109,9 @@ pub struct TranslucentObject<'a> {
     pub rough: Option<Rough>,
     /// `a` and `b` of the light that leaves in proportion to `T21 (a + b μ)`, for each channel (docs/method.md 15.8).
     pub lobe: [[f64; 2]; 3],
-    pub summation: Summation<'a>,
-    /// The near part, if the samples are too far apart for it; the summation then has the far part alone.
-    pub near: Option<NearField>,
-    /// What its texture does to light that enters and leaves; its samples are tinted.
-    pub tint: Option<Tint>,
+    /// How light scatters below: one part or, of two media that a texture blends, four. The light of the first medium that
+    /// leaves from it comes first, then that of the second which leaves from the first, and both for the second.
+    pub parts: Vec<Scattering<'a>>,
     /// The factors of its surface, if it is calibrated.
     pub factors: Option<Factors>,
     /// Random walks, if they take the place of the summation.
@@ -121,6 +134,17 @@ impl TranslucentObject<'_> {
         }
     }
 
+    /// The parts of the light that leaves at a point. Of two media it leaves from one, which `number` picks by alpha.
+    pub fn parts_at(&self, scene: &Scene, hit: &Hit, number: impl Fn() -> f64) -> &[Scattering<'_>] {
+        const OF_ONE: usize = 2;
+        if self.parts.len() <= OF_ONE {
+            return &self.parts;
+        }
+        let first = Share::First.of(scene.texture_color(hit.triangle, hit.weights));
+        let (of_first, of_second) = self.parts.split_at(OF_ONE);
+        if first >= 1.0 || first > 0.0 && number() < first { of_first } else { of_second }
+    }
+
     /// The factors `a + b μ` of the channels for a view whose cosine outside is `cosine`.
     pub fn exit_lobe(&self, cosine: f64) -> DVec3 {
         DVec3::from_array(self.lobe.map(|[a, b]| a + b * cosine))
@@ -128,6 +152,6 @@ impl TranslucentObject<'_> {
 
     /// True if no scattered light leaves it.
     pub fn is_dark(&self) -> bool {
-        self.medium.is_clear() || self.walks.is_none() && self.near.is_none() && self.summation.is_empty()
+        self.medium.is_clear() || self.walks.is_none() && self.parts.iter().all(Scattering::is_dark)
     }
 }

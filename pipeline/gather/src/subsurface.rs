@@ -2,7 +2,7 @@
 
 use crate::{
     path_state::{Layer, PathLight, PathState, ThreadContext},
-    renderer::{Renderer, TranslucentObject},
+    renderer::{Renderer, Scattering, TranslucentObject},
 };
 use bsdf::View;
 use calibration::Site;
@@ -16,6 +16,9 @@ const MAX_ERROR: f64 = 0.5;
 /// Dimensions of a path's numbers from which those of its later exitant points are taken, each of so many.
 const LATER: u64 = 1 << 32;
 const NUMBERS: u64 = 8;
+
+/// The dimensions from which on the numbers of a surface of two media are taken.
+const OF_MEDIA: u64 = 1 << 40;
 
 impl TranslucentObject<'_> {
     /// The factor of the light that leaves at a point for the eye's `view`: the exit lobe or, if the object is calibrated, the
@@ -64,29 +67,47 @@ impl Renderer<'_> {
         // The model knows no bumps of normal maps.
         let faces = point.smooth_normal.dot(view.direction) > 0.0;
         let normal = if faces { point.smooth_normal } else { point.geometric_normal };
-        let crossing = object.tint.map_or(DVec3::ONE, |t| t.at(self.input.scene, hit.triangle, hit.weights));
-        let place = Place { surface: *point, position, normal, crossing };
-        let nearby = self.nearby(state, object, &place, context);
+        let factor = object.factor(point, view);
+        let number = || state.near_points.uniform(OF_MEDIA + state.dimension);
+        context.counts.gathers += 1;
+        for (k, part) in object.parts_at(self.input.scene, hit, number).iter().enumerate() {
+            let place = Place { surface: *point, position, normal, crossing: DVec3::ONE };
+            self.gather_part(state, (part, k as u64), (place, hit), factor, light, context);
+        }
+    }
+
+    /// The same of one part of the light, times a factor.
+    fn gather_part(
+        &self,
+        state: &PathState,
+        (part, index): (&Scattering, u64),
+        (mut place, hit): (Place, &Hit),
+        mut factor: DVec3,
+        light: &mut PathLight,
+        context: &mut ThreadContext,
+    ) {
+        if let Some(tint) = part.tint {
+            let color = self.input.scene.texture_color(hit.triangle, hit.weights);
+            place.crossing = tint.entering(color);
+            factor *= tint.leaving(color);
+        }
+        let nearby = self.nearby(state, part, &place, context);
         let besides = 0.5 * (nearby[0] + nearby[1]);
         let exit = |half: usize| {
-            Exit::new(position, normal, state.key.bits(2 * state.dimension + half as u64)).besides(besides)
+            let key = state.key.bits(OF_MEDIA * index + 2 * state.dimension + half as u64);
+            Exit::new(place.position, place.normal, key).besides(besides)
         };
         let estimator = self.estimator_for(state.throughput.max_element());
-        let scratch = &mut context.scratch[point.material as usize];
+        let scratch = &mut context.scratch[place.surface.material as usize];
         let mut leaving = if self.gathers_by_shard() {
-            object.summation.by_shard(estimator, state.half, state.shard_pick, exit, scratch)
+            part.summation.by_shard(estimator, state.half, state.shard_pick, exit, scratch)
         } else {
-            object.summation.whole(estimator, exit, scratch)
+            part.summation.whole(estimator, exit, scratch)
         };
         leaving.radiance += besides;
         leaving.halves.iter_mut().zip(nearby).for_each(|(half, nearby)| *half += nearby);
-        let mut factor = object.factor(point, view);
-        if object.tint.is_some() {
-            factor *= crossing;
-        }
         leaving.radiance *= factor;
         leaving.halves.iter_mut().for_each(|half| *half *= factor);
-        context.counts.gathers += 1;
         context.counts.evaluations += leaving.evaluations;
         context.counts.nodes += leaving.nodes;
         light.add_halves(state, Layer::Subsurface, leaving.radiance, leaving.halves);
@@ -94,46 +115,40 @@ impl Renderer<'_> {
 
     /// The light that enters near an exitant point and is not left to the samples (docs/method.md section 17): one
     /// estimate for each half of the cloud, or the same for both if paths alternate between the halves.
-    fn nearby(
-        &self,
-        state: &PathState,
-        object: &TranslucentObject,
-        at: &Place,
-        context: &mut ThreadContext,
-    ) -> [DVec3; 2] {
+    fn nearby(&self, state: &PathState, part: &Scattering, at: &Place, context: &mut ThreadContext) -> [DVec3; 2] {
         let random =
             |k: usize, half: u64| state.near_points.uniform(LATER + NUMBERS * (2 * state.dimension + half) + k as u64);
         let first = state.near.unwrap_or_else(|| std::array::from_fn(|k| random(k, 0)));
-        let one = self.nearby_once(object, at, &first, state.near_points, context);
+        let one = self.nearby_once(part, at, &first, state.near_points, context);
         if self.gathers_by_shard() {
             return [one; 2];
         }
         let second = std::array::from_fn(|k| random(k, 1));
-        [one, self.nearby_once(object, at, &second, state.key, context)]
+        [one, self.nearby_once(part, at, &second, state.key, context)]
     }
 
     /// The same at a point of the surface, with the random numbers of an item.
     pub(crate) fn nearby_at(
         &self,
-        object: &TranslucentObject,
+        part: &Scattering,
         point: &SurfacePoint,
         item: Item,
         context: &mut ThreadContext,
     ) -> DVec3 {
         let numbers = std::array::from_fn(|k| item.uniform(LATER + k as u64));
         let at = Place { surface: *point, position: point.position, normal: point.smooth_normal, crossing: DVec3::ONE };
-        self.nearby_once(object, &at, &numbers, item, context)
+        self.nearby_once(part, &at, &numbers, item, context)
     }
 
     fn nearby_once(
         &self,
-        object: &TranslucentObject,
+        part: &Scattering,
         at: &Place,
         numbers: &Numbers,
         random: Item,
         context: &mut ThreadContext,
     ) -> DVec3 {
-        let (Some(near), Some(surroundings)) = (&object.near, &self.surroundings) else {
+        let (Some(near), Some(surroundings)) = (&part.near, &self.surroundings) else {
             return DVec3::ZERO;
         };
         near.light(surroundings, at, numbers, random, &mut context.near)

@@ -20,6 +20,7 @@ pub fn make(request: &Request, lit: &LitScene, rays: &Rays, model: Model) -> Res
             tints.push(None);
             continue;
         };
+        let blend = lit.blend(sampled.index, medium)?;
         if request.reference {
             common.warn(format_args!("{path}: material `{name}`: --reference does not show its texture"));
             tints.push(None);
@@ -32,7 +33,10 @@ pub fn make(request: &Request, lit: &LitScene, rays: &Rays, model: Model) -> Res
                  all light leaves there; a medium that absorbs more shows all of the texture"
             ));
         }
-        let tinted = common.in_pool(|| Tinted::new(scene, rays, clouds, slot, tint))?;
+        let tinted = common.in_pool(|| match &blend {
+            None => Tinted::new(scene, rays, clouds, slot, tint),
+            Some(blend) => Tinted::blended(scene, rays, clouds, (slot, tint), &blend.media),
+        })?;
         if tinted.lost > 0 {
             let lost = tinted.lost;
             common

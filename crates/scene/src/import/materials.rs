@@ -60,6 +60,7 @@ pub(super) fn read(context: &Context, warnings: &mut Vec<String>) -> Result<Read
         if is_used {
             match base_texture(m, &mut textures) {
                 Ok(texture) => material.base_texture = texture,
+                Err(e) if material.blend.is_some() => return Err(named(format!("{e}: extras.medium_blend needs it"))),
                 Err(e) => _ = faults.insert(index, named(e)),
             }
             read_emission(&mut material, m, &mut textures).map_err(named)?;
@@ -130,6 +131,7 @@ fn default_named(name: String) -> Material {
         thin: false,
         wall: None,
         stated: None,
+        blend: None,
         medium: None,
         double_sided: false,
     }
@@ -159,6 +161,7 @@ fn material(
     }
     let mut note = |what| warnings.push(format!("material `{name}`: {what}"));
     let stated = extras::medium(m, &mut note);
+    let blend = extras::blend(m, stated.as_ref())?;
     let mut notes = Vec::new();
     let medium = volumes::read(m, context.metres_per_unit, |what| notes.push(what))?;
     let material = Material {
@@ -173,6 +176,7 @@ fn material(
         thin: stated.is_none() && volumes::is_thin(m),
         wall: volumes::wall(m).filter(|_| stated.is_none()),
         stated,
+        blend,
         medium,
         double_sided: m.double_sided,
         ..default_named(name)

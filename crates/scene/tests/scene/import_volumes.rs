@@ -124,6 +124,34 @@ fn extras_state_a_medium() {
     }
 }
 
+/// A second medium in the extras needs the first and a texture that can be read, and is one.
+#[test]
+fn extras_blend_two_media() {
+    let with = |extras: Value, texture: Value| {
+        let mut asset = tetrahedron();
+        asset.set("/materials/0/extras", extras);
+        asset.set("/materials/0/pbrMetallicRoughness", json!({ "baseColorTexture": texture }));
+        asset
+    };
+    let two = json!({ "medium": "skin1", "medium_blend": "marble" });
+    let mut untextured = tetrahedron();
+    untextured.set("/materials/0/extras", two.clone());
+    let cases = [
+        (untextured, "needs a base color texture"),
+        (with(json!({ "medium_blend": "marble" }), json!({ "index": 0 })), "needs a first medium"),
+        (
+            with(json!({ "medium": "skin1", "medium_blend": ["marble", "jade"] }), json!({ "index": 0 })),
+            "two media at most",
+        ),
+        (with(two, json!({ "index": 7 })), "baseColorTexture"),
+    ];
+    for (asset, part) in cases {
+        let message = fault(&asset);
+        assert!(message.contains("`wax`") && message.contains(part), "{message}");
+        assert!(message.contains("extras.medium_blend"), "{message}");
+    }
+}
+
 /// Absorption alone is a medium if light enters.
 #[test]
 fn transmission_lets_light_in() {

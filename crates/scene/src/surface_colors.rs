@@ -1,8 +1,7 @@
-//! The colors of a texture over a surface.
+//! The colors of a texture over a surface, with alpha.
 
-use glam::DVec3;
-use rayon::prelude::*;
-use scene::{Scene, warp};
+use crate::{scene::Scene, warp};
+use glam::DVec4;
 
 /// Points on the surface of a material; each triangle has one at least.
 const POINTS: f64 = 65_536.0;
@@ -11,13 +10,15 @@ const POINTS: f64 = 65_536.0;
 const STEPS: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
 
 /// Colors at points of a surface, with the area that each stands for.
-pub struct Mean {
-    colors: Vec<(DVec3, f64)>,
-    pub color: DVec3,
+pub struct SurfaceColors {
+    colors: Vec<(DVec4, f64)>,
+    /// Their mean.
+    pub mean: DVec4,
 }
 
-impl Mean {
-    pub fn new(scene: &Scene, material: u16) -> Mean {
+impl SurfaceColors {
+    /// Those of a material's surface, without its base color factor.
+    pub fn new(scene: &Scene, material: u16) -> SurfaceColors {
         let mesh = &scene.mesh;
         let own: Vec<u32> =
             (0..mesh.triangles.len() as u32).filter(|k| mesh.triangles[*k as usize].material == material).collect();
@@ -33,16 +34,15 @@ impl Mean {
             };
             (0..count).map(color)
         };
-        let colors: Vec<(DVec3, f64)> = own.par_iter().flat_map_iter(of_triangle).collect();
-        let sum = colors.iter().map(|(color, area)| *color * *area).sum::<DVec3>();
-        Mean { color: if total > 0.0 { sum / total } else { DVec3::ONE }, colors }
+        let colors: Vec<(DVec4, f64)> = own.iter().flat_map(of_triangle).collect();
+        let sum = colors.iter().map(|(color, area)| *color * *area).sum::<DVec4>();
+        SurfaceColors { mean: if total > 0.0 { sum / total } else { DVec4::ONE }, colors }
     }
 
-    /// The share of the surface whose colors are such.
-    pub fn share(&self, is_such: impl Fn(DVec3) -> bool) -> f64 {
-        let (such, all) = self.colors.iter().fold((0.0, 0.0), |(such, all), (color, area)| {
-            (if is_such(*color) { such + area } else { such }, all + area)
-        });
-        if all > 0.0 { such / all } else { 0.0 }
+    /// The mean of a function of the colors; 0 without any.
+    pub fn mean_of(&self, value: impl Fn(DVec4) -> f64) -> f64 {
+        let add = |(sum, all): (f64, f64), (color, area): &(DVec4, f64)| (sum + value(*color) * area, all + area);
+        let (sum, all) = self.colors.iter().fold((0.0, 0.0), add);
+        if all > 0.0 { sum / all } else { 0.0 }
     }
 }
