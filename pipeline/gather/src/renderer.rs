@@ -134,15 +134,14 @@ impl TranslucentObject<'_> {
         }
     }
 
-    /// The parts of the light that leaves at a point. Of two media it leaves from one, which `number` picks by alpha.
-    pub fn parts_at(&self, scene: &Scene, hit: &Hit, number: impl Fn() -> f64) -> &[Scattering<'_>] {
-        const OF_ONE: usize = 2;
-        if self.parts.len() <= OF_ONE {
-            return &self.parts;
+    /// The shares of the parts of its light at a point: of two media, alpha is that of what leaves from the first.
+    pub fn shares(&self, scene: &Scene, hit: &Hit) -> [f64; 4] {
+        if self.parts.len() == 1 {
+            return [1.0, 0.0, 0.0, 0.0];
         }
-        let first = Share::First.of(scene.texture_color(hit.triangle, hit.weights));
-        let (of_first, of_second) = self.parts.split_at(OF_ONE);
-        if first >= 1.0 || first > 0.0 && number() < first { of_first } else { of_second }
+        let color = scene.texture_color(hit.triangle, hit.weights);
+        let [first, second] = [Share::First, Share::Second].map(|share| share.of(color));
+        [first, first, second, second]
     }
 
     /// The factors `a + b μ` of the channels for a view whose cosine outside is `cosine`.

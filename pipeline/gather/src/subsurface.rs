@@ -68,11 +68,11 @@ impl Renderer<'_> {
         let faces = point.smooth_normal.dot(view.direction) > 0.0;
         let normal = if faces { point.smooth_normal } else { point.geometric_normal };
         let factor = object.factor(point, view);
-        let number = || state.near_points.uniform(OF_MEDIA + state.dimension);
+        let shares = object.shares(self.input.scene, hit);
         context.counts.gathers += 1;
-        for (k, part) in object.parts_at(self.input.scene, hit, number).iter().enumerate() {
+        for (k, (part, share)) in object.parts.iter().zip(shares).enumerate().filter(|(_, (_, share))| *share > 0.0) {
             let place = Place { surface: *point, position, normal, crossing: DVec3::ONE };
-            self.gather_part(state, (part, k as u64), (place, hit), factor, light, context);
+            self.gather_part(state, (part, k as u64), (place, hit), factor * share, light, context);
         }
     }
 
@@ -94,7 +94,7 @@ impl Renderer<'_> {
         let nearby = self.nearby(state, part, &place, context);
         let besides = 0.5 * (nearby[0] + nearby[1]);
         let exit = |half: usize| {
-            let key = state.key.bits(OF_MEDIA * index + 2 * state.dimension + half as u64);
+            let key = state.key.bits(OF_MEDIA * (index % 2) + 2 * state.dimension + half as u64);
             Exit::new(place.position, place.normal, key).besides(besides)
         };
         let estimator = self.estimator_for(state.throughput.max_element());
