@@ -178,6 +178,8 @@ fn image(alpha: u8, media: &[Medium; 2], blends: bool) -> Vec<DVec3> {
 
 /// Alpha of 1 and 0 everywhere show each medium alone. A constant alpha p shows p² of the first, (1 − p)² of the second and
 /// 2 p (1 − p) of the medium between; the tolerance is for the noise of the points and the cut at 32 paths of 100 pixels.
+///
+/// Seen to catch: samples of the first medium for light that crosses from the second.
 #[test]
 fn constant_masks_show_the_media_and_what_is_between() {
     let of = |name: &str, sigma_s: f64| {
