@@ -125,6 +125,8 @@ fn extras_state_a_medium() {
 }
 
 /// A second medium in the extras needs the first and a texture that can be read, and is one.
+///
+/// Seen to catch: a blend without a texture.
 #[test]
 fn extras_blend_two_media() {
     let with = |extras: Value, texture: Value| {
