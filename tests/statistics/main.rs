@@ -29,5 +29,6 @@ mod sampling;
 mod shards;
 mod slab;
 mod spread;
+mod stripes;
 mod textures;
 mod walls;

@@ -1,13 +1,13 @@
 //! Textures of translucent surfaces (docs/method.md section 20).
 
-use bssrdf::{Medium, Model, Separation, half_space::exit_moment};
+use crate::stripes::{Stripes, along, medium};
+use bssrdf::{Medium, Model};
 use formats::cloud::Cloud;
 use gather::{
     Input, Settings,
     estimator::{Estimator, Scatterer, Scratch},
 };
 use glam::DVec3;
-use rayon::prelude::*;
 use scene::texture::{Picture, Texture, Wrap};
 use std::{slice::from_ref, sync::Arc};
 use sums::{Summation, drawn::DrawnCounts, samples::Exit};
@@ -123,82 +123,6 @@ fn near_points_are_tinted_as_samples() {
     assert_equal("near points", with, without);
 }
 
-/// The power that leaves a striped half-space in steps along x, over that which enters: by random walks with the albedos of
-/// the stripes. Lengths are mean free paths; both stripes are half a period wide.
-fn striped_walks(albedos: [f64; 2], period: f64, bins: usize) -> Vec<f64> {
-    const TASKS: u64 = 64;
-    const WALKS: u64 = 20_000;
-    let task = |seed: u64| {
-        let (mut random, mut left) = (Random(seed), vec![0.0; bins]);
-        for _ in 0..WALKS {
-            let (mut x, mut z, mut weight) = (period * random.uniform(), 0.0, 1.0);
-            let mut direction = DVec3::Z;
-            loop {
-                let step = -(1.0 - random.uniform()).ln();
-                (x, z) = (x + step * direction.x, z + step * direction.z);
-                if z < 0.0 {
-                    // Back to the surface.
-                    let out = x - direction.x * z / direction.z;
-                    left[((out.rem_euclid(period) / period * bins as f64) as usize).min(bins - 1)] += weight;
-                    break;
-                }
-                weight *= albedos[usize::from(x.rem_euclid(period) >= 0.5 * period)];
-                if weight < 0.1 {
-                    if random.uniform() >= 0.5 {
-                        break;
-                    }
-                    weight *= 2.0;
-                }
-                direction = random.direction();
-            }
-        }
-        left
-    };
-    let tasks: Vec<Vec<f64>> = (1..=TASKS).into_par_iter().map(task).collect();
-    let entered = (TASKS * WALKS) as f64 / bins as f64;
-    (0..bins).map(|k| tasks.iter().map(|left| left[k]).sum::<f64>() / entered).collect()
-}
-
-/// A medium of one mean free path a metre without boundary.
-fn of_albedo(albedo: f64) -> Medium {
-    let (a, s) = (1.0 - albedo, albedo);
-    let text = format!(r#"{{"name":"m","unit":"1/m","sigma_a":[{a},{a},{a}],"sigma_s":[{s},{s},{s}],"eta":1.0}}"#);
-    Medium::from_json(&text).expect("a medium")
-}
-
-/// The same by the model and the factors `√(f_i f_o)` of the stripes.
-fn striped_model(albedo: f64, factors: [f64; 2], period: f64, bins: usize) -> Vec<f64> {
-    let model = Model::HalfSpace.of(&of_albedo(albedo));
-    let leaving = exit_moment(0, 1.0);
-    // The light between two lines: the integral along y, in rings of equal ratio.
-    let along = |x: f64| {
-        let value = |y: f64| {
-            let offset = DVec3::new(x, y, 0.0);
-            let (normal_in, normal_out, refracted) = (DVec3::Z, DVec3::Z, DVec3::NEG_Z);
-            leaving * model.bare(0, &Separation { offset, normal_in, refracted, normal_out })
-        };
-        let (step, first) = (1.1f64, 1e-3);
-        let ring = |k: i32| {
-            let y = first * step.powi(k);
-            2.0 * value(y * step.sqrt()) * y * (step - 1.0)
-        };
-        2.0 * value(0.0) * first + (0..120).map(ring).sum::<f64>()
-    };
-    const FINE: usize = 8;
-    let width = period / (bins * FINE) as f64;
-    let count = (2.0 * period / width) as i64;
-    let kernel: Vec<f64> = (0..=count).map(|k| along((k as f64 + 0.5) * width)).collect();
-    let factor = |x: f64| factors[usize::from(x.rem_euclid(period) >= 0.5 * period)].sqrt();
-    let at = |x: f64| {
-        let pair = |(k, value): (usize, &f64)| {
-            let d = (k as f64 + 0.5) * width;
-            value * width * (factor(x - d) + factor(x + d))
-        };
-        factor(x) * kernel.iter().enumerate().map(pair).sum::<f64>()
-    };
-    (0..bins).map(|k| at((k as f64 + 0.5) / bins as f64 * period)).collect()
-}
-
 /// Stripes whose reflectance is `1 ± contrast` times that of the medium: beyond one mean free path from their edges the
 /// model with a texture is within 10 % of random walks through stripes of the albedos with these reflectances.
 ///
@@ -208,27 +132,21 @@ fn stripes_reflect_as_striped_media() {
     const PERIOD: f64 = 16.0;
     const BINS: usize = 32;
     for (albedo, contrast) in [(0.5, 0.6), (0.8, 0.5), (0.9, 0.3), (0.97, 0.15)] {
-        let own = Model::HalfSpace.reflectance(&of_albedo(albedo))[0];
+        let own = Model::HalfSpace.reflectance(&medium([1.0, albedo]))[0];
         let factors = [1.0 + contrast, 1.0 - contrast];
         let albedos = factors.map(|factor| {
             let (mut low, mut high) = (0.0, 1.0);
             for _ in 0..30 {
                 let middle = 0.5 * (low + high);
-                let reflected = Model::HalfSpace.reflectance(&of_albedo(middle))[0];
+                let reflected = Model::HalfSpace.reflectance(&medium([1.0, middle]))[0];
                 if reflected < factor * own { low = middle } else { high = middle }
             }
             high
         });
-        let (walks, model) = (striped_walks(albedos, PERIOD, BINS), striped_model(albedo, factors, PERIOD, BINS));
-        let mut worst = 0.0f64;
-        for (k, (walks, model)) in walks.iter().zip(&model).enumerate() {
-            let x = (k as f64 + 0.5) / BINS as f64 * PERIOD;
-            let from_edge = (x.rem_euclid(0.5 * PERIOD)).min(0.5 * PERIOD - x.rem_euclid(0.5 * PERIOD));
-            println!("{albedo} {x:.2}: walks {walks:.4}, model {model:.4}, {:+.1} %", 100.0 * (model / walks - 1.0));
-            if from_edge > 1.0 {
-                worst = worst.max((model / walks - 1.0).abs());
-            }
-        }
+        let stripes = Stripes { media: albedos.map(|albedo| [1.0, albedo]), period: PERIOD, bins: BINS };
+        let bare = along(&medium([1.0, albedo]));
+        let model = stripes.model(|a, b, x| bare(x) * (factors[a] * factors[b]).sqrt());
+        let worst = stripes.worst(&model);
         println!("albedo {albedo}, {albedos:?}: within {:.1} %", 100.0 * worst);
         assert!(worst < 0.1, "albedo {albedo}, contrast {contrast}: {worst}");
     }
