@@ -88,9 +88,6 @@ fn prepare(request: &Request) -> Result<Prepared, Failure> {
     let inputs = inputs::read(request, kept.as_ref(), &mut files)?;
     let mut jobs = image_jobs(request, &inputs, model)?;
     scale::show(request, &inputs, model);
-    if request.reference {
-        inputs.warn_of_smooth_walks("--reference", &request.common);
-    }
     inputs::declare_continued(&mut files, request, &jobs)?;
     outputs::declare(&mut files, &request.outputs, &jobs)?;
     for job in &mut jobs {

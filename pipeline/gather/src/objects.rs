@@ -3,7 +3,7 @@
 use crate::{
     image::{Input, Settings},
     reference::Walks,
-    renderer::{Rough, TranslucentObject},
+    renderer::TranslucentObject,
 };
 use bssrdf::{Medium, Partition};
 use calibration::Factors;
@@ -12,6 +12,7 @@ use near_field::NearField;
 use scene::DVec3;
 use std::sync::Arc;
 use sums::{Summation, drawn::DrawnCounts, estimator::Scatterer};
+use walks::Roughness;
 
 /// The translucent objects by the materials of the scene; none for opaque ones.
 pub fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<TranslucentObject<'a>>> {
@@ -21,8 +22,8 @@ pub fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<Translu
         let tint = tinted.map(|tinted| tinted.tint);
         let near = || Some(NearField::of_clouds(settings.model, medium, input.clouds, slot)?.tinted(tint));
         let near = settings.near_field.then(near).flatten();
-        let rough = Rough::new(&input.scene.materials[sampled.index as usize], medium.eta);
-        let entry = rough.as_ref().map(Rough::entry);
+        let rough = Roughness::new(&input.scene.materials[sampled.index as usize], medium.eta);
+        let entry = rough.as_ref().map(|rough| settings.model.rough_entry(medium, &rough.interface()));
         let near = match &entry {
             None => near,
             Some(entry) => near.map(|near| near.behind(entry)),
@@ -34,13 +35,17 @@ pub fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<Translu
             Some(tinted) => Summation::new(scatterer, tinted.samples(medium.eta), DrawnCounts::of(input.clouds)),
             None => Summation::of_clouds(scatterer, input.clouds, slot),
         };
-        let walks = settings.reference.then(|| Walks::new(input, sampled.index, medium, is_translucent));
+        let walks =
+            settings.reference.then(|| Walks::new(input, sampled.index, medium, rough.is_some(), is_translucent));
         let extinction = || medium.map(|c| c.extinction());
         objects[sampled.index as usize] = Some(TranslucentObject {
             unscattered: if settings.reference { extinction() } else { settings.model.unscattered_extinction(medium) },
             walks: walks.flatten(),
             factors: input.calibration.map(|c| Factors::new(&c.materials[slot])),
-            lobe: settings.model.exit_lobe(medium),
+            lobe: match &rough {
+                None => settings.model.exit_lobe(medium),
+                Some(rough) => settings.model.rough_exit_lobe(medium, &rough.interface()),
+            },
             summation: match &entry {
                 None => summation,
                 Some(entry) => summation.behind(entry),
