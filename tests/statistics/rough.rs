@@ -8,6 +8,7 @@ use gather::{
     samples::Exit,
 };
 use glam::DVec3;
+use rayon::prelude::*;
 use sample_surface::Choice;
 use scene::{
     Camera, GlossStated,
@@ -152,14 +153,14 @@ fn walked(boundary: &RoughBoundary, towards: DVec3, sun: DVec3, walks: u64) -> E
         observed_walk(&half_space, &matter, &rough, &start, &mut random, &mut sunlight);
         sunlight.light
     };
-    let below = Estimate::of(&(0..walks).map(walk).collect::<Vec<_>>());
+    let below = Estimate::of(&(0..walks).into_par_iter().map(walk).collect::<Vec<_>>());
     below.scaled(surface.transmittance(&view))
 }
 
 /// The half-space model behind a rough boundary against random walks behind that boundary, within four standard errors
-/// and 5 %: the exit lobe is the same for light from any direction.
+/// and 5 %, or 2 % where the sun is low: the exit lobe is the same for light from any direction.
 ///
-/// Seen to catch: Fresnel's transmittance where light enters, light without its gain, the exit lobe of a smooth boundary.
+/// Seen to catch: Fresnel's transmittance where light enters, light without its gain.
 #[test]
 fn a_rough_half_space_is_nearly_that_of_random_walks() {
     let (boundary, medium) = (RoughBoundary::new(ETA, ROUGHNESS), gray(100.0, 900.0, 0.0, ETA));
@@ -167,7 +168,7 @@ fn a_rough_half_space_is_nearly_that_of_random_walks() {
     let interface = RoughInterface { boundary: &boundary, roughness: ROUGHNESS, eta: ETA };
     let entry = Model::HalfSpace.rough_entry(&medium, &interface);
     let [a, b] = Model::HalfSpace.rough_exit_lobe(&medium, &interface)[0];
-    for degrees in [0.0, 45.0, 75.0] {
+    for (degrees, most) in [(0.0, 0.05), (45.0, 0.05), (75.0, 0.02)] {
         let sun = Light::Directional { towards: direction(degrees), irradiance: DVec3::ONE };
         let world = world(&[Part::translucent(graded_disc(2e-5, 60e-3, 45))], &[sun], DVec3::ZERO);
         let below = |seed: u64| {
@@ -181,11 +182,11 @@ fn a_rough_half_space_is_nearly_that_of_random_walks() {
         for seen in [10.0, 60.0] {
             let towards = -direction(seen).with_z(-direction(seen).z);
             let factor = boundary.transmittance(towards.z, ROUGHNESS) * (a + b * towards.z);
-            let truth = walked(&boundary, towards, direction(degrees), 400_000);
+            let truth = walked(&boundary, towards, direction(degrees), 1_600_000);
             let model = below.mean * factor;
             let error = (below.error * factor).hypot(truth.error);
             let what = format!("sun at {degrees}, seen at {seen}: {model}, walks {truth:?}");
-            assert!((model - truth.mean).abs() < 0.05 * truth.mean + 4.0 * error, "{what}");
+            assert!((model - truth.mean).abs() < most * truth.mean + 4.0 * error, "{what}");
             assert!(error < 0.02 * truth.mean, "{what}");
         }
     }
