@@ -1,10 +1,11 @@
 //! Images by random walks: light that walks meet where they leave. Light that they are connected to is tested in
 //! `crates/walks`.
 
+use bsdf::Stated;
 use bssrdf::{Medium, Model};
 use gather::{Filter, Input, Settings};
 use glam::DVec3;
-use scene::Camera;
+use scene::{Camera, GlossStated};
 use std::{f64::consts::PI, slice::from_ref};
 use test_support::{
     EFFORT,
@@ -44,17 +45,27 @@ fn images(world: &World, medium: &Medium, towards: DVec3, seeds: u64) -> Estimat
     Estimate::of(&(0..seeds).map(image).collect::<Vec<f64>>())
 }
 
+/// The roughness of a translucent material.
+fn rough(roughness: f64) -> Option<GlossStated> {
+    let dielectric = Stated::dielectric(1.5, 1.0, DVec3::ONE);
+    Some(GlossStated { metallic: 0.0, roughness, texture: None, dielectric })
+}
+
 fn ball() -> Part {
     Part::translucent(sphere(1e-2, 3))
 }
 
-/// Without absorption and under a constant environment, everything looks like the environment.
+/// Without absorption and under a constant environment, everything looks like the environment, below a rough boundary too.
 ///
-/// Seen to catch: the factor 1/η² for light that walks meet; walks that count without a collision.
+/// Seen to catch: the factor 1/η² for light that walks meet; walks that count without a collision; the share of met light
+/// left out.
 #[test]
 fn a_furnace() {
-    for (scattering, g, eta) in [(200.0, 0.0, 1.3), (2000.0, 0.5, 1.5)] {
-        let world = world(&[ball()], &[], DVec3::splat(2.0));
+    for (scattering, g, eta, roughness) in
+        [(200.0, 0.0, 1.3, 0.0), (2000.0, 0.5, 1.5, 0.0), (2000.0, 0.0, 1.3, 0.4), (1000.0, 0.0, 1.5, 0.9)]
+    {
+        let mut world = world(&[ball()], &[], DVec3::splat(2.0));
+        world.scene.materials[0].gloss = rough(roughness);
         let estimate = images(&world, &gray(0.0, scattering, g, eta), DVec3::new(1.0, 2.0, 3.0), 8 * EFFORT);
         assert!(estimate.relative_error() < 0.02, "{estimate:?} is too rough to tell");
         println!("{estimate:?}");
@@ -76,9 +87,15 @@ fn shells_that_emit_or_reflect() {
     let emitting = Part { color: DVec3::ZERO, emission: DVec3::ONE, ..Part::opaque(inward()) };
     let seeds = 12 * EFFORT;
     let view = DVec3::new(0.2, 0.3, 1.0);
-    let lit = images(&world(&[ball(), emitting], &[], DVec3::ZERO), &medium, view, seeds);
-    let sky = images(&world(&[ball()], &[], DVec3::ONE), &medium, view, seeds);
-    assert_equal("emitting shell", lit, sky);
+    for roughness in [0.0, 0.6] {
+        let lit = |mut world: World| {
+            world.scene.materials[0].gloss = rough(roughness);
+            images(&world, &medium, view, seeds)
+        };
+        let shell = lit(world(&[ball(), emitting.clone()], &[], DVec3::ZERO));
+        let sky = lit(world(&[ball()], &[], DVec3::ONE));
+        assert_equal(&format!("emitting shell, roughness {roughness}"), shell, sky);
+    }
 
     // A screen behind the object, lit from above, adds what a screen does that emits ρ E/π.
     let screen = |color: f64, emission: f64| Part {

@@ -24,6 +24,11 @@ impl Row {
         self.0[k] + (self.0[k + 1] - self.0[k]) * (x - k as f64)
     }
 
+    /// The largest number of the row.
+    pub fn largest(&self) -> f64 {
+        self.0.iter().copied().fold(0.0, f64::max)
+    }
+
     /// `2 ∫ f(μ) μ dμ`, the mean over directions of diffuse light: exact for what [`Row::at`] returns.
     pub fn mean(&self) -> f64 {
         // With x = √μ it is ∫ 4 x³ f dx, and f is linear in each interval.

@@ -13,6 +13,8 @@ use crate::{
 use glam::DVec3;
 use std::f64::consts::PI;
 
+mod analog;
+
 /// Intervals of roughness in the tables of a surface whose roughness varies.
 const ROUGHNESSES: usize = 16;
 
@@ -23,8 +25,11 @@ struct OneSide {
     reflected: Row,
     /// The share that meets several microfacets.
     lost: Row,
-    /// Its mean over directions of diffuse light.
+    /// The cosine beyond the boundary of what is transmitted once, on the mean.
+    beyond: Row,
+    /// The mean of what is lost over directions of diffuse light, and its mean cosine.
     mean_lost: f64,
+    lost_cosine: f64,
     /// The share of what meets several microfacets that is reflected in the end.
     returned: f64,
 }
@@ -50,6 +55,11 @@ impl RoughBoundary {
         RoughBoundary { eta, sides: (0..=ROUGHNESSES).map(of).collect() }
     }
 
+    /// Relative index, inside over outside.
+    pub fn eta(&self) -> f64 {
+        self.eta
+    }
+
     /// The two entries that a roughness lies between, and the weight of the second.
     fn around(&self, roughness: f64) -> ([usize; 2], f64) {
         if self.sides.len() == 1 {
@@ -71,6 +81,15 @@ impl RoughBoundary {
         self.surface(roughness).transmitted(Side::Outside, cosine)
     }
 
+    /// The mean cosine below the boundary of the light that enters from outside at this cosine.
+    pub fn refracted_cosine(&self, cosine: f64, roughness: f64) -> f64 {
+        let surface = self.surface(roughness);
+        let beyond = surface.between(Side::Outside, |one| one.beyond.at(cosine));
+        let several = surface.between(Side::Outside, |one| one.lost.at(cosine) * (1.0 - one.returned));
+        let several = several / surface.transmitted(Side::Outside, cosine).max(1e-9);
+        lerp(beyond, surface.between(Side::Inside, |one| one.lost_cosine), several.clamp(0.0, 1.0))
+    }
+
     /// What happens at a point of this roughness.
     pub fn surface(&self, roughness: f64) -> RoughDielectric<'_> {
         let alpha = (roughness * roughness).max(SMOOTH_BELOW);
@@ -82,22 +101,22 @@ impl RoughBoundary {
 fn both_sides(eta: f64, roughness: f64) -> [OneSide; 2] {
     let ggx = Ggx::new((roughness * roughness).max(1e-7));
     let of = |ratio: f64| {
-        let [reflected, lost] = Row::of(|cosine| {
+        let [reflected, lost, beyond] = Row::of(|cosine| {
             let view = at_cosine(cosine);
             let seen = 1.0 + ggx.lambda(view.z);
-            let [reflected, transmitted] = mean_over_visible(&ggx, view, |normal| {
+            let [reflected, transmitted, along] = mean_over_visible(&ggx, view, |normal| {
                 let cosine = view.dot(normal);
                 let transmitted = fresnel::transmittance(cosine, ratio);
                 let mirrored = 2.0 * cosine * normal - view;
                 let kept = if mirrored.z > 0.0 { seen / (seen + ggx.lambda(mirrored.z)) } else { 0.0 };
                 let refracted = fresnel::enter(normal, view, ratio).map_or(0.0, |entry| -entry.direction.z);
                 let passed = if refracted > 0.0 { ggx.masking(refracted) } else { 0.0 };
-                [(1.0 - transmitted) * kept, transmitted * passed]
+                [(1.0 - transmitted) * kept, transmitted * passed, transmitted * passed * refracted]
             });
-            [reflected, (1.0 - reflected - transmitted).max(0.0)]
+            [reflected, (1.0 - reflected - transmitted).max(0.0), along / transmitted.max(1e-300)]
         });
         let mean_lost = lost.mean();
-        (reflected, lost, mean_lost)
+        (reflected, lost, mean_lost, beyond)
     };
     let [outer, inner] = [of(eta), of(1.0 / eta)];
     // Both sides pass on the same share of the smaller loss, as much as a smooth boundary of diffuse light: the light
@@ -106,9 +125,11 @@ fn both_sides(eta: f64, roughness: f64) -> [OneSide; 2] {
     let passed = [smooth.mean(), smooth.mean() / (eta * eta)];
     let least = outer.2.min(inner.2);
     let mut passed = passed.into_iter();
-    [outer, inner].map(|(reflected, lost, mean_lost)| {
+    [outer, inner].map(|(reflected, lost, mean_lost, beyond)| {
         let share = passed.next().unwrap_or_default() * least / mean_lost.max(1e-300);
-        OneSide { reflected, lost, mean_lost, returned: 1.0 - share.min(1.0) }
+        let [along] = Row::of(|cosine| [lost.at(cosine) * cosine]);
+        let lost_cosine = along.mean() / mean_lost.max(1e-300);
+        OneSide { reflected, lost, beyond, mean_lost, lost_cosine, returned: 1.0 - share.min(1.0) }
     })
 }
 

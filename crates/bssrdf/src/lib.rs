@@ -35,7 +35,7 @@ mod medium;
 mod medium_file;
 mod model;
 mod partition;
-mod rough_entry;
+mod rough_interface;
 
 pub use accuracy::GOOD;
 pub use albedo::single_scattering_albedo;
@@ -47,5 +47,5 @@ pub use medium::{Coefficients, ETA_MAX, ETA_MIN, Interface, Medium};
 pub use medium_file::{MediumError, MediumFile, Optics, Unit};
 pub use model::{AnyLanes, BetterDipole, DirectionalDipole, HalfSpace, LaneWork, Model, StandardDipole};
 pub use partition::{Far, Partition};
-pub use rough_entry::RoughEntry;
+pub use rough_interface::{RoughEntry, RoughInterface};
 pub use simd;

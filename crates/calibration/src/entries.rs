@@ -1,5 +1,6 @@
 //! Where light enters: the samples of a cloud, each picked in proportion to the light that enters there.
 
+use bssrdf::RoughEntry;
 use formats::cloud::{Cloud, TILE, shards};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -32,10 +33,16 @@ pub struct Entry {
 }
 
 impl<'a> Entries<'a> {
-    /// The samples of the sampled material `slot`, whose light enters a medium of relative index `eta`.
-    pub fn new(clouds: &'a [Cloud], slot: usize, eta: f64) -> Entries<'a> {
-        let halves =
-            |cloud: &'a Cloud| cloud.meta().materials[slot].halves.map(|half| LitSamples::new(cloud, &half, eta));
+    /// The samples of the sampled material `slot`, whose light enters a medium of relative index `eta` behind an interface
+    /// that may be rough.
+    pub fn new(clouds: &'a [Cloud], slot: usize, (eta, rough): (f64, Option<&RoughEntry>)) -> Entries<'a> {
+        let behind = |samples: LitSamples<'a>| match rough {
+            None => samples,
+            Some(rough) => samples.behind(rough),
+        };
+        let halves = |cloud: &'a Cloud| {
+            cloud.meta().materials[slot].halves.map(|half| behind(LitSamples::new(cloud, &half, eta)))
+        };
         let groups: Vec<LitSamples> = clouds.iter().flat_map(halves).collect();
         let of = |(g, group): (usize, &LitSamples)| (0..group.tile_count()).map(move |t| (g as u32, t as u32));
         let tiles: Vec<(u32, u32)> = groups.iter().enumerate().flat_map(|pair| of(pair).collect::<Vec<_>>()).collect();

@@ -30,6 +30,7 @@
 //! assert!((Factors::new(&ball).at(&at, DVec3::Z) - DVec3::splat(0.5)).length() < 1e-6);
 //! ```
 
+mod compared;
 mod entries;
 mod errors;
 mod factors;
@@ -42,22 +43,22 @@ mod tally;
 pub use factors::Factors;
 pub use patches::{Patches, Site};
 
-use bssrdf::{Medium, Model, Partition, half_space::exit_lobe};
+use bssrdf::{Medium, Model, Partition, RoughEntry};
+use compared::Compared;
 use entries::Entries;
-use errors::{Light, channel_errors};
-use factors::{mean_square_turn, shift};
+use errors::Light;
 use fit::Smoothness;
 use formats::{
     calibration::{CalibratedMaterial, Calibration, ChannelErrors, MediumFacts, version},
     cloud::{Cloud, shards},
 };
 use near_field::{NearField, Surroundings};
-use scene::{DVec3, NormalKind, Rays, Scene};
+use scene::{NormalKind, Rays, Scene};
 use std::sync::Arc;
 use sums::{Summation, estimator::Scatterer};
 use surface::{Lit, Surface};
 use tally::Walking;
-use walks::Solid;
+use walks::{Roughness, Solid};
 
 /// What is calibrated, and how.
 #[derive(Clone, Copy)]
@@ -110,9 +111,6 @@ const MIN_SHARE: f64 = 1.0 / 16.0;
 /// Points of each patch at which the model is evaluated.
 const POINTS: usize = 64;
 
-/// The largest share of walks that may leave through holes.
-const HOLES: f64 = 1e-3;
-
 impl Task<'_> {
     /// Units of work of [`calibrate`]: walks and points.
     pub fn work(&self) -> u64 {
@@ -133,16 +131,25 @@ impl Task<'_> {
     }
 
     /// The model's light of the sampled material `slot`.
-    fn lit<'b>(&'b self, slot: usize, surroundings: &'b Surroundings<'b>) -> Lit<'b> {
+    fn lit<'b>(&'b self, slot: usize, rough: Option<&RoughEntry>, surroundings: &'b Surroundings<'b>) -> Lit<'b> {
         let (sampled, medium) = (&shards::materials(self.clouds)[slot], &self.media[slot]);
         let near = NearField::of_clouds(self.model, medium, self.clouds, slot);
+        let near = match rough {
+            None => near,
+            Some(rough) => near.map(|near| near.behind(rough)),
+        };
         let partition = near.as_ref().map_or(Partition::NONE, NearField::partition);
         let scatterer = Arc::new(Scatterer::new(self.model, medium, sampled.area_m2.sqrt()).far(partition));
         let summation = Summation::of_clouds(scatterer, self.clouds, slot);
+        let summation = match rough {
+            None => summation,
+            Some(rough) => summation.behind(rough),
+        };
         Lit { summation, near: near.map(|near| (near, surroundings)) }
     }
 
-    /// Digest of everything that the calibration depends on. The cloud's identity covers the scene.
+    /// Digest of everything that the calibration depends on. The cloud's identity covers the scene, but what samples do not
+    /// depend on.
     fn identity(&self) -> [u8; 32] {
         let mut hasher = blake3::Hasher::new();
         hasher.update(&version().to_le_bytes());
@@ -155,6 +162,7 @@ impl Task<'_> {
             let numbers = medium.channels.iter().flat_map(|c| [c.sigma_a, c.sigma_s, c.asymmetry]);
             numbers.chain([medium.eta]).for_each(|x| _ = hasher.update(&x.to_le_bytes()));
         }
+        self.scene.gloss_digest().iter().for_each(|digest| _ = hasher.update(digest));
         *hasher.finalize().as_bytes()
     }
 }
@@ -192,16 +200,31 @@ fn calibrate_material(
     let areas = surface.cell_areas(mesh, &patches, sampled.index, task.seed);
     let is_translucent = |m: u16| shards::materials(task.clouds).iter().any(|s| s.index == m);
     let solid = Solid::new(mesh, task.rays, sampled.index, is_translucent).ok_or_else(dark)?;
-    let sums = surface.light(&task.lit(slot, surroundings), &solid, task.seed, progress);
-    let entries = Entries::new(task.clouds, slot, medium.eta);
+    let rough = Roughness::new(&task.scene.materials[sampled.index as usize], medium.eta);
+    let interface = rough.as_ref().map(Roughness::interface);
+    let of_model = interface.as_ref().map(|interface| task.model.rough_entry(medium, interface));
+    let of_walks = interface.as_ref().map(RoughEntry::new);
+    let sums = surface.light(&task.lit(slot, of_model.as_ref(), surroundings), &solid, task.seed, progress);
+    let entries = Entries::new(task.clouds, slot, (medium.eta, of_walks.as_ref()));
     let light = Light::new(&sums, &cell_of, &areas, medium.eta, entries.white());
-    let walking =
-        Walking { mesh, solid: &solid, entries: &entries, patches: &patches, eta: medium.eta, seed: task.seed, slot };
+    let walking = Walking {
+        scene: task.scene,
+        solid: &solid,
+        entries: &entries,
+        patches: &patches,
+        eta: medium.eta,
+        rough: rough.as_ref(),
+        seed: task.seed,
+        slot,
+    };
     let smoothness = Smoothness::new(&patches, &sites, &cell_of);
     let compared = Compared { medium, patches: &patches, smoothness, light, walking, walks };
     let mut log_factors = vec![[0.0f32; 3]; patches.count()];
     let mut gradients = vec![[[0.0f32; 3]; 3]; patches.count()];
-    let mut lobe = task.model.exit_lobe(medium);
+    let mut lobe = match &interface {
+        None => task.model.exit_lobe(medium),
+        Some(interface) => task.model.rough_exit_lobe(medium, interface),
+    };
     let mut errors = [ChannelErrors::default(); 3];
     for channel in 0..3 {
         let open = |share| CalibrateError::Open { material: sampled.name.clone(), share: 100.0 * share };
@@ -225,54 +248,6 @@ fn calibrate_material(
         errors,
         surface,
     })
-}
-
-/// The model's light on one material, and the walks that it is compared with.
-struct Compared<'a> {
-    medium: &'a Medium,
-    patches: &'a Patches,
-    smoothness: Smoothness,
-    light: Light,
-    walking: Walking<'a>,
-    /// Walks of each channel.
-    walks: u64,
-}
-
-/// What is found for one channel.
-struct Found {
-    /// For each patch, the natural logarithm of the factor, and the gradient of that of the light, 1/m.
-    log_factors: Vec<f64>,
-    slopes: Vec<DVec3>,
-    lobe: [f64; 2],
-    errors: ChannelErrors,
-}
-
-impl Compared<'_> {
-    /// Compares one channel; none if no light leaves in it. The error is the share of the walks that left through holes.
-    fn channel(&self, channel: usize, progress: &(impl Fn(u64) + Sync)) -> Result<Option<Found>, f64> {
-        let Compared { medium, patches, smoothness, light, walking, .. } = self;
-        let tally = walking.tally(channel, &medium.channels[channel], self.walks, progress);
-        let share = tally.holes as f64 / tally.walks.max(1) as f64;
-        if share > HOLES {
-            return Err(share);
-        }
-        let Some(counted) = tally.counted(walking.entries.power(channel), &light.power[channel]) else {
-            return Ok(None);
-        };
-        let counts = counted.at_patches(patches);
-        let fit = smoothness.fit(&counts);
-        let fitted = smoothness.at_patches(&fit.both);
-        let leaving: Vec<f64> = fitted.iter().zip(&counts.model).map(|(f, m)| f + m.ln()).collect();
-        let slopes = patches.gradient(&leaving);
-        let shift = shift(&medium.channels[channel], medium.eta);
-        let turn: Vec<f64> = slopes.iter().map(|slope| mean_square_turn(shift * slope.length())).collect();
-        Ok(Some(Found {
-            lobe: exit_lobe(medium.eta, tally.cosines / tally.sum()),
-            errors: channel_errors(smoothness, patches, light, channel, &counted, &fit, &turn),
-            log_factors: fit.both,
-            slopes,
-        }))
-    }
 }
 
 fn facts(medium: &Medium) -> MediumFacts {

@@ -8,18 +8,21 @@ use crate::{
 use bssrdf::Coefficients;
 use rayon::prelude::*;
 use scene::{
-    Mesh, NormalKind,
+    NormalKind, Scene,
     random::{Purpose, Stream},
 };
-use walks::{End, Matter, Sequence, Solid, walk};
+use std::ops::Range;
+use walks::{Boundary, End, Matter, Roughness, Sequence, Smooth, Solid, observed_walk};
 
 /// What a walk starts from and runs in.
 pub struct Walking<'a> {
-    pub mesh: &'a Mesh,
+    pub scene: &'a Scene,
     pub solid: &'a Solid<'a>,
     pub entries: &'a Entries<'a>,
     pub patches: &'a Patches,
     pub eta: f64,
+    /// The roughness of the surface, if it has any.
+    pub rough: Option<&'a Roughness>,
     pub seed: u64,
     /// Distinguishes the random numbers of materials.
     pub slot: usize,
@@ -128,7 +131,10 @@ impl Walking<'_> {
         let chunk = |chunk: u64| {
             let walks = chunk * CHUNK..((chunk + 1) * CHUNK).min(count);
             let done = walks.end - walks.start;
-            let result = self.chunk(channel, &matter, walks, count);
+            let result = match self.rough {
+                None => self.chunk(channel, (&matter, &Smooth { eta: self.eta }), walks, count),
+                Some(rough) => self.chunk(channel, (&matter, &rough.of_walks(self.scene)), walks, count),
+            };
             progress(done);
             result
         };
@@ -143,7 +149,13 @@ impl Walking<'_> {
 
     /// Makes some of the walks. They start at samples in proportion to the light that enters there, in the spatial order
     /// of the samples, so that their starts are as well spread as the light.
-    fn chunk(&self, channel: usize, matter: &Matter, walks: std::ops::Range<u64>, count: u64) -> Chunk {
+    fn chunk(
+        &self,
+        channel: usize,
+        (matter, boundary): (&Matter, &impl Boundary),
+        walks: Range<u64>,
+        count: u64,
+    ) -> Chunk {
         let stream = Stream::new(self.seed, Purpose::LightWalk);
         let mut chunk = Chunk::default();
         for index in walks {
@@ -153,13 +165,14 @@ impl Walking<'_> {
             let Some(entry) = self.entries.at(channel, share) else {
                 continue;
             };
-            let Some(start) = self.solid.enter(entry.position, entry.normal, entry.towards_light, self.eta) else {
+            let along = [entry.normal, entry.towards_light];
+            let Some(start) = self.solid.enter(boundary, entry.position, along, &mut random) else {
                 chunk.holes += 1;
                 continue;
             };
-            match walk(self.solid, matter, &start, &mut random, |_, _| ()) {
+            match observed_walk(self.solid, matter, boundary, &start, &mut random, &mut ()) {
                 End::Scattered(exit) => {
-                    let point = self.mesh.point(exit.face, [1.0, 0.0, 0.0], NormalKind::Geometric);
+                    let point = self.scene.mesh.point(exit.face, [1.0, 0.0, 0.0], NormalKind::Geometric);
                     let cell = self.patches.cell(&Site { position: exit.position, normal: point.geometric_normal });
                     chunk.left[index as usize % 2].push((cell, exit.weight, exit.cosine));
                 }

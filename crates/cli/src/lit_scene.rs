@@ -62,18 +62,6 @@ impl LitScene {
         Rays::of_scene(&self.scene, |material| self.is_sampled(material))
     }
 
-    /// Warns of rough translucent surfaces, whose boundary `walks` take as smooth.
-    pub fn warn_of_smooth_walks(&self, walks: &str, common: &Common) {
-        let materials = shards::materials(self.clouds()).iter().map(|m| &self.scene.materials[usize::from(m.index)]);
-        let rough = |m: &&scene::Material| m.gloss.as_ref().is_some_and(|gloss| gloss.is_rough());
-        let names: Vec<String> = materials.filter(rough).map(|m| format!("`{}`", m.name)).collect();
-        if !names.is_empty() {
-            let (path, names) = (self.scene.files.first().map(|p| p.display().to_string()), names.join(", "));
-            let path = path.unwrap_or_default();
-            common.warn(format_args!("{path}: {walks} takes the rough surface of {names} as smooth; docs/guide.md"));
-        }
-    }
-
     /// Warns of surfaces of two media, of which `walks` take the mean.
     pub fn warn_of_blends(&self, walks: &str, common: &Common) -> Result<(), Failure> {
         for (material, medium) in shards::materials(self.clouds()).iter().zip(&self.media) {

@@ -103,10 +103,13 @@ impl<'a> Lamp<'a> {
         let entry = fresnel::enter(point.smooth_normal, direction, eta)?;
         let cosine = point.smooth_normal.dot(direction);
         let irradiance = irradiance * point.bump.gain(cosine);
-        let transmittance = match rough {
-            None => entry.transmittance,
-            Some(rough) => f64::from(rough.at(cosine as f32)),
+        let share = match rough {
+            None => DVec3::splat(entry.transmittance),
+            Some(rough) => {
+                let gains = rough.gains(cosine as f32).unwrap_or([1.0; 3]);
+                DVec3::from_array(gains.map(f64::from)) * f64::from(rough.at(cosine as f32))
+            }
         };
-        Some(Arriving { entering: irradiance * transmittance, refracted: entry.direction })
+        Some(Arriving { entering: irradiance * share, refracted: entry.direction })
     }
 }

@@ -149,13 +149,17 @@ impl<'a> LitSamples<'a> {
 
     #[inline(always)]
     fn enter(&self, words: &Words, exit: &Exit) -> (Block, [Lane; 3]) {
-        let entered = self.entry.enter(&integer_directions(&words.normal), &integer_directions(&words.direction));
+        let [normal, direction] = [&words.normal, &words.direction].map(integer_directions);
+        let entered = self.entry.enter(&normal, &direction);
         let (mut offset, mut flux) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
         for c in 0..3 {
             for i in 0..LANES {
                 offset[c][i] = (exit.high[c] - words.position[c][i]) + exit.low[c];
                 flux[c][i] = words.flux[c][i] * entered.transmittance[i];
             }
+        }
+        if let Some(gains) = self.entry.gains(&normal, &direction) {
+            flux.iter_mut().flatten().zip(gains.iter().flatten()).for_each(|(flux, gain)| *flux *= gain);
         }
         (Block { offset, normal_in: entered.normal, refracted: entered.refracted }, flux)
     }

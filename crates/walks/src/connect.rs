@@ -2,6 +2,7 @@
 
 use crate::{
     beams::{Arrival, Beams},
+    boundary::Meeting,
     matter::Matter,
     phase::density,
     random::Sequence,
@@ -49,6 +50,9 @@ impl Observer for Connections<'_> {
             beams.each_at(mesh, collision.position, |arrival| self.connect(&collision, arrival, typical, random));
         }
     }
+
+    #[inline(always)]
+    fn meet(&mut self, _: &Meeting, _: f64, _: &mut Sequence) {}
 }
 
 impl<'a> Connections<'a> {

@@ -1,10 +1,10 @@
-//! Random walks of light below a smooth dielectric boundary: the exact solution that BSSRDFs approximate
+//! Random walks of light below a dielectric boundary, smooth or rough: the exact solution that BSSRDFs approximate
 //! (docs/method.md section 14).
 //!
 //! A [`walk`] needs a [`Domain`], the space that the medium fills: a [`Solid`] is the inside of a mesh, a [`Slab`] a
 //! slab or a half-space. [`Matter`] is one channel of a medium. Walks start below the boundary, are scattered after
-//! Henyey and Greenstein, are reflected inside by Fresnel's equations with the normals of the triangles, and end where
-//! they leave ([`End`]).
+//! Henyey and Greenstein, are reflected inside by a [`Boundary`] with the normals of the triangles, and end where they
+//! leave ([`End`]). It is [`Smooth`], of Fresnel's equations, or [`Rough`].
 //!
 //! What a half-space of isotropic scatterers reflects:
 //!
@@ -29,24 +29,30 @@
 //! ```
 
 mod beams;
+mod boundary;
 mod cells;
 mod clearance;
 mod connect;
 mod domain;
 mod facet;
+mod lamps;
 mod matter;
 mod phase;
 mod random;
 mod reflections;
 mod refraction;
+mod roughness;
 mod solid;
 mod walk;
 
 pub use beams::{Arrival, Beams};
+pub use boundary::{Boundary, Meeting, Passage, Rough, Smooth};
 pub use connect::Connections;
 pub use domain::{Crossing, Domain, Flight, Leg, Slab};
+pub use lamps::{Lamps, Left};
 pub use matter::Matter;
 pub use phase::{density, scatter};
 pub use random::{FIRST, Sequence};
-pub use solid::Solid;
+pub use roughness::Roughness;
+pub use solid::{Solid, entered};
 pub use walk::{Collision, End, Exit, MAX_REFLECTIONS, Observer, Start, observed_walk, walk};

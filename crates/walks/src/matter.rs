@@ -2,7 +2,7 @@
 
 use bssrdf::Coefficients;
 
-/// One channel of a medium behind a smooth boundary, with what walks derive from it; lengths in m.
+/// One channel of a medium, with what walks derive from it; lengths in m.
 #[derive(Clone, Copy, Debug)]
 pub struct Matter {
     /// `σ_t`, 1/m.

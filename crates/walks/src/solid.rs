@@ -1,11 +1,12 @@
 //! The inside of a mesh.
 
 use crate::{
+    boundary::{Boundary, Meeting},
     clearance::Clearance,
     domain::{Crossing, Domain, Flight, Leg},
+    random::Sequence,
     walk::Start,
 };
-use bsdf::fresnel;
 use glam::DVec3;
 use scene::{Mesh, NormalKind, Rays, SurfacePoint};
 
@@ -135,14 +136,20 @@ impl<'a> Solid<'a> {
     /// Where the walk begins of light that arrives at a point of the boundary from `towards_light` and is refracted by
     /// `normal`, which may be interpolated; by the triangle's own where that would lead out of the medium
     /// (docs/method.md 14.1). None if there is no triangle, or it faces away from the light.
-    pub fn enter(&self, position: DVec3, normal: DVec3, towards_light: DVec3, eta: f64) -> Option<Start> {
-        let triangle = self.triangle_at(position, normal)?;
-        let SurfacePoint { position: corner, geometric_normal, .. } = self.point(triangle, [1.0, 0.0, 0.0]);
-        let refracted = |normal: DVec3| fresnel::enter(normal, towards_light, eta).map(|entry| entry.direction);
-        let below = |direction: &DVec3| direction.dot(geometric_normal) < 0.0;
-        let direction = refracted(normal).filter(below).or_else(|| refracted(geometric_normal))?;
+    pub fn enter(
+        &self,
+        boundary: &impl Boundary,
+        position: DVec3,
+        [normal, towards_light]: [DVec3; 2],
+        random: &mut Sequence,
+    ) -> Option<Start> {
+        let face = self.triangle_at(position, normal)?;
+        let SurfacePoint { position: corner, geometric_normal, .. } = self.point(face, [1.0, 0.0, 0.0]);
         let height = (position - corner).dot(geometric_normal);
-        Some(Start { position: position - geometric_normal * height, direction, face: Some(triangle) })
+        let position = position - geometric_normal * height;
+        let meeting = Meeting { position, face, normal, direction: -towards_light };
+        let direction = entered(boundary, &meeting, geometric_normal, random)?;
+        Some(Start { position, direction, face: Some(face) })
     }
 
     fn point(&self, triangle: u32, weights: [f64; 3]) -> SurfacePoint {
@@ -154,6 +161,19 @@ impl<'a> Solid<'a> {
         let [low, high] = self.bounds;
         position.cmplt(low - self.nudge).any() || position.cmpgt(high + self.nudge).any()
     }
+}
+
+/// The direction of light that enters by the normal of the meeting, or by that of the triangle where this would lead out of
+/// the medium.
+pub fn entered(
+    boundary: &impl Boundary,
+    meeting: &Meeting,
+    geometric_normal: DVec3,
+    random: &mut Sequence,
+) -> Option<DVec3> {
+    let below = |direction: &DVec3| direction.dot(geometric_normal) < 0.0;
+    let first = boundary.enter(meeting, random).filter(below);
+    first.or_else(|| boundary.enter(&Meeting { normal: geometric_normal, ..*meeting }, random))
 }
 
 impl Domain for Solid<'_> {

@@ -1,12 +1,12 @@
 //! One walk.
 
 use crate::{
+    boundary::{Boundary, Meeting, Passage, Smooth},
     domain::{Crossing, Domain, Flight},
     matter::Matter,
     phase::{scatter, scatter_by},
     random::{FIRST, Sequence},
 };
-use bsdf::fresnel;
 use glam::DVec3;
 
 /// Where a walk begins: on the boundary, below it.
@@ -67,7 +67,7 @@ pub struct Collision {
     pub nesting: u32,
 }
 
-/// What watches the collisions of a walk.
+/// What watches a walk.
 pub trait Observer {
     /// Whether it also wants the collisions inside the balls that walks jump through: one for each jump, which stands
     /// for all of them (docs/method.md 14.7).
@@ -75,6 +75,20 @@ pub trait Observer {
 
     /// Sees a collision before the light is scattered.
     fn collide(&mut self, collision: &Collision, random: &mut Sequence);
+
+    /// Sees where a walk of this weight meets the boundary after a collision, before it leaves or is reflected.
+    fn meet(&mut self, meeting: &Meeting, weight: f64, random: &mut Sequence);
+}
+
+/// Nobody watches.
+impl Observer for () {
+    const SEES_JUMPS: bool = false;
+
+    #[inline(always)]
+    fn collide(&mut self, _: &Collision, _: &mut Sequence) {}
+
+    #[inline(always)]
+    fn meet(&mut self, _: &Meeting, _: f64, _: &mut Sequence) {}
 }
 
 /// Calls a function at the collisions outside of jumps.
@@ -87,6 +101,9 @@ impl<F: FnMut(&Collision, &mut Sequence)> Observer for Watch<F> {
     fn collide(&mut self, collision: &Collision, random: &mut Sequence) {
         self.0(collision, random);
     }
+
+    #[inline(always)]
+    fn meet(&mut self, _: &Meeting, _: f64, _: &mut Sequence) {}
 }
 
 /// Reflections without a collision after which a walk counts as trapped. In an object of a thousandth of a mean free
@@ -97,7 +114,7 @@ pub const MAX_REFLECTIONS: u32 = 100_000;
 const LOW_WEIGHT: f64 = 0.1;
 const ROULETTE_WEIGHT: f64 = 0.2;
 
-/// Follows one walk to its end (docs/method.md section 14); `collide` sees every collision outside of jumps, before the
+/// Follows one walk below a smooth boundary to its end (docs/method.md section 14); `collide` sees every collision outside of jumps, before the
 /// light is scattered.
 pub fn walk<D: Domain>(
     domain: &D,
@@ -106,13 +123,14 @@ pub fn walk<D: Domain>(
     random: &mut Sequence,
     collide: impl FnMut(&Collision, &mut Sequence),
 ) -> End {
-    observed_walk(domain, matter, start, random, &mut Watch(collide))
+    observed_walk(domain, matter, &Smooth { eta: matter.eta }, start, random, &mut Watch(collide))
 }
 
-/// Follows one walk to its end while an observer sees its collisions.
-pub fn observed_walk<D: Domain, O: Observer>(
+/// Follows one walk below any boundary to its end while an observer sees it.
+pub fn observed_walk<D: Domain, B: Boundary, O: Observer>(
     domain: &D,
     matter: &Matter,
+    boundary: &B,
     start: &Start,
     random: &mut Sequence,
     observer: &mut O,
@@ -130,17 +148,23 @@ pub fn observed_walk<D: Domain, O: Observer>(
                 Crossing::Hole => return End::Hole,
                 Crossing::Boundary { distance, face, normal } => {
                     let position = flight.position + flight.direction * distance;
-                    let Some(exit) = leave(&flight, position, face, normal, weight, matter.eta, random) else {
-                        flight.position = position;
-                        flight.direction = mirrored(flight.direction, normal);
-                        flight.from = Some(face);
-                        clearance = 0.0;
-                        reflections += 1;
-                        if reflections == MAX_REFLECTIONS {
-                            return End::Trapped;
+                    let meeting = Meeting { position, face, normal, direction: flight.direction };
+                    if scattered {
+                        observer.meet(&meeting, weight, random);
+                    }
+                    let direction = match boundary.pass(&meeting, random) {
+                        Passage::Out(direction) => direction,
+                        Passage::Back(direction) => {
+                            (flight.position, flight.direction, flight.from) = (position, direction, Some(face));
+                            clearance = 0.0;
+                            reflections += 1;
+                            if reflections == MAX_REFLECTIONS {
+                                return End::Trapped;
+                            }
+                            continue;
                         }
-                        continue;
                     };
+                    let exit = Exit { face, position, direction, cosine: direction.dot(normal), weight };
                     return if scattered { End::Scattered(exit) } else { End::Unscattered(exit) };
                 }
             }
@@ -198,31 +222,6 @@ fn survives(weight: &mut f64, random: &mut Sequence) -> bool {
     let survives = random.uniform() * ROULETTE_WEIGHT < *weight;
     *weight = ROULETTE_WEIGHT;
     survives
-}
-
-/// Refraction out of the medium by Fresnel's equations, or none for reflection.
-#[inline(always)]
-fn leave(
-    flight: &Flight,
-    position: DVec3,
-    face: u32,
-    normal: DVec3,
-    weight: f64,
-    eta: f64,
-    random: &mut Sequence,
-) -> Option<Exit> {
-    let cosine = flight.direction.dot(normal);
-    let transmittance = fresnel::transmittance(cosine, 1.0 / eta);
-    if random.uniform() >= transmittance {
-        return None;
-    }
-    let direction = fresnel::enter(-normal, -flight.direction, 1.0 / eta)?.direction;
-    Some(Exit { face, position, direction, cosine: direction.dot(normal), weight })
-}
-
-#[inline(always)]
-fn mirrored(direction: DVec3, normal: DVec3) -> DVec3 {
-    (direction - 2.0 * direction.dot(normal) * normal).normalize()
 }
 
 /// Moves a walk that was just scattered through balls without any surface (docs/method.md 14.4); false if roulette

@@ -12,7 +12,9 @@ use test_support::{
     meshes::{self, Part, World, world},
     transfer::{chandrasekhar, scattered_reflectance},
 };
-use walks::{Collision, Domain, End, Exit, Matter, Observer, Sequence, Slab, Solid, Start, observed_walk, walk};
+use walks::{
+    Collision, Domain, End, Exit, Matter, Meeting, Observer, Sequence, Slab, Smooth, Solid, Start, observed_walk, walk,
+};
 
 /// A mean and its standard error.
 #[derive(Clone, Copy, Debug)]
@@ -128,6 +130,7 @@ fn collisions_and_exits_make_up_the_light() {
         fn collide(&mut self, collision: &Collision, _: &mut Sequence) {
             self.0 += collision.weight;
         }
+        fn meet(&mut self, _: &Meeting, _: f64, _: &mut Sequence) {}
     }
     for (albedo, g) in [(0.82, 0.0), (0.99, 0.0), (0.99, 0.6)] {
         let matter = matter(albedo, g, 1.4);
@@ -135,7 +138,8 @@ fn collisions_and_exits_make_up_the_light() {
         let stream = Stream::new(4, Purpose::LightWalk);
         let light = |k| {
             let (mut sum, mut random) = (Sum(0.0), Sequence::new(stream.item(k)));
-            let end = observed_walk(&Slab { thickness: 20.0 }, &matter, &start, &mut random, &mut sum);
+            let smooth = Smooth { eta: 1.4 };
+            let end = observed_walk(&Slab { thickness: 20.0 }, &matter, &smooth, &start, &mut random, &mut sum);
             let left = if let End::Scattered(exit) | End::Unscattered(exit) = end { exit.weight } else { 0.0 };
             left + sum.0 * (1.0 - matter.albedo) / matter.albedo
         };

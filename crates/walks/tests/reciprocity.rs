@@ -13,7 +13,7 @@ use scene::{
     warp,
 };
 use test_support::meshes::{self, Mesh, Part, World, world};
-use walks::{Beams, Connections, End, Matter, Sequence, Solid, Start, observed_walk, walk};
+use walks::{Beams, Connections, End, Matter, Sequence, Smooth, Solid, Start, observed_walk, walk};
 
 const LIGHT: Purpose = Purpose::LightWalk;
 const CAMERA: Purpose = Purpose::Gather;
@@ -88,7 +88,7 @@ impl Case {
             let start = Start { position: point.position, direction: entry.direction, face: Some(point.triangle) };
             let (solid, beams, matter) = (&solid, &beams[..], &matter);
             let mut light = Connections::new(solid, beams, matter, 0);
-            observed_walk(solid, matter, &start, &mut random, &mut light);
+            observed_walk(solid, matter, &Smooth { eta: matter.eta }, &start, &mut random, &mut light);
             let radiance = entry.transmittance * light.radiance / (matter.eta * matter.eta);
             Some((point.position, radiance * std::f64::consts::PI * area))
         })

@@ -6,7 +6,7 @@ use scene::{
     random::{Purpose, Stream},
 };
 use test_support::meshes::{self, Mesh, Part, World, world};
-use walks::{End, Matter, Sequence, Solid, Start, walk};
+use walks::{End, Matter, Sequence, Smooth, Solid, Start, walk};
 
 fn matter(extinction: f64) -> Matter {
     let coefficients = Coefficients { sigma_a: 0.01 * extinction, sigma_s: 0.99 * extinction, asymmetry: 0.0 };
@@ -112,7 +112,8 @@ fn a_sample_is_found_on_its_triangle() {
                 assert!(normal.dot(point.normal) > 0.0);
             }
             let point = world.scene.mesh.point(k, [0.4, 0.3, 0.3], NormalKind::Geometric);
-            let start = solid.enter(point.position, point.normal, point.normal, 1.3).expect("the light enters");
+            let straight = [point.normal; 2];
+            let start = solid.enter(&Smooth { eta: 1.3 }, point.position, straight, &mut random).expect("it enters");
             assert!(start.face == Some(k) && start.direction.dot(point.normal) < -0.999);
         }
         assert!(solid.triangle_at(DVec3::new(0.0, 0.0, 0.5), DVec3::Z).is_none());

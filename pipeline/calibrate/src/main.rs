@@ -35,7 +35,6 @@ fn run(mut arguments: Arguments) -> Result<(), Failure> {
         walks: request.arguments.walks.unwrap_or(WALKS),
         seed: common.seed,
     };
-    lit.warn_of_smooth_walks("the calibration", common);
     lit.warn_of_blends("the calibration", common)?;
     let calibration = seconds.time("walks", || match request.arguments.target_error {
         None => once(&task, common),

@@ -97,7 +97,6 @@ pub fn make(
         return Ok(None);
     }
     let common = &request.common;
-    lit.warn_of_smooth_walks("the calibration", common);
     lit.warn_of_blends("the calibration", common)?;
     let normals = cli::normal_kind(request.scene.how.normals);
     let (clouds, media, seed) = (lit.clouds(), &lit.media, common.seed);

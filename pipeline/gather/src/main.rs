@@ -89,7 +89,6 @@ fn prepare(request: &Request) -> Result<Prepared, Failure> {
     let mut jobs = image_jobs(request, &inputs, model)?;
     scale::show(request, &inputs, model);
     if request.reference {
-        inputs.warn_of_smooth_walks("--reference", &request.common);
         inputs.warn_of_blends("--reference", &request.common)?;
     }
     inputs::declare_continued(&mut files, request, &jobs)?;

@@ -3,7 +3,7 @@
 use crate::{
     image::{Input, Settings},
     reference::Walks,
-    renderer::{Rough, Scattering, TranslucentObject},
+    renderer::{Scattering, TranslucentObject},
 };
 use bssrdf::{Medium, Partition};
 use calibration::Factors;
@@ -13,16 +13,17 @@ use scene::DVec3;
 use std::sync::Arc;
 use sums::{Summation, drawn::DrawnCounts, estimator::Scatterer};
 use tint::Tinted;
+use walks::Roughness;
 
 /// The translucent objects by the materials of the scene; none for opaque ones.
 pub fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<TranslucentObject<'a>>> {
     let mut objects: Vec<Option<TranslucentObject>> = input.scene.materials.iter().map(|_| None).collect();
     for (slot, (sampled, medium)) in shards::materials(input.clouds).iter().zip(input.media).enumerate() {
         let tinted = input.tints.get(slot).and_then(Option::as_ref);
-        let rough = Rough::new(&input.scene.materials[sampled.index as usize], medium.eta);
-        let entry = rough.as_ref().map(Rough::entry);
+        let rough = Roughness::new(&input.scene.materials[sampled.index as usize], medium.eta);
         let scattering = |medium: &Medium, tinted: Option<&'a Tinted>| {
             let tint = tinted.map(|tinted| tinted.tint);
+            let entry = rough.as_ref().map(|rough| settings.model.rough_entry(medium, &rough.interface()));
             let near = || Some(NearField::of_clouds(settings.model, medium, input.clouds, slot)?.tinted(tint));
             let near = settings.near_field.then(near).flatten();
             let near = match &entry {
@@ -51,13 +52,17 @@ pub fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<Translu
             }
         };
         let is_translucent = |material| shards::materials(input.clouds).iter().any(|m| m.index == material);
-        let walks = settings.reference.then(|| Walks::new(input, sampled.index, medium, is_translucent));
+        let walks =
+            settings.reference.then(|| Walks::new(input, sampled.index, medium, rough.is_some(), is_translucent));
         let extinction = || medium.map(|c| c.extinction());
         objects[sampled.index as usize] = Some(TranslucentObject {
             unscattered: if settings.reference { extinction() } else { settings.model.unscattered_extinction(medium) },
             walks: walks.flatten(),
             factors: input.calibration.map(|c| Factors::new(&c.materials[slot])),
-            lobe: settings.model.exit_lobe(medium),
+            lobe: match &rough {
+                None => settings.model.exit_lobe(medium),
+                Some(rough) => settings.model.rough_exit_lobe(medium, &rough.interface()),
+            },
             parts,
             rough,
             color: color_of(medium),

@@ -10,19 +10,27 @@ pub struct Walks<'a> {
     /// The channels; none for one that does not scatter.
     pub matter: [Option<Matter>; 3],
     pub eta: f64,
+    /// The light of delta distributions; none below a rough boundary, which walks meet it through.
     pub beams: Vec<Beams<'a>>,
 }
 
 impl<'a> Walks<'a> {
     /// The walks below the surface of a material; none if it has no triangle, or its medium does not scatter.
-    pub fn new(input: &Input<'a>, material: u16, medium: &Medium, translucent: impl Fn(u16) -> bool) -> Option<Self> {
-        let matter = [0, 1, 2].map(|c| Matter::new(&medium.channels[c], medium.eta).map(Matter::with_connections));
+    pub fn new(
+        input: &Input<'a>,
+        material: u16,
+        medium: &Medium,
+        is_rough: bool,
+        translucent: impl Fn(u16) -> bool,
+    ) -> Option<Self> {
+        let connected = |matter: Matter| if is_rough { matter } else { matter.with_connections() };
+        let matter = [0, 1, 2].map(|c| Matter::new(&medium.channels[c], medium.eta).map(connected));
         let extinction = matter.iter().flatten().map(|m| m.extinction).fold(f64::INFINITY, f64::min);
         if extinction == f64::INFINITY {
             return None;
         }
         let solid = Solid::new(&input.scene.mesh, input.rays, material, translucent)?;
-        let lights = input.scene.lights();
+        let lights = input.scene.lights().filter(|_| !is_rough);
         let beams = lights.filter_map(|light| Beams::new(&solid, light, medium.eta, extinction)).collect();
         Some(Walks { solid, matter, eta: medium.eta, beams })
     }

@@ -4,15 +4,16 @@ use crate::{
     image::{Input, Settings},
     reference::Walks,
 };
-use bsdf::{RoughBoundary, SMOOTH_BELOW, Surface};
-use bssrdf::{Medium, RoughEntry};
+use bsdf::{SMOOTH_BELOW, Surface};
+use bssrdf::Medium;
 use calibration::Factors;
 use glam::DVec2;
 use near_field::{NearField, Surroundings};
-use scene::{DVec3, Hit, Material, Scene, light::LightTree, random::Stream};
+use scene::{DVec3, Hit, Scene, light::LightTree, random::Stream};
 use std::ops::Range;
 use sums::{Summation, drawn::DrawnCounts};
 use tint::{Share, Tint};
+use walks::Roughness;
 
 /// The data of an image, shared by all threads.
 pub struct Renderer<'a> {
@@ -38,36 +39,6 @@ pub struct Renderer<'a> {
     pub shard_picks: Stream,
     pub walk_starts: Stream,
     pub near_points: Stream,
-}
-
-/// The roughness of a translucent surface.
-pub struct Rough {
-    pub boundary: RoughBoundary,
-    /// 0 to 1; its square is `α`. By this mean light enters, while it leaves and is mirrored by the local one.
-    pub mean: f64,
-    /// Whether a texture varies it.
-    pub varies: bool,
-}
-
-/// Boundaries between nearly equal indices mirror next to nothing, and have no microfacet that would bend light back.
-const EQUAL_INDICES: f64 = 1e-3;
-
-impl Rough {
-    /// That of a material; none if it is smooth.
-    pub fn new(material: &Material, eta: f64) -> Option<Rough> {
-        let gloss = material.gloss.as_ref()?;
-        let (mean, varies) = (gloss.mean_roughness(), gloss.texture.is_some());
-        if mean * mean < SMOOTH_BELOW || (eta - 1.0).abs() < EQUAL_INDICES {
-            return None;
-        }
-        let boundary = if varies { RoughBoundary::of_any_roughness(eta) } else { RoughBoundary::new(eta, mean) };
-        Some(Rough { boundary, mean, varies })
-    }
-
-    /// How light enters.
-    pub fn entry(&self) -> RoughEntry {
-        RoughEntry::new(&self.boundary, self.mean)
-    }
 }
 
 impl Renderer<'_> {
@@ -106,7 +77,7 @@ pub struct TranslucentObject<'a> {
     /// Extinction `σ̃_t` of unscattered light, 1/m (docs/method.md 5.11).
     pub unscattered: [f64; 3],
     /// The roughness of its surface, if it has any.
-    pub rough: Option<Rough>,
+    pub rough: Option<Roughness>,
     /// `a` and `b` of the light that leaves in proportion to `T21 (a + b μ)`, for each channel (docs/method.md 15.8).
     pub lobe: [[f64; 2]; 3],
     /// How light scatters below: one part or, of two media that a texture blends, four. The light of the first medium that
@@ -127,8 +98,7 @@ impl TranslucentObject<'_> {
     /// What happens to light at a point of its surface.
     pub fn surface(&self, scene: &Scene, hit: &Hit) -> Surface<'_> {
         let Some(rough) = &self.rough else { return Surface::dielectric(self.medium.eta) };
-        let local = rough.varies.then(|| scene.roughness(hit.triangle, hit.weights)).flatten();
-        match local.unwrap_or(rough.mean) {
+        match rough.at(scene, hit.triangle, hit.weights) {
             smooth if smooth * smooth < SMOOTH_BELOW => Surface::dielectric(self.medium.eta),
             roughness => Surface::RoughDielectric(rough.boundary.surface(roughness)),
         }

@@ -61,7 +61,7 @@ impl Renderer<'_> {
             return;
         }
         if let Some(walks) = &object.walks {
-            return self.walk(state, walks, point, view.normal, light, context);
+            return self.walk(state, (walks, object.rough.as_ref()), point, view.normal, light, context);
         }
         let position = object.evaluated_at(point, view);
         // The model knows no bumps of normal maps.

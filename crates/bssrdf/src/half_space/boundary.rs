@@ -37,9 +37,14 @@ pub fn exit_moment(k: i32, eta: f64) -> f64 {
 /// `a` and `b` of the exit lobe `T21 (a + b μ)` that carries the power of `T21` alone and has the mean cosine
 /// `mean_cosine` outside (docs/method.md 15.8).
 pub fn exit_lobe(eta: f64, mean_cosine: f64) -> [f64; 2] {
-    let [m0, m1, m2] = [0, 1, 2].map(|k| exit_moment(k, eta));
-    let slope = m0 * (m0 * mean_cosine - m1) / (m0 * m2 - m1 * m1);
-    [1.0 - slope * m1 / m0, slope]
+    let moments = [0, 1, 2].map(|k| exit_moment(k, eta));
+    lobe_of(moments, moments[0], mean_cosine)
+}
+
+/// The same with these moments of `T21`, for this power.
+pub fn lobe_of([m0, m1, m2]: [f64; 3], power: f64, mean_cosine: f64) -> [f64; 2] {
+    let slope = power * (m0 * mean_cosine - m1) / (m0 * m2 - m1 * m1);
+    [power / m0 - slope * m1 / m0, slope]
 }
 
 /// `A = (1 + 3C₂)/(1 − 2C₁)` from the definitions of the moments instead of their fits (docs/method.md 2.7, 15.2).

@@ -7,5 +7,6 @@ pub mod layout;
 pub(crate) mod profile;
 pub(crate) mod table;
 
+pub(crate) use boundary::lobe_of;
 pub use boundary::{critical_cosine, exit_lobe, exit_moment, reflection};
 pub use images::{GRAZING, Images, SOFTNESS2, forwardness, transport};

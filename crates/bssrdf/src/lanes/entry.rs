@@ -10,7 +10,7 @@
 //! ```
 
 use super::block::{LANES, Lane, each};
-use crate::rough_entry::RoughEntry;
+use crate::rough_interface::RoughEntry;
 
 /// Integers, one for each sample.
 type Integers = [i32; LANES];
@@ -53,6 +53,19 @@ impl EntryRefraction {
     /// The same interface with this roughness.
     pub fn behind(&self, rough: &RoughEntry) -> EntryRefraction {
         EntryRefraction { rough: Some(rough.clone()), ..*self }
+    }
+
+    /// What the light of sixteen samples gains in each channel below a rough interface, if it gains anything.
+    pub fn gains(&self, normal: &Directions, direction: &Directions) -> Option<[Lane; 3]> {
+        let rough = self.rough.as_ref()?;
+        let (m, normal2, direction2) = (dot(normal, direction), dot(normal, normal), dot(direction, direction));
+        let mut gains = [[1.0; LANES]; 3];
+        for i in (0..LANES).filter(|i| m[*i] > 0) {
+            let cosine = m[i] as f32 / ((normal2[i] as f32) * (direction2[i] as f32)).sqrt();
+            let of_sample = rough.gains(cosine)?;
+            (0..3).for_each(|c| gains[c][i] = of_sample[c]);
+        }
+        Some(gains)
     }
 
     /// Unit normals, refracted directions and transmittances of sixteen samples; `direction` points towards the light.

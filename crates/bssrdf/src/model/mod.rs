@@ -25,6 +25,7 @@ use crate::{
     lanes::block::{Block, Lane, LaneModel},
     medium::{Coefficients, Medium},
     partition::{Far, Partition},
+    rough_interface::{RoughEntry, RoughInterface},
 };
 
 /// A model of the BSSRDF.
@@ -95,6 +96,23 @@ impl Model {
         match self {
             Model::HalfSpace => half_space::exit_lobe(medium),
             Model::DirectionalDipole | Model::BetterDipole | Model::StandardDipole => [[1.0, 0.0]; 3],
+        }
+    }
+
+    /// The same behind a rough interface.
+    pub fn rough_exit_lobe(self, medium: &Medium, interface: &RoughInterface) -> [[f64; 2]; 3] {
+        let smooth = self.exit_lobe(medium);
+        match self {
+            Model::HalfSpace => [0, 1, 2].map(|c| interface.lobe_below(&medium.channels[c], smooth[c])),
+            Model::DirectionalDipole | Model::BetterDipole | Model::StandardDipole => smooth,
+        }
+    }
+
+    /// How light enters below a rough interface.
+    pub fn rough_entry(self, medium: &Medium, interface: &RoughInterface) -> RoughEntry {
+        match self {
+            Model::HalfSpace => RoughEntry::new(interface).gaining(medium, interface),
+            Model::DirectionalDipole | Model::BetterDipole | Model::StandardDipole => RoughEntry::new(interface),
         }
     }
 
