@@ -135,9 +135,9 @@ def measured(kind, programs, light):
     if kind == "metal":
         few = render_ours(kind, programs, light, 1)[0], render_theirs(kind, programs.folder, 1)
         found.noise_of_one = [pair.noise(found.mask) for pair in few]
-    if kind == "smooth":
+    if kind in ("rough", "smooth"):
         found.exact, _ = render_ours(kind, programs, light, PATHS[kind], "--reference")
-    else:
+    if kind != "smooth":
         found.models = by_quadrature(kind, spheres.pixels(light), *seen(planes, found.points))
     return found
 

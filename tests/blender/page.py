@@ -33,7 +33,7 @@ def pictures(found):
              "noise of a pixel, ours, Cycles", "processor seconds, ours, Cycles"]
     rows = []
     named = [(NAMES[kind], case, None) for kind, case in found.items()]
-    named.append(("smooth translucent, `--reference`", found["smooth"], found["smooth"].exact))
+    named += [(f"{NAMES[kind]}, `--reference`", found[kind], found[kind].exact) for kind in ("rough", "smooth")]
     for name, case, pair in named:
         pair = pair or case.ours
         ratio, error = case.ratio(pair=pair)
@@ -81,13 +81,14 @@ def rings(found):
     rough, smooth = found["rough"], found["smooth"]
     rows = []
     for name, a, b in zip(RINGS, rough.rings(), smooth.rings()):
-        cells = [(smooth, smooth.exact, b), (smooth, smooth.ours, b), (rough, rough.ours, a)]
+        cells = [(case, pair, mask) for case, mask in ((rough, a), (smooth, b)) for pair in (case.exact, case.ours)]
         row = [name]
         for case, pair, mask in cells:
             ratio, error = case.ratio("transmission", pair, mask)
             row.append(f"{three(ratio)} ({largest(error)})")
         rows.append(row)
-    heads = ["where", "smooth, `--reference` / Cycles", "smooth, ours / Cycles", "rough, ours / Cycles"]
+    heads = ["where", "rough, `--reference` / Cycles", "rough, ours / Cycles", "smooth, `--reference` / Cycles",
+             "smooth, ours / Cycles"]
     return table(heads, rows)
 
 
@@ -113,9 +114,9 @@ def clouds(found):
 
 
 def roughened(found):
-    """How much roughness changes scattered light, in percent: ours and Cycles, and the standard error of that."""
+    """How much roughness changes scattered light, in percent: ours, our walks, Cycles, and the standard error of that."""
     lines = []
-    for name in ("ours", "theirs"):
+    for name in ("ours", "exact", "theirs"):
         a, b = (getattr(found[k], name).light(found[k].mask, "transmission") for k in ("rough", "smooth"))
         lines.append(three(100 * (a / b - 1), "{:+.1f}"))
     errors = [found[k].theirs.error(found[k].mask, "transmission") for k in ("rough", "smooth")]
@@ -125,12 +126,12 @@ def roughened(found):
 def write(found, version, paths, folder):
     """Writes the page and its picture; `paths` are those of the metal for each pixel, of ours and of Cycles."""
     picture.write([case for kind, case in found.items() if kind != "smooth"], folder / "cycles.png")
-    mine, other, spread = roughened(found)
+    mine, exact, other, spread = roughened(found)
     dark, bright = by_brightness(found["metal"])
     text = TEXT.format(
         version=version, pictures=pictures(found), layers=layers(found), models=models(found), rings=rings(found),
         background=f"{100 * max(case.background() for case in found.values()):.4f}", mine=mine, other=other,
-        spread=spread, clouds=clouds(found),
+        exact=exact, spread=spread, clouds=clouds(found),
         dark=dark, bright=bright, paths=paths[0], samples=paths[1], **noises(found["metal"]),
     )
     (folder / "cycles.md").write_text(text)
@@ -208,15 +209,12 @@ Scattered light by the cosine between the view and the normal, ratios with stand
 {rings}
 
 * **`--reference` / Cycles.** Two programs that follow random walks without approximation: index, coefficients and
-  light mean the same in both. The three columns share the noise of Cycles in part: the first two have the same
-  pictures of it.
-* **Smooth, ours / Cycles** is the error of the calibrated model ([accuracy](accuracy.md)).
-* **Rough, ours / Cycles** has in addition what ours leaves out of a rough boundary
-  ([guide](../guide.md#what-is-not-modeled)): scattered light starts in the direction in which a *smooth* boundary
-  would refract it, light from inside is reflected as by a smooth boundary, and the calibration is of the smooth
-  shape. Roughness changes the scattered light of the whole sphere by {mine} % in ours and by
-  {other} % in Cycles, with a standard error of {spread} %: what ours leaves out of roughness is of that order, and
-  largest in blue, where the medium absorbs most. The rest is the difference of the smooth sphere.
+  light mean the same in both, and a rough boundary, through which a walk passes by its microfacets here as there. The
+  columns of a sphere share the noise of Cycles: both have the same pictures of it.
+* **Ours / Cycles** is the error of the calibrated model ([accuracy](accuracy.md)), with the entry and exit of light
+  through a rough boundary (method.md, 18.6 and 18.7).
+* Roughness changes the scattered light of the whole sphere by {mine} % in ours, by {exact} % in our walks and by
+  {other} % in Cycles, with a standard error of {spread} %.
 
 ## Noise and time
 

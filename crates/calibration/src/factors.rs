@@ -112,8 +112,15 @@ mod tests {
         let patch = CalibratedPatch { center: [0.0; 6], radius: 0.02, log_factor: [0.0; 3], gradient };
         let surface = CalibratedSurface { normal_scale: 0.03, splits: Vec::new(), patches: vec![patch] };
         let errors = [ChannelErrors::default(); 3];
-        let material =
-            CalibratedMaterial { name: "flat".into(), index: 0, medium, lobe: [[1.0, 0.0]; 3], errors, surface };
+        let material = CalibratedMaterial {
+            name: "flat".into(),
+            index: 0,
+            medium,
+            roughness: None,
+            lobe: [[1.0, 0.0]; 3],
+            errors,
+            surface,
+        };
         let factors = Factors::new(&material);
         let site = Site { position: DVec3::ZERO, normal: DVec3::Z };
         let view = DVec3::new(0.6, 0.0, 0.8);

@@ -25,7 +25,7 @@
 //! let patch = CalibratedPatch { center: [0.0; 6], radius: 0.02, log_factor: half, gradient: [[0.0; 3]; 3] };
 //! let surface = CalibratedSurface { normal_scale: 0.03, splits: Vec::new(), patches: vec![patch] };
 //! let (lobe, errors) = ([[1.0, 0.0]; 3], [ChannelErrors::default(); 3]);
-//! let ball = CalibratedMaterial { name: "ball".into(), index: 0, medium, lobe, errors, surface };
+//! let ball = CalibratedMaterial { name: "ball".into(), index: 0, medium, roughness: None, lobe, errors, surface };
 //! let at = Site { position: DVec3::Z * 0.01, normal: DVec3::Z };
 //! assert!((Factors::new(&ball).at(&at, DVec3::Z) - DVec3::splat(0.5)).length() < 1e-6);
 //! ```
@@ -162,7 +162,9 @@ impl Task<'_> {
             let numbers = medium.channels.iter().flat_map(|c| [c.sigma_a, c.sigma_s, c.asymmetry]);
             numbers.chain([medium.eta]).for_each(|x| _ = hasher.update(&x.to_le_bytes()));
         }
-        self.scene.gloss_digest().iter().for_each(|digest| _ = hasher.update(digest));
+        for material in shards::materials(self.clouds) {
+            hasher.update(&self.scene.roughness_digest(material.index).unwrap_or_default());
+        }
         *hasher.finalize().as_bytes()
     }
 }
@@ -244,6 +246,7 @@ fn calibrate_material(
         name: sampled.name.clone(),
         index: sampled.index,
         medium: facts(medium),
+        roughness: task.scene.roughness_digest(sampled.index),
         lobe,
         errors,
         surface,

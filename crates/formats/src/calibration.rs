@@ -66,6 +66,8 @@ pub struct CalibratedMaterial {
     /// Index into the scene's materials.
     pub index: u16,
     pub medium: MediumFacts,
+    /// Identity of the roughness of its surface; none if that is smooth.
+    pub roughness: Option<[u8; 32]>,
     /// `a` and `b` of the exit lobe `a + b cosθ` of each channel.
     pub lobe: [[f64; 2]; 3],
     pub errors: [ChannelErrors; 3],
@@ -252,6 +254,7 @@ mod tests {
             name: "wax".into(),
             index: 3,
             medium,
+            roughness: Some([9; 32]),
             lobe: [[1.0, 0.0]; 3],
             errors: [errors; 3],
             surface,

@@ -62,7 +62,7 @@ pub fn media(kept: &Calibration) -> Result<Vec<Medium>, Failure> {
     Ok(kept.materials.iter().map(medium).collect::<Result<_, _>>()?)
 }
 
-/// Refuses a calibration of another cloud, or of other media than those asked for.
+/// Refuses a calibration of another cloud, of other media than those asked for, or of surfaces of another roughness.
 pub fn check_fit(request: &Request, lit: &LitScene, kept: &Calibration) -> Result<(), Failure> {
     if kept.cloud != shards::identity(lit.clouds()) || kept.materials.len() != lit.media.len() {
         return Err(refused(request, "of another cloud"));
@@ -73,6 +73,9 @@ pub fn check_fit(request: &Request, lit: &LitScene, kept: &Calibration) -> Resul
             let (medium, asked, material) = (&medium.name, &asked.name, &material.name);
             let why = format!("of `{material}` as {medium}, and --medium is {asked}: leave out --medium or");
             return Err(refused(request, &why));
+        }
+        if material.roughness != lit.scene.roughness_digest(material.index) {
+            return Err(refused(request, &format!("of `{}` with another roughness", material.name)));
         }
     }
     Ok(())

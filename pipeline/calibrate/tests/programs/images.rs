@@ -56,6 +56,27 @@ fn a_calibration_of_something_else_is_refused() {
     refuses("slab.cloud", &slab, &["--bssrdf", "standard-dipole"], &["a.calibration", "half-space", "standard-dipole"]);
 }
 
+/// The cloud of a smooth slab fits a rough one, which has other light below its surface; its calibration does not.
+///
+/// Seen to catch: roughness that is not compared.
+#[test]
+fn a_calibration_of_another_roughness_is_refused() {
+    let (bench, slab) = calibrated();
+    let (stated, other) = (b"\"roughnessFactor\":0.0", b"\"roughnessFactor\":0.5");
+    let mut bytes = std::fs::read(slab).expect("a scene");
+    let at = bytes.windows(stated.len()).position(|part| part == stated).expect("the roughness is stated");
+    bytes[at..at + other.len()].copy_from_slice(other);
+    bench.write("rough.glb", bytes);
+    let message = bench.refuses(
+        "gather",
+        &arguments("rough.glb", &["--calibration", "a.calibration"]),
+        &["a.calibration", "`Slab`", "roughness", "calibrate again"],
+    );
+    assert_eq!(message.lines().count(), 1, "{message}");
+    bench.succeed("calibrate", &quick("rough.glb", "rough.calibration", &["--quiet"]));
+    bench.succeed("gather", &arguments("rough.glb", &["--calibration", "rough.calibration"]));
+}
+
 #[test]
 fn files_that_are_no_calibrations_are_refused() {
     let (bench, slab) = calibrated();
