@@ -24,8 +24,8 @@ enum Rule {
     Alpha(Alpha),
     /// Glass of this relative index.
     Pane(f64),
-    /// Where the surface is by its alpha, this share of rays crosses it straight.
-    Wall(Alpha, f64),
+    /// Where the surface is by its alpha, this share of rays crosses it straight; none where a texture varies it.
+    Wall(Alpha, Option<f64>),
 }
 
 const SOLID: Rule = Rule::Alpha(Alpha::Ignored);
@@ -40,7 +40,10 @@ impl<'a> Cutouts<'a> {
             }
             match (scene.sheets[k], &material.wall) {
                 (Some(Sheet::Pane(ior)), _) => return Rule::Pane(ior),
-                (Some(Sheet::Wall), Some(wall)) if wall.clear > 0.0 => return Rule::Wall(material.alpha, wall.clear),
+                (Some(Sheet::Wall), Some(wall)) if wall.clear_varies() => return Rule::Wall(material.alpha, None),
+                (Some(Sheet::Wall), Some(wall)) if wall.plain().clear > 0.0 => {
+                    return Rule::Wall(material.alpha, Some(wall.plain().clear));
+                }
                 _ => {}
             }
             let covers_all = material.alpha == Alpha::Coverage && scene.mesh.colors.is_empty() && is_solid(material);
@@ -59,17 +62,23 @@ impl<'a> Cutouts<'a> {
         weights: impl FnOnce() -> [f64; 3],
     ) -> bool {
         let material = self.scene.mesh.triangles[triangle as usize].material;
-        let alpha = || self.scene.color(triangle, weights()).w;
+        let alpha = |weights| self.scene.color(triangle, weights).w;
         match self.rules[material as usize] {
             Rule::Alpha(Alpha::Ignored) => false,
             // Both are float32 in the file: an alpha that equals the cutoff in decimals must not be a hole.
-            Rule::Alpha(Alpha::Cutoff(cutoff)) => (alpha() as f32) < cutoff,
-            Rule::Alpha(Alpha::Coverage) => chance(triangle, origin, direction) >= alpha(),
+            Rule::Alpha(Alpha::Cutoff(cutoff)) => (alpha(weights()) as f32) < cutoff,
+            Rule::Alpha(Alpha::Coverage) => chance(triangle, origin, direction) >= alpha(weights()),
             Rule::Wall(rule, clear) => {
+                let weights = weights();
+                let local = || {
+                    let wall = self.scene.materials[material as usize].wall.as_ref();
+                    wall.map_or(0.0, |wall| self.scene.wall_shares(wall, triangle, weights).clear)
+                };
+                let clear = clear.unwrap_or_else(local);
                 let covered = match rule {
                     Alpha::Ignored => 1.0,
-                    Alpha::Cutoff(cutoff) => f64::from(u8::from((alpha() as f32) >= cutoff)),
-                    Alpha::Coverage => alpha(),
+                    Alpha::Cutoff(cutoff) => f64::from(u8::from((alpha(weights) as f32) >= cutoff)),
+                    Alpha::Coverage => alpha(weights),
                 };
                 chance(triangle, origin, direction) >= covered * (1.0 - clear)
             }

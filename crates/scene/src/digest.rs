@@ -4,6 +4,7 @@ use crate::{
     material::{Alpha, Material, Wall},
     panes::Sheet,
     scene::Scene,
+    texture::Texture,
 };
 use std::{collections::BTreeMap, sync::Arc};
 
@@ -44,6 +45,15 @@ impl Scene {
             put(numbers.0.as_bytes());
             put(&(k as u64).to_le_bytes());
             numbers.1.iter().for_each(|x| put(&x.to_le_bytes()));
+            let wall = self.materials[k].wall.as_ref().filter(|_| sheet == Sheet::Wall);
+            for (which, texture) in wall.iter().flat_map(|wall| wall.textures.iter().enumerate()) {
+                let Some(texture) = texture else { continue };
+                put(&(which as u64).to_le_bytes());
+                put_texture(texture, &mut put);
+            }
+        }
+        for coordinates in &self.mesh.wall_coordinates {
+            coordinates.as_flattened().iter().for_each(|x| put(&x.to_le_bytes()));
         }
         *hasher.finalize().as_bytes()
     }
@@ -86,14 +96,9 @@ impl Scene {
         let Some(bumps) = &self.mesh.bumps else { return };
         put(b"bumps");
         for (k, map) in bumps.maps.iter().enumerate().filter_map(|(k, map)| Some((k, map.as_ref()?))) {
-            let texture = map.texture();
-            let [along, down] = texture.wrap.map(|w| w as u8);
             put(&(k as u64).to_le_bytes());
             put(&map.scale().to_le_bytes());
-            put(&[along, down, u8::from(texture.nearest)]);
-            put(&(texture.picture.width as u64).to_le_bytes());
-            put(&(texture.picture.texels.len() as u64).to_le_bytes());
-            put(texture.picture.texels.as_flattened());
+            put_texture(map.texture(), put);
         }
         bumps.coordinates.as_flattened().iter().for_each(|x| put(&x.to_le_bytes()));
         for frame in bumps.frames.as_flattened() {
@@ -135,4 +140,13 @@ impl Scene {
         self.mesh.coordinates.as_flattened().iter().for_each(|x| put(&x.to_le_bytes()));
         self.mesh.colors.as_flattened().iter().for_each(|x| put(&x.to_le_bytes()));
     }
+}
+
+/// Gives `put` a texture.
+fn put_texture(texture: &Texture, put: &mut impl FnMut(&[u8])) {
+    let [along, down] = texture.wrap.map(|w| w as u8);
+    put(&[along, down, u8::from(texture.nearest)]);
+    put(&(texture.picture.width as u64).to_le_bytes());
+    put(&(texture.picture.texels.len() as u64).to_le_bytes());
+    put(texture.picture.texels.as_flattened());
 }

@@ -62,7 +62,7 @@ pub use framing::{Framing, Placed};
 pub use glam::{DVec3, DVec4, Vec3};
 pub use import::{FileUnits, ImportOptions, LightUnit, Pose};
 pub use lens::{Aperture, FILM_HEIGHT, Focus, Lens};
-pub use material::{Alpha, GlossStated, Material, Scatter, ScatterExtension, StatedMedium, Volume, Wall};
+pub use material::{Alpha, GlossStated, Material, Scatter, ScatterExtension, StatedMedium, Volume, Wall, WallShares};
 pub use mesh::{Mesh, NormalKind, SurfacePoint, Triangle};
 pub use mesh_defects::MeshDefects;
 pub use rays::{Hit, Rays};

@@ -83,9 +83,24 @@ impl GlossStated {
     }
 }
 
+/// A wall without thickness that scatters light, as an extension states it. All numbers are from 0 to 1, but the anisotropy,
+/// which is from -1 to 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wall {
+    /// The share of light that enters by transmission.
+    pub transmission: f64,
+    /// The anisotropy of KHR_materials_scatter; none for KHR_materials_diffuse_transmission.
+    pub anisotropy: Option<f64>,
+    /// The share that is scattered: of all light with diffuse transmission, else of what enters.
+    pub share: f64,
+    pub color: DVec3,
+    /// A texture whose alpha is a factor of the share, and one whose color is a factor of the color.
+    pub textures: [Option<Texture>; 2],
+}
+
 /// How a wall without thickness scatters the light that does not cross it straight (docs/method.md 13.8).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wall {
+pub struct WallShares {
     /// The share of the base color in what leaves on the side where the light came from.
     pub base: f64,
     /// What leaves there besides, and what leaves on the other side: shares for each channel.
@@ -96,10 +111,36 @@ pub struct Wall {
 }
 
 impl Wall {
-    /// All numbers that define it.
+    /// Its shares where the textures are this alpha and this color. A wall that all light crosses scatters nothing.
+    pub fn shares(&self, alpha: f64, color: DVec3) -> WallShares {
+        let (entering, share, color) = (self.transmission, self.share * alpha, self.color * color);
+        let Some(g) = self.anisotropy else {
+            return WallShares { base: 1.0 - share, back: DVec3::ZERO, through: share * color, clear: entering };
+        };
+        let scattered = entering * share;
+        let clear = entering - scattered;
+        if clear >= 1.0 {
+            return WallShares { base: 0.0, back: DVec3::ZERO, through: DVec3::ZERO, clear };
+        }
+        let color = color * (scattered / (1.0 - clear));
+        let [back, through] = [color * 0.5 * (1.0 - g), color * 0.5 * (1.0 + g)];
+        WallShares { base: (1.0 - entering) / (1.0 - clear), back, through, clear }
+    }
+
+    /// Its shares without its textures.
+    pub fn plain(&self) -> WallShares {
+        self.shares(1.0, DVec3::ONE)
+    }
+
+    /// Whether the share of rays that cross it straight varies.
+    pub(crate) fn clear_varies(&self) -> bool {
+        self.anisotropy.is_some() && self.textures[0].is_some()
+    }
+
+    /// All numbers that define it, but those of textures.
     pub(crate) fn numbers(&self) -> [f64; 8] {
-        let [back, through] = [self.back, self.through];
-        [self.base, back.x, back.y, back.z, through.x, through.y, through.z, self.clear]
+        let WallShares { base, back, through, clear } = self.plain();
+        [base, back.x, back.y, back.z, through.x, through.y, through.z, clear]
     }
 }
 

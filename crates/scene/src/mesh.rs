@@ -25,6 +25,8 @@ pub struct Mesh {
     pub emission_coordinates: Vec<[f32; 2]>,
     /// The same of metallic and roughness; empty if no vertex has any.
     pub gloss_coordinates: Vec<[f32; 2]>,
+    /// The same of the shares and of the colors of thin walls; empty if no vertex has any.
+    pub wall_coordinates: [Vec<[f32; 2]>; 2],
     /// Linear red, green and blue, and alpha; empty if no vertex has any.
     pub colors: Vec<[f32; 4]>,
     /// The normal maps of materials, if there are any.
@@ -134,8 +136,11 @@ impl Mesh {
 
     /// Texture coordinates at the point with barycentric `weights`; 0 where the file has none.
     pub fn coordinates(&self, triangle: u32, weights: [f64; 3]) -> [f64; 2] {
-        let of =
-            |i: u32| DVec2::from_array(self.coordinates.get(i as usize).copied().unwrap_or_default().map(f64::from));
+        self.placed(&self.coordinates, triangle, weights)
+    }
+
+    fn placed(&self, coordinates: &[[f32; 2]], triangle: u32, weights: [f64; 3]) -> [f64; 2] {
+        let of = |i: u32| DVec2::from_array(coordinates.get(i as usize).copied().unwrap_or_default().map(f64::from));
         self.interpolated(triangle, weights, of).to_array()
     }
 
@@ -152,8 +157,12 @@ impl Mesh {
 
     /// Texture coordinates of metallic and roughness at the point with barycentric `weights`; 0 where the file has none.
     pub(crate) fn gloss_coordinates(&self, triangle: u32, weights: [f64; 3]) -> [f64; 2] {
-        let of = |i: u32| self.gloss_coordinates.get(i as usize).copied().unwrap_or_default();
-        self.interpolated(triangle, weights, |i| DVec2::from_array(of(i).map(f64::from))).to_array()
+        self.placed(&self.gloss_coordinates, triangle, weights)
+    }
+
+    /// Those of the share (0) or the color (1) of a thin wall there; 0 where the file has none.
+    pub(crate) fn wall_coordinates(&self, which: usize, triangle: u32, weights: [f64; 3]) -> [f64; 2] {
+        self.placed(&self.wall_coordinates[which], triangle, weights)
     }
 
     /// Color of the vertices at the point with barycentric `weights`.

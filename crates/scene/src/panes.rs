@@ -33,7 +33,7 @@ pub(crate) fn find(mesh: &Mesh, materials: &[Material]) -> Vec<Option<Sheet>> {
     for (sheet, (material, shape)) in sheets.iter_mut().zip(materials.iter().zip(&shapes)) {
         let ior = material.medium.as_ref().map(|medium| medium.ior);
         let pane = ior.filter(|_| material.thin && shape.is_sheet()).map(Sheet::Pane);
-        *sheet = material.wall.map(|_| Sheet::Wall).or(pane);
+        *sheet = material.wall.as_ref().map(|_| Sheet::Wall).or(pane);
     }
     let is_solid = |(k, m): (usize, &Material)| m.volume && sheets[k].is_none() && shapes[k].area > 0.0;
     if materials.iter().enumerate().any(is_solid) { sheets } else { vec![None; materials.len()] }

@@ -4,7 +4,7 @@ use crate::{
     error::{LostVolumes, SceneError},
     import::units::FileUnits,
     light::{contract::Light, environment::Environment},
-    material::{GlossStated, Material},
+    material::{GlossStated, Material, Wall, WallShares},
     mesh::{Mesh, bounds},
     panes::Sheet,
     unhonoured::Unhonoured,
@@ -137,9 +137,19 @@ impl Scene {
     /// The thin wall at the point of a triangle with these barycentric weights, if its surface is one.
     pub fn wall(&self, triangle: u32, weights: [f64; 3]) -> Option<ThinWall> {
         let material = self.mesh.triangles[triangle as usize].material;
-        let wall = self.materials[usize::from(material)].wall.filter(|_| self.is_wall(material))?;
+        let wall = self.materials[usize::from(material)].wall.as_ref().filter(|_| self.is_wall(material))?;
+        let shares = self.wall_shares(wall, triangle, weights);
         let color = self.color(triangle, weights).truncate();
-        Some(ThinWall { back: wall.base * color + wall.back, through: wall.through })
+        Some(ThinWall { back: shares.base * color + shares.back, through: shares.through })
+    }
+
+    /// The shares of a thin wall at the point of a triangle.
+    pub(crate) fn wall_shares(&self, wall: &Wall, triangle: u32, weights: [f64; 3]) -> WallShares {
+        let texel = |k: usize| {
+            let texture = wall.textures[k].as_ref()?;
+            Some(texture.at(self.mesh.wall_coordinates(k, triangle, weights)))
+        };
+        wall.shares(texel(0).map_or(1.0, |texel| texel.w), texel(1).map_or(DVec3::ONE, DVec4::truncate))
     }
 
     /// How an opaque surface mirrors at the point of a triangle with these barycentric weights; none if it is matt.

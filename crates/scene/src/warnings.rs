@@ -21,6 +21,9 @@ impl Scene {
             let is_translucent =
                 matches!(&one.holder, Some(Holder::Material(k)) if translucent(*k) || self.is_pane(*k));
             let Some(taken) = one.on[usize::from(is_translucent)] else { continue };
+            if matches!(&one.holder, Some(Holder::Material(k)) if self.is_shown_by_wall(*k, &one.property)) {
+                continue;
+            }
             let property = format!("{}{}", one.property, taken_as(taken));
             let index = *known.entry(property).or_insert_with_key(|property| {
                 found.push((property.clone(), Vec::new()));
@@ -58,6 +61,14 @@ impl Scene {
                 self.warnings.push(format!("{fault}: its medium has one color"));
             }
         }
+    }
+
+    /// Whether a material is a thin wall, and the property is one of those that define it.
+    fn is_shown_by_wall(&self, material: u16, property: &str) -> bool {
+        let Some(wall) = self.materials.get(usize::from(material)).and_then(|m| m.wall.as_ref()) else { return false };
+        let of = |name: &str| property.contains(&format!("extensions.KHR_materials_{name}"));
+        let own = if wall.anisotropy.is_some() { of("scatter.") } else { of("diffuse_transmission.") };
+        self.is_wall(material) && (own || of("transmission.transmissionFactor"))
     }
 
     /// A property with its holders.

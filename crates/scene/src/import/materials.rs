@@ -49,7 +49,7 @@ pub(super) fn read(context: &Context, warnings: &mut Vec<String>) -> Result<Read
         let named = |e| format!("material `{name}`: {e}");
         let (mut material, notes) = material(name.clone(), m, context, warnings).map_err(named)?;
         let notes = notes.into_iter().map(&named);
-        match material.wall {
+        match &material.wall {
             Some(_) => of_solids.extend(notes.map(|note| (index, note))),
             None => warnings.extend(notes),
         }
@@ -64,6 +64,7 @@ pub(super) fn read(context: &Context, warnings: &mut Vec<String>) -> Result<Read
                 Err(e) => _ = faults.insert(index, named(e)),
             }
             read_emission(&mut material, m, &mut textures).map_err(named)?;
+            read_wall(&mut material, m, &mut textures, |what| warnings.push(named(what)));
             // A surface without its bumps is plainer, and no fault.
             match normal_map(m, &mut textures) {
                 Ok(map) => material.normal_map = map,
@@ -110,6 +111,18 @@ fn read_emission(material: &mut Material, m: &json::Material, textures: &mut Tex
         material.emission = DVec3::ZERO;
     }
     Ok(())
+}
+
+/// Reads the textures of a wall. One that cannot be read is left out with a warning.
+fn read_wall(material: &mut Material, m: &json::Material, textures: &mut Textures, mut warn: impl FnMut(String)) {
+    let Some(wall) = &mut material.wall else { return };
+    for (texture, stated) in wall.textures.iter_mut().zip(volumes::wall_textures(m)) {
+        let Some((info, field)) = stated else { continue };
+        match textures.read(&info) {
+            Ok(read) => *texture = Some(read),
+            Err(e) => warn(format!("{field}: {e}; its factor alone is used")),
+        }
+    }
 }
 
 /// The material of triangles that name none.

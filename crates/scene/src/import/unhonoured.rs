@@ -7,7 +7,7 @@ use super::{
     honoured::{self, Fate},
     nodes::SceneNode,
     survey::{Finding, Survey},
-    textures,
+    textures, volumes,
 };
 use crate::{
     mesh::Mesh,
@@ -80,7 +80,7 @@ impl Collected<'_> {
         }
     }
 
-    /// Adds the textures of base color, emission, metallic and roughness, and normals with their samplers and images.
+    /// Adds the textures of base color, emission, metallic and roughness, normals, and thin walls with their samplers and images.
     fn add_pictures(&mut self, root: &Root, materials: &BTreeSet<u16>) {
         let materials = materials.iter().filter_map(|k| root.materials.get(usize::from(*k)));
         let own = |m: &json::Material| {
@@ -90,7 +90,8 @@ impl Collected<'_> {
                 gloss::texture(m).map(|info| info.index.value()),
                 m.normal_texture.as_ref().map(|texture| texture.index.value()),
             ];
-            [base, others[0], others[1], others[2]]
+            let walls = volumes::wall_textures(m).map(|stated| stated.map(|(info, _)| info.index.value()));
+            [base, others[0], others[1], others[2], walls[0], walls[1]]
         };
         let textures: BTreeSet<usize> = materials.flat_map(own).flatten().collect();
         let (mut samplers, mut images) = (BTreeSet::new(), BTreeSet::new());

@@ -6,6 +6,7 @@ use glam::DVec3;
 use gltf::json::{
     self,
     extensions::material::{self, IndexOfRefraction},
+    texture::Info,
 };
 use serde::Deserialize;
 use serde_json::Value;
@@ -47,27 +48,40 @@ pub(super) fn wall(m: &json::Material) -> Option<Wall> {
     let e = m.extensions.as_ref().filter(|e| e.volume.as_ref().is_none_or(|v| v.thickness_factor.0 <= 0.0))?;
     let within = |x: f64| x.clamp(0.0, 1.0);
     let entering = within(f64::from(transmission(e)));
+    let wall = |anisotropy, share, color: [f64; 3]| Wall {
+        transmission: entering,
+        anisotropy,
+        share,
+        color: DVec3::from_array(color.map(within)),
+        textures: [None, None],
+    };
     match drafts(e).next() {
         None => {
             let share = within(diffuse_transmission(e));
             let color = e.others.get(DIFFUSE).and_then(|d| d.get("diffuseTransmissionColorFactor"));
             let color = color.and_then(|c| <[f64; 3]>::deserialize(c).ok()).unwrap_or([1.0; 3]);
-            let through = share * DVec3::from_array(color.map(within));
             let is_wall = share > 0.0 && entering < 1.0;
-            is_wall.then_some(Wall { base: 1.0 - share, back: DVec3::ZERO, through, clear: entering })
+            is_wall.then(|| wall(None, share, color))
         }
         Some((ScatterExtension::Scatter, value)) => {
             let fields = Fields::deserialize(value).ok()?;
-            let scattered = entering * within(fields.scatter_strength_factor.unwrap_or(0.0));
+            let strength = within(fields.scatter_strength_factor.unwrap_or(0.0));
             let color = fields.multiscatter_color_factor.or(fields.multiscatter_color).unwrap_or([1.0; 3]);
             let g = fields.scatter_anisotropy.clamp(-1.0, 1.0);
-            let clear = entering - scattered;
-            let color = DVec3::from_array(color.map(within)) * (scattered / (1.0 - clear));
-            let [back, through] = [color * 0.5 * (1.0 - g), color * 0.5 * (1.0 + g)];
-            (scattered > 0.0).then_some(Wall { base: (1.0 - entering) / (1.0 - clear), back, through, clear })
+            (entering * strength > 0.0).then(|| wall(Some(g), strength, color))
         }
         Some((ScatterExtension::VolumeScatter, _)) => None,
     }
+}
+
+/// The textures of a wall's share and color with their names, if the material describes a wall.
+pub(super) fn wall_textures(m: &json::Material) -> [Option<(Info, &'static str)>; 2] {
+    const OF_DRAFT: [&str; 2] = ["scatterStrengthTexture", "multiscatterColorTexture"];
+    const OF_DIFFUSE: [&str; 2] = ["diffuseTransmissionTexture", "diffuseTransmissionColorTexture"];
+    let Some((e, wall)) = m.extensions.as_ref().zip(wall(m)) else { return [None, None] };
+    let names = if wall.anisotropy.is_some() { OF_DRAFT } else { OF_DIFFUSE };
+    let stated = drafts(e).next().map(|(_, value)| value).or_else(|| e.others.get(DIFFUSE));
+    names.map(|name| Some((Info::deserialize(stated?.get(name)?).ok()?, name)))
 }
 
 fn transmission(e: &material::Material) -> f32 {
