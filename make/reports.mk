@@ -5,7 +5,7 @@
 
 REPORTS := $(CARGO) run --release --quiet --package reports -- --output docs/reports
 
-## accuracy: what the models are worth, against random walks: docs/reports/accuracy.md and its pictures (an hour; exact images stay in OUT)
+## accuracy: what the models are worth, against random walks: docs/reports/accuracy.md and its pictures (two hours; exact images stay in OUT)
 accuracy: build
 	$(REPORTS) accuracy --programs $(BIN) --truths '$(OUT)/truth'
 

@@ -139,6 +139,20 @@ impl Scattered {
 /// Pixels of a block whose mean is compared, along each side.
 pub const BLOCK: usize = 4;
 
+/// A mean and its standard error.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Estimate {
+    pub mean: f64,
+    pub error: f64,
+}
+
+impl Estimate {
+    /// The mean of two independent estimates.
+    pub fn mean_of([a, b]: [Estimate; 2]) -> Estimate {
+        Estimate { mean: 0.5 * (a.mean + b.mean), error: 0.5 * a.error.hypot(b.error) }
+    }
+}
+
 /// The exact light of an image, twice.
 pub struct Truth {
     references: [Scattered; 2],
@@ -160,17 +174,27 @@ impl Truth {
     /// The object is where the image or one of the references has scattered light: a choice by the references alone
     /// would prefer pixels in which few paths met a small light.
     pub fn relative_mse(&self, test: &Scattered, block: usize, white: f64) -> [f64; 3] {
+        self.estimated_mse(test, block, white).map(|estimate| estimate.mean)
+    }
+
+    /// The same with its standard error, from how the blocks differ.
+    pub fn estimated_mse(&self, test: &Scattered, block: usize, white: f64) -> [Estimate; 3] {
         let [a, b] = &self.references.each_ref().map(|r| r.blocks(block).pixels);
         let test = test.blocks(block).pixels;
-        let (mut sum, mut count) = ([0.0; 3], 0.0);
+        let (mut sum, mut squares, mut count) = ([0.0; 3], [0.0; 3], 0.0);
         for ((t, a), b) in test.iter().zip(a).zip(b).filter(|((t, a), b)| lit(t) || lit(a) || lit(b)) {
             for c in 0..3 {
                 let [t, a, b] = [t[c], a[c], b[c]].map(|x| x / white);
-                sum[c] += (t - a) * (t - b) / ((0.5 * (a + b)).powi(2) + 0.01);
+                let product = (t - a) * (t - b) / ((0.5 * (a + b)).powi(2) + 0.01);
+                sum[c] += product;
+                squares[c] += product * product;
             }
             count += 1.0;
         }
-        sum.map(|s| s / count)
+        [0, 1, 2].map(|c| {
+            let mean = sum[c] / count;
+            Estimate { mean, error: ((squares[c] / count - mean * mean).max(0.0) / count).sqrt() }
+        })
     }
 
     /// Mean light of an image over that of the truth, of each channel.
@@ -208,6 +232,22 @@ mod tests {
         assert!((off - 0.01 / 1.01 / 3.0).abs() < 1e-9, "{off}");
         let doubled = truth.ratio(&picture(&[2.0, 2.0, 0.0, 2.0]));
         assert_eq!(doubled, [2.0; 3]);
+    }
+
+    /// A quarter of sixteen blocks is off by a tenth.
+    ///
+    /// Seen to catch: the variance of the blocks in place of that of their mean.
+    #[test]
+    fn the_error_of_an_error_is_that_of_the_mean_of_its_blocks() {
+        let references = || picture(&[1.0; 16]);
+        let truth = Truth { references: [references(), references()] };
+        let off = |k: usize| if k.is_multiple_of(4) { 1.1 } else { 1.0 };
+        let [estimate, ..] = truth.estimated_mse(&picture(&(0..16).map(off).collect::<Vec<_>>()), 1, 1.0);
+        let one = 0.01 / 1.01;
+        assert!((estimate.mean - 0.25 * one).abs() < 1e-9, "{estimate:?}");
+        assert!((estimate.error - one * (0.25f64 * 0.75 / 16.0).sqrt()).abs() < 1e-9, "{estimate:?}");
+        let both = Estimate::mean_of([estimate, Estimate::default()]);
+        assert!((both.error - 0.5 * estimate.error).abs() < 1e-15);
     }
 
     #[test]

@@ -160,7 +160,7 @@ impl Smoothness {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use glam::DVec3;
     use scene::random::{Item, Purpose, Stream};
@@ -184,7 +184,7 @@ mod tests {
     }
 
     /// Poisson counts by multiplication of uniform numbers (Knuth).
-    fn poisson(item: Item, mean: f64) -> f64 {
+    pub fn poisson(item: Item, mean: f64) -> f64 {
         let (mut product, mut count) = (1.0, 0);
         while product > (-mean).exp() {
             product *= item.uniform(count);

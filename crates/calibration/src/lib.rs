@@ -35,10 +35,12 @@ mod entries;
 mod errors;
 mod factors;
 mod fit;
+mod misfit;
 mod patches;
 mod sparse;
 mod surface;
 mod tally;
+mod views;
 
 pub use factors::Factors;
 pub use patches::{Patches, Site};
@@ -58,6 +60,7 @@ use std::sync::Arc;
 use sums::{Summation, estimator::Scatterer};
 use surface::{Lit, Surface};
 use tally::Walking;
+use views::Views;
 use walks::{Roughness, Solid};
 
 /// What is calibrated, and how.
@@ -220,7 +223,8 @@ fn calibrate_material(
         slot,
     };
     let smoothness = Smoothness::new(&patches, &sites, &cell_of);
-    let compared = Compared { medium, patches: &patches, smoothness, light, walking, walks };
+    let views = Views::new(&surface.points, &sums, (&cell_of, patches.cells()), task.rays);
+    let compared = Compared { views, medium, patches: &patches, smoothness, light, walking, walks };
     let mut log_factors = vec![[0.0f32; 3]; patches.count()];
     let mut gradients = vec![[[0.0f32; 3]; 3]; patches.count()];
     let mut lobe = match &interface {

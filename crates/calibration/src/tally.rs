@@ -4,6 +4,7 @@ use crate::{
     entries::Entries,
     fit::Counts,
     patches::{Patches, Site},
+    views::{self, PerView, REGION_LEVELS, VIEWS},
 };
 use bssrdf::Coefficients;
 use rayon::prelude::*;
@@ -35,6 +36,8 @@ pub struct Tally {
     pub walks: u64,
     /// For each half of the walks, the sum of the weights that leave each cell.
     pub weights: [Vec<f64>; 2],
+    /// The same of each region of the surface, by the view that is nearest to the direction of the light.
+    pub views: [Vec<PerView>; 2],
     /// The sum of the squared weights, and of the weights times the cosine outside.
     pub squares: f64,
     pub cosines: f64,
@@ -58,9 +61,11 @@ impl Tally {
     }
 
     fn add(&mut self, chunk: &Chunk) {
+        let cells_of_region = self.weights[0].len() >> REGION_LEVELS;
         for (half, left) in chunk.left.iter().enumerate() {
-            for (cell, weight, cosine) in left {
+            for (cell, weight, cosine, view) in left {
                 self.weights[half][*cell as usize] += weight;
+                self.views[half][*cell as usize / cells_of_region][usize::from(*view)] += weight;
                 self.squares += weight * weight;
                 self.cosines += weight * cosine;
             }
@@ -82,7 +87,8 @@ impl Tally {
         let usable = sum > 0.0 && watts > 0.0 && power.iter().any(|m| *m > 0.0);
         let counted = Counted {
             model: power.iter().map(|m| m / watts).collect(),
-            halves: [0, 1].map(|half| self.weights[half].iter().map(|w| w / unit).collect()),
+            halves: self.weights.each_ref().map(|half| half.iter().map(|w| w / unit).collect()),
+            views: self.views.each_ref().map(|half| half.iter().map(|of| of.map(|w| w / unit)).collect()),
         };
         usable.then_some(counted)
     }
@@ -94,6 +100,8 @@ pub struct Counted {
     pub model: Vec<f64>,
     /// What left in each half of the walks.
     pub halves: [Vec<f64>; 2],
+    /// The same of each region, towards each view.
+    pub views: [Vec<PerView>; 2],
 }
 
 impl Counted {
@@ -103,8 +111,8 @@ impl Counted {
     }
 }
 
-/// Where a walk left: cell, weight, cosine outside.
-type Left = (u32, f64, f64);
+/// Where a walk left: cell, weight, cosine outside, nearest view.
+type Left = (u32, f64, f64, u8);
 
 #[derive(Default)]
 struct Chunk {
@@ -124,7 +132,9 @@ impl Walking<'_> {
         progress: impl Fn(u64) + Sync,
     ) -> Tally {
         let none = || vec![0.0; self.patches.cells()];
-        let mut tally = Tally { walks: count, weights: [none(), none()], ..Tally::default() };
+        let unseen = || vec![[0.0; VIEWS]; 1 << REGION_LEVELS];
+        let (weights, views) = ([none(), none()], [unseen(), unseen()]);
+        let mut tally = Tally { walks: count, weights, views, ..Tally::default() };
         let Some(matter) = Matter::new(coefficients, self.eta) else {
             return tally;
         };
@@ -174,7 +184,12 @@ impl Walking<'_> {
                 End::Scattered(exit) => {
                     let point = self.scene.mesh.point(exit.face, [1.0, 0.0, 0.0], NormalKind::Geometric);
                     let cell = self.patches.cell(&Site { position: exit.position, normal: point.geometric_normal });
-                    chunk.left[index as usize % 2].push((cell, exit.weight, exit.cosine));
+                    chunk.left[index as usize % 2].push((
+                        cell,
+                        exit.weight,
+                        exit.cosine,
+                        views::nearest(exit.direction) as u8,
+                    ));
                 }
                 End::Unscattered(_) => chunk.unscattered += 1,
                 End::Opaque => chunk.opaque += 1,

@@ -25,7 +25,7 @@ const SPHERE: Case = Case {
     target: DVec3::ZERO,
     yfov_degrees: 24.0,
     normals: "geometric",
-    paths: 32,
+    paths: 128,
 };
 
 /// The piglet of marble, 15 m high.
@@ -34,7 +34,7 @@ const LARGE: Case = Case {
     medium: Medium::BuiltIn("marble"),
     eye: DVec3::new(0.0, 9.0, 45.0),
     target: DVec3::new(0.0, 7.5, 0.0),
-    paths: 16,
+    paths: 64,
     ..SPHERE
 };
 
@@ -86,7 +86,7 @@ pub const CASES: [Case; 17] = [
         name: "forward",
         what: "the sphere with g = 0.9 and ten times the scattering, skim milk",
         medium: Medium::Own { sigma_a: [0.0014, 0.0025, 0.0142], sigma_s: [7.0, 12.2, 19.0], g: 0.9 },
-        paths: 16,
+        paths: 96,
         ..SPHERE
     },
     Case {
@@ -121,6 +121,7 @@ pub const CASES: [Case; 17] = [
         name: "constant",
         what: "the sphere in a constant environment",
         light: Lighting::Constant([1.0, 0.6, 0.3]),
+        paths: 32,
         ..SPHERE
     },
     Case { name: "sky", what: "the sphere under a sky with a low sun", light: Lighting::Sky, paths: 256, ..SPHERE },
@@ -129,7 +130,7 @@ pub const CASES: [Case; 17] = [
         what: "the sphere with an emitting square of 40 mm, 30 mm from its surface",
         parts: || vec![translucent(ball(RADIUS_M, DVec3::ZERO)), emitter()],
         light: Lighting::Parts,
-        paths: 128,
+        paths: 256,
         ..SPHERE
     },
     Case {
@@ -153,6 +154,7 @@ pub const CASES: [Case; 17] = [
         what: "the sphere without absorption in a constant environment: everything that enters leaves",
         light: Lighting::Constant([1.0; 3]),
         medium: Medium::Own { sigma_a: [0.0; 3], sigma_s: [1.0, 2.0, 3.0], g: 0.0 },
+        paths: 32,
         ..SPHERE
     },
 ];

@@ -27,7 +27,7 @@ pub struct Case {
     pub target: DVec3,
     pub yfov_degrees: f64,
     pub normals: &'static str,
-    /// Camera paths for each pixel of exact images: lamps that walks meet by chance want more.
+    /// Camera paths for each pixel of exact images: lamps that walks meet by chance want more, constant light less.
     pub paths: u32,
 }
 
