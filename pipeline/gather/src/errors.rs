@@ -22,7 +22,7 @@ pub struct Errors {
     pub cloud_freedom: f64,
     /// Degrees of freedom of the estimate of the paths' error.
     pub paths_freedom: f64,
-    /// Number of paths in one half of a pixel.
+    /// Number of paths in one half of the pixel that has the fewest.
     pub half: f64,
     /// Root mean square of the scattered light, relative to that of all light.
     pub scattered: f64,
@@ -31,7 +31,7 @@ pub struct Errors {
 impl Errors {
     /// The errors of an image of this size from its pixels, row by row; none for a black image.
     pub fn of<'a>(size: [usize; 2], pixels: impl Iterator<Item = (&'a PixelSum, Option<&'a Edge>)>) -> Option<Errors> {
-        let (mut power, mut scattered, mut half) = (0.0, 0.0, 1.0);
+        let (mut power, mut scattered, mut half) = (0.0, 0.0, f64::INFINITY);
         let (mut total, mut paths, mut squares) = (0.0, 0.0, 0.0);
         let mut cells = Cells::new(size);
         for (pixel, (sum, edge)) in pixels.enumerate() {
@@ -42,7 +42,7 @@ impl Errors {
             total += between;
             paths += within;
             squares += within * within;
-            half = sum.counts[1];
+            half = half.min(sum.counts[1]);
             cells.add(pixel, sum.difference(edge));
         }
         let relative = |variance: f64| (variance.max(0.0) / power).sqrt();
