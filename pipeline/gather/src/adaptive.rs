@@ -8,6 +8,7 @@ use crate::{
 };
 use cli::{Common, Failure, Progress, count};
 use gather::{Input, Passes, Rendered, Settings, State, estimator::Estimator};
+use sums::confidence::Estimate;
 
 /// A rendered image, and why it has no more paths.
 pub struct Outcome {
@@ -107,7 +108,8 @@ impl Work<'_> {
         let mut paths = FIRST_PATHS.max(self.before.as_ref().map_or(0, |before| before.paths)).min(max_paths);
         let mut passes = self.begin(&Settings { paths_per_pixel: paths, ..settings.clone() })?;
         let mut steps = Steps::new(self.live, input.clouds.len());
-        let (mut done, mut before) = (0, f64::INFINITY);
+        let unknown = Estimate { error: f64::INFINITY, freedom: 1.0 };
+        let (mut done, mut before) = (0, unknown);
         let end = loop {
             let added = paths - passes.paths();
             let mean = if passes.shares() { " on average" } else { "" };
@@ -138,7 +140,9 @@ impl Work<'_> {
                 break End::Paths;
             }
             let next = round.next(errors.as_ref());
-            before = errors.map_or(f64::INFINITY, |errors| errors.total);
+            before = errors
+                .and_then(|errors| Some(Estimate { error: errors.total, freedom: errors.estimate()?.freedom }))
+                .unwrap_or(unknown);
             done = paths;
             paths = next.min(max_paths);
         };

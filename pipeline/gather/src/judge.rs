@@ -12,8 +12,8 @@ pub struct Round<'a> {
     /// Paths per pixel after this pass and before it.
     pub paths: u32,
     pub done: u32,
-    /// The error before this pass.
-    pub before: f64,
+    /// The error before this pass, and the degrees of freedom of its estimate.
+    pub before: Estimate,
     pub passes: &'a Passes<'a>,
 }
 
@@ -75,7 +75,8 @@ impl Round<'_> {
         } else {
             let [before, now] = [self.done, self.paths].map(|paths| self.passes.expected_variance(paths));
             let grown = before / now;
-            irreducible_error(errors.total, self.before, grown, estimate.freedom, settings.estimator)
+            let freedom = estimate.freedom.min(self.before.freedom);
+            irreducible_error(errors.total, self.before.error, grown, freedom, settings.estimator)
         };
         let error = if significant { errors.cloud.max(irreducible) } else { irreducible };
         if error > CLOUD_LIMITS * self.target {
