@@ -29,6 +29,8 @@ pub enum Purpose {
     FirstSurface,
     /// Pixels by which phase two chooses the accuracy of the cut, and their gathers.
     Balance,
+    /// Rounds the numbers of paths of pixels.
+    Allotment,
     /// Scrambles of the sequences of phase one.
     Scramble,
     /// Light that opaque surfaces reflect to the samples of phase one.
@@ -73,6 +75,7 @@ impl Purpose {
             Purpose::NearPoint => u64::MAX - 10,
             Purpose::FirstSurface => u64::MAX - 12,
             Purpose::Balance => u64::MAX - 11,
+            Purpose::Allotment => u64::MAX - 13,
             Purpose::Lens => u64::MAX - 20,
             Purpose::HalfSpaceTable => u64::MAX - 3,
             Purpose::Remainder(k) => 7 + k,

@@ -8,6 +8,7 @@ use crate::{
 };
 use cli::{Common, Failure, Progress, count};
 use gather::{Input, Passes, Rendered, Settings, State, estimator::Estimator};
+use sums::confidence::Estimate;
 
 /// A rendered image, and why it has no more paths.
 pub struct Outcome {
@@ -72,10 +73,8 @@ impl Work<'_> {
 
     fn render_all(&self) -> Result<(Passes<'_>, End), Failure> {
         let (mut passes, all) = (self.begin(&self.job.settings)?, self.job.settings.paths_per_pixel);
-        let pixels = self.job.settings.part().pixels() as u64;
         let mut steps = Steps::new(self.live, self.input.clouds.len());
-        let left = u64::from(all - passes.paths());
-        let progress = Progress::start(self.common, "gathering", pixels * left, "paths");
+        let progress = Progress::start(self.common, "gathering", passes.paths_until(all), "paths");
         let mut end = End::Paths;
         while passes.paths() < all && end == End::Paths {
             let (done, left) = (passes.paths(), all - passes.paths());
@@ -109,12 +108,13 @@ impl Work<'_> {
         let mut paths = FIRST_PATHS.max(self.before.as_ref().map_or(0, |before| before.paths)).min(max_paths);
         let mut passes = self.begin(&Settings { paths_per_pixel: paths, ..settings.clone() })?;
         let mut steps = Steps::new(self.live, input.clouds.len());
-        let pixels = settings.part().pixels() as u64;
-        let (mut done, mut before) = (0, f64::INFINITY);
+        let unknown = Estimate { error: f64::INFINITY, freedom: 1.0 };
+        let (mut done, mut before) = (0, unknown);
         let end = loop {
             let added = paths - passes.paths();
-            let unit = format!("paths, {} to {} of each pixel", passes.paths() + 1, paths);
-            let progress = Progress::start(self.common, "gathering", pixels * u64::from(added), &unit);
+            let mean = if passes.shares() { " on average" } else { "" };
+            let unit = format!("paths, {} to {} of each pixel{mean}", passes.paths() + 1, paths);
+            let progress = Progress::start(self.common, "gathering", passes.paths_until(paths), &unit);
             passes.plan(added);
             let in_time = steps.add(&mut passes, added, &progress);
             progress.finish();
@@ -122,7 +122,8 @@ impl Work<'_> {
                 break End::TimeLimit;
             }
             let errors = passes.errors();
-            let round = Round { target, input, paths, done, before };
+            passes.share_out();
+            let round = Round { target, input, paths, done, before, passes: &passes };
             match round.judge(errors.as_ref(), settings) {
                 Verdict::Met => break End::TargetError,
                 Verdict::OutOfReach(why) => {
@@ -139,7 +140,9 @@ impl Work<'_> {
                 break End::Paths;
             }
             let next = round.next(errors.as_ref());
-            before = errors.map_or(f64::INFINITY, |errors| errors.total);
+            before = errors
+                .and_then(|errors| Some(Estimate { error: errors.total, freedom: errors.estimate()?.freedom }))
+                .unwrap_or(unknown);
             done = paths;
             paths = next.min(max_paths);
         };

@@ -22,7 +22,7 @@ pub struct Errors {
     pub cloud_freedom: f64,
     /// Degrees of freedom of the estimate of the paths' error.
     pub paths_freedom: f64,
-    /// Number of paths in one half of a pixel.
+    /// Number of paths in one half of the pixel that has the fewest.
     pub half: f64,
     /// Root mean square of the scattered light, relative to that of all light.
     pub scattered: f64,
@@ -31,8 +31,8 @@ pub struct Errors {
 impl Errors {
     /// The errors of an image of this size from its pixels, row by row; none for a black image.
     pub fn of<'a>(size: [usize; 2], pixels: impl Iterator<Item = (&'a PixelSum, Option<&'a Edge>)>) -> Option<Errors> {
-        let (mut power, mut scattered, mut half) = (0.0, 0.0, 1.0);
-        let (mut total, mut paths, mut squares) = (0.0, 0.0, 0.0);
+        let (mut power, mut scattered, mut half) = (0.0, 0.0, f64::INFINITY);
+        let (mut total, mut paths, mut squares, mut total_squares) = (0.0, 0.0, 0.0, 0.0);
         let mut cells = Cells::new(size);
         for (pixel, (sum, edge)) in pixels.enumerate() {
             let layers = sum.layers(edge);
@@ -42,12 +42,13 @@ impl Errors {
             total += between;
             paths += within;
             squares += within * within;
-            half = sum.counts[1];
+            total_squares += between * between;
+            half = half.min(sum.counts[1]);
             cells.add(pixel, sum.difference(edge));
         }
         let relative = |variance: f64| (variance.max(0.0) / power).sqrt();
         // The channels of a pixel are correlated and count as one value.
-        let paths_freedom = if squares > 0.0 { (paths * paths / squares).max(1.0) } else { 1.0 };
+        let paths_freedom = paths_freedom([paths, squares], [total, total_squares]);
         let cloud_freedom = cells.freedom();
         let [total, paths, cloud, scattered] = [total, paths, total - paths, scattered].map(relative);
         (power > 0.0).then_some(Errors { total, paths, cloud, cloud_freedom, paths_freedom, half, scattered })
@@ -66,5 +67,31 @@ impl Errors {
     }
 }
 
+/// The degrees of freedom of the paths' error, from the sums over the pixels of their two variances and of the squares of
+/// these: by the scatter within halves, and by the difference of the halves. The square of a difference has a mean square
+/// of three times its squared mean, and what is estimated for edge pixels, of either sign, a larger one: where it happens
+/// to cancel, little is known.
+fn paths_freedom([within, within_squares]: [f64; 2], [between, between_squares]: [f64; 2]) -> f64 {
+    let freedom = |sum: f64, squares: f64| if squares > 0.0 { (sum * sum / squares).max(1.0) } else { 1.0 };
+    freedom(within, within_squares).min(freedom(between.max(0.0), between_squares / 3.0))
+}
+
 /// Degrees of freedom that give an error a relative uncertainty of an eighth.
 const MIN_FREEDOM: f64 = 32.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: 100 pixels of variance 1, whose differences have the mean square 3; then so few of them that they are
+    /// less certain than the scatter, and variances of either sign that cancel.
+    ///
+    /// Seen to catch: the scatter within halves alone; the square of a negative sum; the factor three left out.
+    #[test]
+    fn variances_that_cancel_have_few_degrees_of_freedom() {
+        assert_eq!(paths_freedom([100.0, 100.0], [100.0, 300.0]), 100.0);
+        assert!((paths_freedom([100.0, 100.0], [50.0, 300.0]) - 25.0).abs() < 1e-9);
+        assert_eq!(paths_freedom([100.0, 100.0], [-100.0, 300.0]), 1.0);
+        assert_eq!(paths_freedom([0.0; 2], [0.0; 2]), 1.0);
+    }
+}

@@ -85,7 +85,10 @@ impl Settings {
 pub struct Rendered {
     /// The pixels of [`Settings::part`], row by row from the top.
     pub pixels: Vec<Pixel>,
+    /// Paths of each pixel; where pixels share them, the mean over the pixels whose neighbors have noise.
     pub paths_per_pixel: u32,
+    /// The fewest and the most paths of a pixel.
+    pub fewest_and_most: [u32; 2],
     pub counts: Counts,
     /// Indices of the first few pixels with a value that is not finite.
     pub non_finite: Vec<usize>,

@@ -20,10 +20,10 @@ const MAX_PIXELS: u64 = 1 << 28;
 
 /// Memory that a pixel takes, bytes: sums, their copies while a pass is joined, the pixel and its channels, if all
 /// pixels are edges.
-const BYTES_PER_PIXEL: u64 = 1344;
+const BYTES_PER_PIXEL: u64 = 1376;
 
 /// The same of the sums that are kept, as numbers and as channels.
-const BYTES_OF_SUMS: u64 = 1152;
+const BYTES_OF_SUMS: u64 = 1176;
 
 /// Pixels whose sums a file can keep.
 const MAX_KEPT_PIXELS: u64 = 1 << 24;

@@ -2,7 +2,7 @@
 
 use cli::count_up;
 use formats::cloud::{Cloud, Pattern, shards};
-use gather::{Input, Settings, errors::Errors, estimator::Estimator};
+use gather::{Input, Passes, Settings, errors::Errors, estimator::Estimator};
 use sums::confidence::Estimate;
 
 /// The state after a pass.
@@ -12,8 +12,9 @@ pub struct Round<'a> {
     /// Paths per pixel after this pass and before it.
     pub paths: u32,
     pub done: u32,
-    /// The error before this pass.
-    pub before: f64,
+    /// The error before this pass, and the degrees of freedom of its estimate.
+    pub before: Estimate,
+    pub passes: &'a Passes<'a>,
 }
 
 /// The decision after a pass.
@@ -72,8 +73,10 @@ impl Round<'_> {
         let irreducible = if self.done == 0 {
             0.0
         } else {
-            let grown = f64::from(self.paths) / f64::from(self.done);
-            irreducible_error(errors.total, self.before, grown, estimate.freedom, settings.estimator)
+            let [before, now] = [self.done, self.paths].map(|paths| self.passes.expected_variance(paths));
+            let grown = before / now;
+            let freedom = estimate.freedom.min(self.before.freedom);
+            irreducible_error(errors.total, self.before.error, grown, freedom, settings.estimator)
         };
         let error = if significant { errors.cloud.max(irreducible) } else { irreducible };
         if error > CLOUD_LIMITS * self.target {
@@ -96,14 +99,23 @@ impl Round<'_> {
         Verdict::More
     }
 
-    /// The paths per pixel of the next round: half as many again if that should do, else twice as many. The shards of
-    /// several clouds are picked evenly where rounds double.
+    /// The paths per pixel of the next round: as many as should do, and at most twice as many. The shards of several
+    /// clouds are picked evenly where rounds double.
     pub fn next(&self, errors: Option<&Errors>) -> u32 {
         let excess = errors.and_then(Errors::estimate).map_or(f64::INFINITY, |error| error.safe() / self.target);
-        let more = self.paths.saturating_add(self.paths / 2).next_multiple_of(2);
+        let double = self.paths.saturating_mul(2);
+        if self.input.clouds.len() > 1 {
+            return double;
+        }
         // The variance of a pixel falls at least as fast as the number of its paths grows.
-        let is_enough = f64::from(self.paths) * excess * excess <= f64::from(more);
-        if is_enough && self.input.clouds.len() == 1 { more } else { self.paths.saturating_mul(2) }
+        let allowed = self.passes.expected_variance(self.paths) / (excess * excess);
+        let (mut few, mut enough) = (self.paths / 2, double / 2);
+        while few + 1 < enough {
+            let middle = few.midpoint(enough);
+            let is_enough = self.passes.expected_variance(2 * middle) <= allowed;
+            *(if is_enough { &mut enough } else { &mut few }) = middle;
+        }
+        2 * enough
     }
 
     /// The number of lit samples.

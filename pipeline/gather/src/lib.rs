@@ -40,6 +40,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod allotment;
 mod balance;
 pub mod counts;
 mod crop;
@@ -61,6 +62,7 @@ mod pixel_sum;
 pub mod preview;
 mod reference;
 pub mod renderer;
+mod shared;
 mod state;
 mod subsurface;
 mod walked;

@@ -1,6 +1,7 @@
 //! Renders pixels in parallel, and adds paths to all of them in passes.
 
 use crate::{
+    allotment::Allotment,
     counts::Counts,
     crop::Crop,
     cut_correction,
@@ -55,8 +56,10 @@ pub struct Passes<'a> {
     sums: Vec<PixelSum>,
     /// One entry for each pixel; none unless it is an edge pixel.
     edges: Vec<Option<Box<Edge>>>,
-    /// Paths that each pixel has so far.
+    /// Paths that each pixel has so far, or that all share for each.
     paths: u32,
+    /// The shares of the pixels in the paths, once they are shared out.
+    pub(crate) allotment: Option<Allotment>,
     counts: Counts,
     /// Random numbers of all pixels.
     streams: Streams,
@@ -79,7 +82,7 @@ impl<'a> Passes<'a> {
             surroundings,
             objects,
             drawn: DrawnCounts::of(input.clouds),
-            paths_per_pixel: settings.paths_per_pixel,
+            paths_per_pixel: f64::from(settings.paths_per_pixel),
             pass: 0..settings.paths_per_pixel,
             clearance: CLEARANCE * input.scene.mesh.diagonal(),
             paths: Stream::new(settings.seed, Purpose::CameraPath),
@@ -103,6 +106,7 @@ impl<'a> Passes<'a> {
             sums: vec![PixelSum::default(); settings.part().pixels()],
             part: settings.part(),
             paths: 0,
+            allotment: None,
             counts: Counts::default(),
             streams,
             edge_stream: stream(Purpose::Edge),
@@ -249,7 +253,7 @@ impl<'a> Passes<'a> {
         self.sums[index].pixel(self.edges[index].as_deref(), self.renderer.guide(origin, direction))
     }
 
-    /// Paths that each pixel has.
+    /// Paths that each pixel has, or that all share for each.
     pub fn paths(&self) -> u32 {
         self.paths
     }
@@ -259,13 +263,14 @@ impl<'a> Passes<'a> {
     pub fn plan(&mut self, paths: u32) {
         self.renderer.pass = self.paths..self.paths.saturating_add(paths);
         let paths = self.renderer.settings.paths_per_pixel.max(self.renderer.pass.end);
-        self.renderer.paths_per_pixel = paths;
+        self.renderer.paths_per_pixel = self.effective_paths(paths);
     }
 
-    /// Adds `paths` to each pixel; the watch is told of the tiles. False if it stopped the pass: nothing is added then.
+    /// Adds `paths` to each pixel, or to those that all share; the watch is told of the tiles. False if it stopped the
+    /// pass: nothing is added then.
     pub fn pass(&mut self, paths: u32, watch: &impl Watch) -> bool {
-        let range = self.paths..self.paths.saturating_add(paths);
-        if range.end > self.renderer.pass.end {
+        let end = self.paths.saturating_add(paths);
+        if end > self.renderer.pass.end {
             self.plan(paths);
         }
         let tile = |tile: usize| {
@@ -273,9 +278,14 @@ impl<'a> Passes<'a> {
                 return None;
             }
             let mut context = ThreadContext::new(self.renderer.objects.len());
-            let add = |index: usize| (index, self.add_paths(index, range.clone(), &mut context));
+            let mut added = 0;
+            let add = |index: usize| {
+                let [before, after] = [self.paths, end].map(|level| self.paths_of(index, level));
+                added += u64::from(after - before);
+                (index, self.add_paths(index, before..after, &mut context))
+            };
             let sums: Vec<(usize, Sums)> = self.pixels_of(tile).map(add).collect();
-            watch.done(&Tile { part: self.part, sums: &sums });
+            watch.done(&Tile { part: self.part, sums: &sums, paths: added });
             context.counts.near_field(&context.near.work);
             Some((sums, context.counts))
         };
@@ -285,19 +295,26 @@ impl<'a> Passes<'a> {
             self.counts.add(&counts);
             sums.into_iter().for_each(|(index, sum)| (self.sums[index], self.edges[index]) = sum);
         }
-        self.paths = range.end;
+        self.paths = end;
         true
+    }
+
+    /// The sums of a pixel of the part.
+    pub(crate) fn sums(&self, index: usize) -> (&PixelSum, Option<&Edge>) {
+        (&self.sums[index], self.edges[index].as_deref())
     }
 
     /// The sums so far, from which [`Passes::resume`] goes on.
     pub fn state(&self) -> State {
-        State::of(self.paths, &self.sums, &self.edges)
+        State::of(self.paths, &self.sums, &self.edges, self.allotment.as_ref())
     }
 
     /// Goes on from the sums of an image of the same settings and part, as if its paths were those of this one. All paths
     /// of the settings that are left are planned together.
     pub fn resume(&mut self, state: &State) {
-        state.restore(&mut self.sums, &mut self.edges);
+        self.allotment = state.allotment(self.rounding());
+        let paths: Vec<u32> = (0..self.sums.len()).map(|index| self.paths_of(index, state.paths)).collect();
+        state.restore(&paths, &mut self.sums, &mut self.edges);
         self.paths = state.paths;
         self.plan(self.renderer.settings.paths_per_pixel.saturating_sub(self.paths));
     }
@@ -331,7 +348,15 @@ impl<'a> Passes<'a> {
         let pixels: Vec<Pixel> = (0..self.sums.len()).into_par_iter().map(|index| self.pixel(index)).collect();
         let bad = || pixels.iter().enumerate().filter(|(_, p)| !p.is_finite()).map(|(k, _)| k);
         let (non_finite, non_finite_count) = (bad().take(8).collect(), bad().count() as u64);
-        Rendered { pixels, paths_per_pixel: self.paths, counts: self.counts, non_finite, non_finite_count }
+        let paths = || (0..self.sums.len()).map(|index| self.paths_of(index, self.paths));
+        Rendered {
+            pixels,
+            paths_per_pixel: self.paths,
+            fewest_and_most: [paths().min(), paths().max()].map(|paths| paths.unwrap_or(self.paths)),
+            counts: self.counts,
+            non_finite,
+            non_finite_count,
+        }
     }
 }
 

@@ -56,7 +56,8 @@ impl Renderer<'_> {
         let first = |path: u32| (path + 1 - half) / 2;
         let (start, end) = (first(self.pass.start), first(self.pass.end));
         let random = || self.shard_picks.item(index.pixel).uniform(u64::from(2 * start + half));
-        self.drawn.pick_shard(half as usize, index.path / 2 - start, end - start, random)
+        // Where pixels share their paths there is one shard, and the path may be one from before the pass of others.
+        self.drawn.pick_shard(half as usize, (index.path / 2).saturating_sub(start), end - start, random)
     }
 
     /// Follows a branch until it ends.

@@ -26,8 +26,9 @@ pub struct Renderer<'a> {
     pub objects: Vec<Option<TranslucentObject<'a>>>,
     /// Samples of each cloud, the unlit ones included.
     pub drawn: DrawnCounts,
-    /// Paths of each pixel by the end of the current pass, or of the last one that is expected.
-    pub paths_per_pixel: u32,
+    /// Paths of each pixel by the end of the current pass, or of the last one that is expected; where pixels share them,
+    /// the mean that decides what the cut adds to the image's error.
+    pub paths_per_pixel: f64,
     /// Paths of each pixel that the current pass adds.
     pub pass: Range<u32>,
     /// Whether random walks can meet light where they leave.

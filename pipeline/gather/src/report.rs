@@ -187,6 +187,8 @@ impl<'a> Facts<'a> {
                 c.materials.iter().map(|m| (m.name.clone(), m.errors.map(|e| e.after))).collect::<BTreeMap<_, _>>()
             }),
         });
+        let [fewest, most] = rendered.fewest_and_most;
+        (value["fewest_paths_of_a_pixel"], value["most_paths_of_a_pixel"]) = (fewest.into(), most.into());
         value["preview_stops"] = self.request.outputs.preview.as_ref().map(|_| self.job.stops).into();
         if self.request.outputs.timings {
             let rate = seconds.of("render").map(|s| counts.evaluations as f64 / s.max(1e-9));

@@ -1,7 +1,8 @@
 //! The sums of an image as numbers, which a file can keep: with them, more paths can be added later, and the image is
 //! to the last bit the one that would have been rendered at once.
 
-use crate::{edge::Edge, pixel_sum::PixelSum};
+use crate::{allotment::Allotment, edge::Edge, pixel_sum::PixelSum};
+use scene::random::Stream;
 
 /// Numbers of a pixel's sums, and of those of an edge pixel.
 const OF_PIXEL: usize = PixelSum::NUMBERS;
@@ -10,32 +11,46 @@ const OF_EDGE: usize = Edge::NUMBERS;
 /// The sums of an image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
-    /// Paths that each pixel has.
+    /// Paths that each pixel has, or that all share for each.
     pub paths: u32,
+    /// Paths of each pixel before they were shared, if they are.
+    pub base: Option<u32>,
     /// One plane of numbers for each sum, with one for each pixel; those of edge pixels come last, and are 0 elsewhere.
+    /// If paths are shared, one more plane has the pixels' shares.
     pub planes: Vec<Vec<f64>>,
 }
 
 impl State {
-    /// The number of planes.
+    /// The number of planes of sums.
     pub const PLANES: usize = OF_PIXEL + OF_EDGE;
 
-    pub(crate) fn of(paths: u32, sums: &[PixelSum], edges: &[Option<Box<Edge>>]) -> State {
+    pub(crate) fn of(
+        paths: u32,
+        sums: &[PixelSum],
+        edges: &[Option<Box<Edge>>],
+        allotment: Option<&Allotment>,
+    ) -> State {
         let mut planes: Vec<Vec<f64>> = (0..State::PLANES).map(|_| Vec::with_capacity(sums.len())).collect();
         for (sum, edge) in sums.iter().zip(edges) {
             let of_edge = edge.as_ref().map_or([0.0; OF_EDGE], |edge| edge.numbers());
             planes.iter_mut().zip(sum.numbers().into_iter().chain(of_edge)).for_each(|(plane, x)| plane.push(x));
         }
-        State { paths, planes }
+        planes.extend(allotment.map(|allotment| allotment.shares.clone()));
+        State { paths, base: allotment.map(|allotment| allotment.base), planes }
     }
 
-    /// Replaces the sums. Which pixels are edges does not change.
-    pub(crate) fn restore(&self, sums: &mut [PixelSum], edges: &mut [Option<Box<Edge>>]) {
+    /// The shares of the pixels, if they share their paths.
+    pub(crate) fn allotment(&self, rounding: Stream) -> Option<Allotment> {
+        Some(Allotment::new(self.base?, self.planes.get(State::PLANES)?.clone(), rounding))
+    }
+
+    /// Replaces the sums of pixels that have so many paths. Which pixels are edges does not change.
+    pub(crate) fn restore(&self, paths: &[u32], sums: &mut [PixelSum], edges: &mut [Option<Box<Edge>>]) {
         for (pixel, (sum, edge)) in sums.iter_mut().zip(edges).enumerate() {
-            *sum = PixelSum::from_numbers(self.paths, std::array::from_fn(|k| self.planes[k][pixel]));
+            *sum = PixelSum::from_numbers(paths[pixel], std::array::from_fn(|k| self.planes[k][pixel]));
             if let Some(edge) = edge {
                 let numbers = std::array::from_fn(|k| self.planes[OF_PIXEL + k][pixel]);
-                **edge = Edge::from_numbers(self.paths, numbers);
+                **edge = Edge::from_numbers(paths[pixel], numbers);
             }
         }
     }
@@ -74,9 +89,10 @@ mod tests {
                 }
             };
             add(&mut sums, &mut edges, 0..first);
-            let kept = State::of(first, &sums, &edges);
+            let kept = State::of(first, &sums, &edges, None);
+            assert_eq!((kept.base, kept.planes.len()), (None, State::PLANES));
             let (mut other, mut other_edges) = ([PixelSum::default(); 2], [None, Some(Box::default())]);
-            kept.restore(&mut other, &mut other_edges);
+            kept.restore(&[first; 2], &mut other, &mut other_edges);
             add(&mut sums, &mut edges, first..all);
             add(&mut other, &mut other_edges, first..all);
             assert_eq!(format!("{sums:?} {edges:?}"), format!("{other:?} {other_edges:?}"), "{first} of {all}");

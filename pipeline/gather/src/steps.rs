@@ -79,7 +79,7 @@ impl<'a> Steps<'a> {
             let step = self.next(end - passes.paths(), deadline);
             let start = Instant::now();
             let display = self.live.display.as_ref();
-            let added = step > 0 && passes.pass(step, &Watched { progress, display, deadline, paths: step });
+            let added = step > 0 && passes.pass(step, &Watched { progress, display, deadline });
             if !added {
                 return false;
             }
@@ -114,12 +114,11 @@ struct Watched<'a> {
     progress: &'a Progress,
     display: Option<&'a Display>,
     deadline: Option<Instant>,
-    paths: u32,
 }
 
 impl Watch for Watched<'_> {
     fn done(&self, tile: &Tile) {
-        self.progress.add(tile.pixels() * u64::from(self.paths));
+        self.progress.add(tile.paths);
         if let Some(display) = self.display {
             display.show(tile);
         }

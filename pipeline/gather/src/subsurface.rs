@@ -156,14 +156,13 @@ impl Renderer<'_> {
 
     /// Whether each path of a pixel gathers from one half of one shard, round-robin, instead of from all samples.
     fn gathers_by_shard(&self) -> bool {
-        self.settings.estimator.is_hierarchical() && self.paths_per_pixel > 1
+        self.settings.estimator.is_hierarchical() && self.paths_per_pixel > 1.0
     }
 
     /// The estimator of one sum, of whose light a `share` arrives at the camera. The errors of a pixel's sums are
     /// independent, so the relative error of each may be as many times the pixel's as the root of their number.
     pub fn estimator_for(&self, share: f64) -> Estimator {
-        let sums =
-            if self.gathers_by_shard() { f64::from(self.paths_per_pixel) } else { 2.0 * self.drawn.shards() as f64 };
+        let sums = if self.gathers_by_shard() { self.paths_per_pixel } else { 2.0 * self.drawn.shards() as f64 };
         let of_sum = |accuracy: f64| rounded(accuracy * sums.sqrt());
         self.settings.estimator.map_accuracy(|accuracy| (of_sum(accuracy) / share.max(1e-3)).min(MAX_ERROR))
     }

@@ -22,6 +22,8 @@ pub struct About {
 
 const IMAGE: &str = "pcsss/image";
 const PATHS: &str = "pcsss/paths";
+/// Paths of each pixel before they were shared; absent unless they are.
+const BASE: &str = "pcsss/pathsBeforeSharing";
 const SETTINGS: &str = "pcsss/settings";
 const ACCURACY: &str = "pcsss/gatherAccuracy";
 
@@ -47,11 +49,12 @@ pub fn encode(
         (SETTINGS, Attribute::Texts(about.settings.clone())),
         (ACCURACY, Attribute::Double(about.accuracy)),
     ];
+    let base = state.base.map(|base| (BASE, Attribute::Int(base as i32)));
     let file = Image {
         width: part.width,
         height: part.height,
         channels: channels.collect(),
-        attributes: attributes.map(|(name, value)| (name.to_owned(), value)).into(),
+        attributes: attributes.into_iter().chain(base).map(|(name, value)| (name.to_owned(), value)).collect(),
         ..Image::default()
     };
     Ok(file.encode_with(threads)?)
@@ -91,9 +94,20 @@ fn parse(file: &Image) -> Option<(State, About)> {
         Some(high.iter().zip(low).map(join).collect())
     };
     let paths = u32::try_from(*paths).ok().filter(|paths| *paths > 1)?;
-    let planes = (0..State::PLANES).map(plane).collect::<Option<_>>()?;
+    let base = match attributes.get(BASE) {
+        None => None,
+        Some(Attribute::Int(base)) => Some(u32::try_from(*base).ok().filter(|base| (1..=paths).contains(base))?),
+        Some(_) => return None,
+    };
+    let planes: Vec<Vec<f64>> = (0..State::PLANES + usize::from(base.is_some())).map(plane).collect::<Option<_>>()?;
+    // Shares are 1 on average, or less, and edge pixels may have 1 more.
+    let shares = || planes[State::PLANES..].iter().flatten();
+    let most = (2 * file.width * file.height) as f64;
+    if !shares().all(|share| *share >= 0.0) || shares().sum::<f64>() > most {
+        return None;
+    }
     let accuracy = Some(*accuracy).filter(|x| x.is_finite() && *x >= 0.0)?;
-    Some((State { paths, planes }, About { settings: settings.clone(), accuracy }))
+    Some((State { paths, base, planes }, About { settings: settings.clone(), accuracy }))
 }
 
 /// The name of the channel of one half of a plane.
@@ -115,6 +129,39 @@ fn digest(bytes: &[u8]) -> String {
 mod tests {
     use super::*;
 
+    /// The sums of a file with these contents.
+    fn returned(state: &State) -> Result<(State, About), Failure> {
+        let about = About { settings: vec!["--seed 0".into()], accuracy: 0.02 };
+        let part = Crop { x: 5, y: 0, width: 3, height: 2 };
+        let folder = tempfile::tempdir().expect("a folder");
+        let image = folder.path().join("a.exr");
+        fs::write(&image, b"image").expect("writes");
+        fs::write(path_of(&image), encode(state, &about, part, b"image", NonZeroUsize::MIN).expect("encodes"))
+            .expect("writes");
+        read(&image, NonZeroUsize::MIN)
+    }
+
+    /// Shares are kept to the last bit, and files whose shares are missing or would never end are refused.
+    ///
+    /// Seen to catch: the last plane read as that of a sum; shares that are not checked, or are not missed.
+    #[test]
+    fn shares_return_or_are_refused() {
+        let planes: Vec<Vec<f64>> = (0..State::PLANES).map(|k| vec![k as f64; 6]).collect();
+        let shared =
+            |shares: &[f64]| State { paths: 9, base: Some(4), planes: [&planes[..], &[shares.to_vec()]].concat() };
+        let good = shared(&[0.1, 1.0 / 3.0, 0.7, 0.0, 4.0, 1e-300]);
+        assert_eq!(returned(&good).expect("reads").0, good);
+        let (plain, _) = returned(&State { paths: 9, base: None, planes: planes.clone() }).expect("reads");
+        assert_eq!((plain.base, plain.planes.len()), (None, State::PLANES));
+        let of = |share: f64| shared(&[1.0, 1.0, share, 1.0, 1.0, 1.0]);
+        let none = State { planes: planes.clone(), ..of(1.0) };
+        let bad = [of(f64::NAN), of(-0.5), of(7.5), State { base: Some(10), ..of(1.0) }, none];
+        for state in bad {
+            let message = returned(&state).expect_err("refused").message;
+            assert!(message.contains("no sums of an image"), "{message}");
+        }
+    }
+
     /// Words that are no numbers as float32, signaling ones included, stay as they are.
     #[test]
     fn every_bit_returns() {
@@ -122,7 +169,7 @@ mod tests {
             [0u64, 1, 0x7f80_0001_ff80_0001, 0xffff_ffff_7fa0_0000, 0x8000_0000_8000_0000, 0x3ff5_5555_5555_5555];
         let plane = |k: usize| bits.iter().map(|b| f64::from_bits(b.rotate_left(k as u32))).collect();
         let planes: Vec<Vec<f64>> = (0..State::PLANES).map(plane).collect();
-        let state = State { paths: 7, planes };
+        let state = State { paths: 7, base: None, planes };
         let about = About { settings: vec!["--seed 0".into()], accuracy: 0.02 };
         let part = Crop { x: 5, y: 0, width: 3, height: 2 };
         let folder = tempfile::tempdir().expect("a folder");

@@ -25,6 +25,8 @@ pub struct Tile<'a> {
     pub(crate) part: Crop,
     /// The indices of its pixels in the part, and their sums.
     pub(crate) sums: &'a [(usize, Sums)],
+    /// The paths that were added to all of them.
+    pub paths: u64,
 }
 
 impl Tile<'_> {

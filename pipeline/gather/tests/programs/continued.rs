@@ -96,6 +96,44 @@ fn parts_are_the_whole_bit_for_bit() {
     }
 }
 
+/// Paths that pixels share by the noise of their neighbors are continued with the same shares, 10 + 14 = 24, with and
+/// without a target error and with any number of threads. Sums without shares, of an image of `--spp` as those of older
+/// versions are, are continued to a target error too.
+///
+/// Seen to catch: shares not kept, and shares of the sums so far; the same number of paths taken for all pixels of the
+/// sums; another rounding where paths go on; sums without shares refused.
+#[test]
+fn shared_paths_are_continued_with_their_shares() {
+    let (bench, scene, view) = bench();
+    let render = |output: &str, more: &[&str]| {
+        let own = ["--calibration", "none", "--stats", "stats.json"];
+        bench.succeed("gather", &arguments(&scene, &view, output, &[&own[..], more].concat()));
+        let stats = bench.json("stats.json");
+        let number = |name: &str| stats[name].as_u64().expect("a number");
+        let paths = ["fewest_paths_of_a_pixel", "paths_per_pixel", "most_paths_of_a_pixel"].map(number);
+        (stats["ended_by"].as_str().expect("a word").to_owned(), paths)
+    };
+    // The sum over all samples does not depend on what is planned, as the accuracy of a cut does.
+    let all = ["--estimator", "exhaustive"];
+    let target = [&all[..], &["--target-error", "0.005"]].concat();
+    let (end, [fewest, mean, most]) = render("whole.exr", &[&target[..], &["--spp", "24"]].concat());
+    assert!(end == "paths" && mean == 24 && fewest < 20 && 40 < most, "{end}: {fewest}, {mean}, {most}");
+    render("first.exr", &[&target[..], &["--spp", "10", "--keep-sums", "--threads", "1"]].concat());
+    let more = ["--spp", "14", "--continue", "first.exr"];
+    assert_eq!(render("more.exr", &[&target[..], &more].concat()), (end, [fewest, mean, most]));
+    assert!(bench.read("more.exr") == bench.read("whole.exr"));
+    assert_eq!(render("plain.exr", &[&all[..], &more].concat()).1, [fewest, mean, most]);
+    let bits = |image: &str| -> Vec<u32> {
+        bench.image(image).channels.iter().flat_map(|c| c.samples.iter().map(|x| x.to_bits())).collect()
+    };
+    assert!(bits("plain.exr") == bits("whole.exr"));
+
+    render("first.exr", &["--spp", "6", "--keep-sums"]);
+    assert!(!bench.image("first.sums").attributes.contains_key("pcsss/pathsBeforeSharing"));
+    let (end, [fewest, mean, most]) = render("met.exr", &["--continue", "first.exr", "--target-error", "0.03"]);
+    assert!(end == "target error" && 6 <= fewest && fewest < mean && mean < most, "{end}: {fewest}, {mean}, {most}");
+}
+
 /// The image that was stopped goes on too, and one of a given accuracy keeps that of its gathers.
 #[test]
 fn the_accuracy_of_gathers_is_kept() {
