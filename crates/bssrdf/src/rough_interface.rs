@@ -90,7 +90,7 @@ impl RoughInterface<'_> {
         lobe_of([0, 1, 2].map(|k| self.moment(|cosine| cosine.powi(k))), exit_moment(0, self.eta), mean_cosine)
     }
 
-    /// The exit lobe of a channel of a half-space whose lobe behind a smooth interface is known (docs/method.md 18.8).
+    /// The exit lobe of a channel of a half-space whose lobe behind a smooth interface is known (docs/method.md 18.7).
     pub fn lobe_below(&self, c: &Coefficients, [a, b]: [f64; 2]) -> [f64; 2] {
         let leaving = |cosine: f64| (a + b * cosine) * self.gain(c, cosine);
         let [power, along] = [self.moment(leaving), self.moment(|cosine| leaving(cosine) * cosine)];

@@ -22,7 +22,9 @@ pub struct About {
 
 const IMAGE: &str = "pcsss/image";
 const PATHS: &str = "pcsss/paths";
-/// Paths of each pixel before they were shared; absent unless they are.
+/// The same, and paths of each pixel before they were shared, where pixels share them. They are absent elsewhere, so that a
+/// program that knows of no shares finds no paths, and refuses the file.
+const SHARED_PATHS: &str = "pcsss/sharedPaths";
 const BASE: &str = "pcsss/pathsBeforeSharing";
 const SETTINGS: &str = "pcsss/settings";
 const ACCURACY: &str = "pcsss/gatherAccuracy";
@@ -45,7 +47,7 @@ pub fn encode(
     });
     let attributes = [
         (IMAGE, Attribute::Text(digest(image))),
-        (PATHS, Attribute::Int(state.paths as i32)),
+        (if state.base.is_some() { SHARED_PATHS } else { PATHS }, Attribute::Int(state.paths as i32)),
         (SETTINGS, Attribute::Texts(about.settings.clone())),
         (ACCURACY, Attribute::Double(about.accuracy)),
     ];
@@ -82,8 +84,9 @@ pub fn read(image: &Path, threads: NonZeroUsize) -> Result<(State, About), Failu
 
 fn parse(file: &Image) -> Option<(State, About)> {
     let attributes: &BTreeMap<String, Attribute> = &file.attributes;
+    let paths = attributes.get(if attributes.contains_key(BASE) { SHARED_PATHS } else { PATHS })?;
     let (Attribute::Int(paths), Attribute::Texts(settings), Attribute::Double(accuracy)) =
-        (attributes.get(PATHS)?, attributes.get(SETTINGS)?, attributes.get(ACCURACY)?)
+        (paths, attributes.get(SETTINGS)?, attributes.get(ACCURACY)?)
     else {
         return None;
     };
