@@ -214,7 +214,9 @@ Scattered light by the cosine between the view and the normal, ratios with stand
 * **Ours / Cycles** is the error of the calibrated model ([accuracy](accuracy.md)), with the entry and exit of light
   through a rough boundary (method.md, 18.6 and 18.7).
 * Roughness changes the scattered light of the whole sphere by {mine} % in ours, by {exact} % in our walks and by
-  {other} % in Cycles, with a standard error of {spread} %.
+  {other} % in Cycles, with a standard error of {spread} %. A walk meets the boundary several times, and the two
+  programs differ in what meets several microfacets there: a direction of its own here, and in Cycles a factor on those
+  that meet one (see *Metal*). That this is all of the difference is not shown.
 
 ## Noise and time
 
