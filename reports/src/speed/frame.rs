@@ -14,114 +14,35 @@ use crate::{
 /// The target error, as `gather` estimates it.
 const ERROR: f64 = 0.01;
 
-/// The most seconds that the frame should take.
+/// The most seconds that the frame should take, and the most paths of a pixel.
 const SECONDS: f64 = 60.0;
+const MOST_PATHS: u64 = 4096;
 
-/// Estimates for a cloud before the frame is rendered.
-struct Trial {
-    samples: u64,
-    /// Squared estimated error that more paths do not reduce.
-    floor: f64,
-    /// Squared estimated error of one path a pixel, without that.
-    one_path: f64,
-    /// Seconds of both programs without paths, and per path a pixel.
-    fixed: f64,
-    per_path: f64,
-    taken: Taken,
-}
-
-impl Trial {
-    fn paths(&self) -> f64 {
-        (self.one_path / (ERROR * ERROR - self.floor)).max(2.0)
-    }
-
-    fn seconds(&self) -> f64 {
-        self.fixed + self.paths() * self.per_path
-    }
-}
-
-/// Renders the frame, or predicts it where it would take too long.
+/// Renders the frame with paths to the target error, as anybody would: their number is what it takes.
 pub fn frame(harness: &mut Harness, subject: &Subject) -> Result<Findings, Error> {
     let size = harness.effort.of([96, 54], [1920, 1080], [1920, 1080]);
-    let shot = Shot { size, ..harness.shot(subject, MARBLE, DEFAULTS) };
+    let samples = harness.effort.of(10_000, 1_000_000, 1_000_000);
+    let more = vec!["--target-error".into(), ERROR.to_string()];
+    let shot = Shot { size, samples, spp: MOST_PATHS, more, ..harness.shot(subject, MARBLE, DEFAULTS) };
+    harness.say(&format!("frame: K {}, to {}", count(samples), percent(ERROR)));
+    let taken = harness.take(&shot)?;
     let mut findings = Findings::default();
-    let title = format!("A frame of {} x {}", size[0], size[1]);
-    let what = format!("{}, marble, {} x {}: seconds to 1 % estimated error", subject.name, size[0], size[1]);
-    let Some(trial) = choose(harness, &shot)? else {
-        let why = "out of reach: no cloud that was tried is good enough";
-        findings.targets.push(Target::at_most(what, SECONDS, None, why));
-        return Ok(findings);
-    };
-    let (taken, spp) = render(harness, &shot, trial)?;
-    let (seconds, basis) = match taken {
-        Ok(taken) => {
-            let seconds = taken.seconds();
-            findings.section(title, costs(&taken, spp, None));
-            (seconds, format!("measured, {}", percent(estimate(&taken).sqrt())))
-        }
-        Err(trial) => {
-            findings.section(title, costs(&trial.taken, 6, Some((spp, trial.seconds()))));
-            (trial.seconds(), "predicted from 2 and 6 paths a pixel".into())
-        }
-    };
+    findings.section(format!("A frame of {} x {}", size[0], size[1]), costs(&taken, size));
     harness.forget_clouds();
-    findings.targets.push(Target::at_most(what, SECONDS, Some(seconds), basis));
+    let what = format!("{}, marble, {} x {}: seconds to 1 % estimated error", subject.name, size[0], size[1]);
+    let reached = estimate(&taken) <= ERROR;
+    let basis = format!("measured, {}", percent(estimate(&taken)));
+    findings.targets.push(Target::at_most(what, SECONDS, reached.then(|| taken.seconds()), basis));
     Ok(findings)
 }
 
-/// Finds the smallest cloud whose estimated error takes less than half of the squared target error.
-fn choose(harness: &mut Harness, shot: &Shot) -> Result<Option<Trial>, Error> {
-    let counts = harness.effort.of(
-        vec![10_000],
-        vec![1_000_000, 4_000_000, 16_000_000],
-        vec![1_000_000, 4_000_000, 16_000_000, 64_000_000],
-    );
-    for samples in counts {
-        harness.say(&format!("frame: trying K {}", count(samples)));
-        let few = harness.take(&Shot { samples, spp: 2, ..shot.clone() })?;
-        let more = harness.take(&Shot { samples, spp: 6, ..shot.clone() })?;
-        let one_path = (estimate(&few) - estimate(&more)).max(0.0) / (1.0 / 2.0 - 1.0 / 6.0);
-        // A floor within the noise of the two estimates counts as none.
-        let floor = Some(estimate(&more) - one_path / 6.0).filter(|f| *f > 0.05 * one_path / 6.0).unwrap_or(0.0);
-        let per_path = (more.gathering.wall - few.gathering.wall).max(0.0) / 4.0;
-        let fixed = more.seconds() - 6.0 * per_path;
-        if floor < 0.5 * ERROR * ERROR || harness.effort == crate::speed::effort::Effort::Tiny {
-            return Ok(Some(Trial {
-                samples,
-                floor: floor.min(0.5 * ERROR * ERROR),
-                one_path,
-                fixed,
-                per_path,
-                taken: more,
-            }));
-        }
-    }
-    Ok(None)
-}
-
-/// Squared estimated error.
+/// Estimated error.
 fn estimate(taken: &Taken) -> f64 {
-    taken.gathering.number("estimated_relative_error").map_or(f64::NAN, |e| e * e)
-}
-
-/// Renders the frame; returns it with its paths a pixel, or the trial if the frame would take too long.
-fn render(harness: &mut Harness, shot: &Shot, trial: Trial) -> Result<(Result<Taken, Trial>, u64), Error> {
-    let mut spp = (1.02 * trial.paths()).ceil() as u64;
-    if trial.seconds() > harness.effort.longest_run() {
-        return Ok((Err(trial), spp));
-    }
-    harness.say(&format!("frame: {spp} paths a pixel, about {}", time(trial.seconds())));
-    let taken = harness.take(&Shot { samples: trial.samples, spp, ..shot.clone() })?;
-    if estimate(&taken) <= ERROR * ERROR || estimate(&taken).is_nan() {
-        return Ok((Ok(taken), spp));
-    }
-    spp = (1.1 * spp as f64 * estimate(&taken) / (ERROR * ERROR)).ceil() as u64;
-    let taken = harness.take(&Shot { samples: trial.samples, spp, ..shot.clone() })?;
-    Ok((Ok(taken), spp))
+    taken.gathering.number("estimated_relative_error").unwrap_or(f64::NAN)
 }
 
 /// The costs of the steps of both programs, the three largest first.
-fn costs(taken: &Taken, spp: u64, predicted: Option<(u64, f64)>) -> String {
+fn costs(taken: &Taken, size: [u64; 2]) -> String {
     let mut steps = Vec::new();
     for (program, spent) in [("sample-surface", &taken.sampling), ("gather", &taken.gathering)] {
         let seconds = spent.statistics["seconds"].as_object();
@@ -131,9 +52,16 @@ fn costs(taken: &Taken, spp: u64, predicted: Option<(u64, f64)>) -> String {
     steps.sort_by(|a, b| b.1.total_cmp(&a.1));
     let total = taken.seconds();
     let rows: Vec<_> = steps.iter().take(3).map(|(n, s)| vec![n.clone(), three(*s), percent(s / total)]).collect();
-    let samples = taken.gathering.number("samples_drawn").unwrap_or(0.0) as u64;
-    let error = percent(estimate(taken).sqrt());
-    let run = format!("K = {}, {spp} paths a pixel: {}, estimated error {error}.", count(samples), time(total));
-    let rest = predicted.map_or(String::new(), |(spp, s)| format!(" 1 % would take {spp} paths: {}.", time(s)));
-    format!("{run}{rest} The three largest costs:\n\n{}", table(&["step", "seconds", "share"], &rows))
+    let number = |key: &str| taken.gathering.number(key).unwrap_or(0.0);
+    format!(
+        "K = {}, {} paths a pixel on average, {} to {} by the noise of the pixels around: {}, estimated error {}. The \
+         three largest costs:\n\n{}",
+        count(number("samples_drawn") as u64),
+        three(number("paths") / (size[0] * size[1]) as f64),
+        number("fewest_paths_of_a_pixel"),
+        number("most_paths_of_a_pixel"),
+        time(total),
+        percent(estimate(taken)),
+        table(&["step", "seconds", "share"], &rows)
+    )
 }
