@@ -7,12 +7,12 @@
 use bsdf::fresnel;
 use bssrdf::Coefficients;
 use scene::{
-    DVec3, NormalKind, SurfacePoint,
+    DVec3,
     light::{DirectionalLight, Light, PointLight, Spot},
     random::{Purpose, Stream},
     warp,
 };
-use test_support::meshes::{self, Mesh, Part, World, world};
+use test_support::meshes::{self, Mesh, Part, World, uniform_point, world};
 use walks::{Beams, Connections, End, Matter, Sequence, Smooth, Solid, Start, observed_walk, walk};
 
 const LIGHT: Purpose = Purpose::LightWalk;
@@ -39,26 +39,12 @@ impl Case {
         Solid::new(&self.world.scene.mesh, &self.world.rays, 0, |_| true).expect("it has triangles")
     }
 
-    /// A uniform point of the mesh, and the mesh's area.
-    fn point(&self, random: &mut Sequence) -> (SurfacePoint, f64) {
-        let mesh = &self.world.scene.mesh;
-        let areas: Vec<f64> = (0..mesh.triangles.len()).map(|k| mesh.area(k)).collect();
-        let total: f64 = areas.iter().sum();
-        let mut rest = random.uniform() * total;
-        let chosen = areas.iter().position(|area| {
-            rest -= area;
-            rest < 0.0
-        });
-        let weights = warp::triangle([random.uniform(), random.uniform()]);
-        (mesh.point(chosen.unwrap_or(0) as u32, weights, NormalKind::Geometric), total)
-    }
-
     /// The power that walks from the light bring out.
     fn by_light(&self, walks: u64) -> Powers {
         let (solid, stream) = (self.solid(), Stream::new(1, LIGHT));
         powers(walks, |k| {
             let mut random = Sequence::new(stream.item(k));
-            let (point, area) = self.point(&mut random);
+            let (point, area) = uniform_point(&self.world.scene.mesh, [(); 3].map(|()| random.uniform()));
             let arriving = self.light.illuminate(&point, [0.0; 2])?;
             let entry = fresnel::enter(point.normal, arriving.direction, self.matter.eta)?;
             let from = Some(point.triangle);
@@ -81,7 +67,7 @@ impl Case {
         let beams = [beams];
         powers(walks, |k| {
             let mut random = Sequence::new(stream.item(k));
-            let (point, area) = self.point(&mut random);
+            let (point, area) = uniform_point(&self.world.scene.mesh, [(); 3].map(|()| random.uniform()));
             let (x, y) = point.normal.any_orthonormal_pair();
             let view = warp::cosine_hemisphere_in([x, y, point.normal], [random.uniform(), random.uniform()]);
             let entry = fresnel::enter(point.normal, view, matter.eta)?;

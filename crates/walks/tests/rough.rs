@@ -5,12 +5,12 @@
 use bsdf::{RoughBoundary, RoughDielectric};
 use bssrdf::Coefficients;
 use scene::{
-    DVec3, NormalKind, SurfacePoint,
+    DVec3, SurfacePoint,
     light::{DirectionalLight, Light, LightTree, PointLight},
     random::{Purpose, Stream},
     warp,
 };
-use test_support::meshes::{self, Mesh, Part, World, world};
+use test_support::meshes::{self, Mesh, Part, World, uniform_point, world};
 use walks::{Boundary, End, Lamps, Matter, Meeting, Rough, Sequence, Slab, Smooth, Solid, Start, observed_walk};
 
 /// A mean and its squared standard error.
@@ -113,20 +113,6 @@ impl Case {
         Solid::new(&self.world.scene.mesh, &self.world.rays, 0, |_| true).expect("it has triangles")
     }
 
-    /// A uniform point of the mesh, and the mesh's area.
-    fn point(&self, random: &mut Sequence) -> (SurfacePoint, f64) {
-        let mesh = &self.world.scene.mesh;
-        let areas: Vec<f64> = (0..mesh.triangles.len()).map(|k| mesh.area(k)).collect();
-        let total: f64 = areas.iter().sum();
-        let mut rest = random.uniform() * total;
-        let chosen = areas.iter().position(|area| {
-            rest -= area;
-            rest < 0.0
-        });
-        let weights = warp::triangle([random.uniform(), random.uniform()]);
-        (mesh.point(chosen.unwrap_or(0) as u32, weights, NormalKind::Geometric), total)
-    }
-
     /// The beginning of a walk of light or of a view that arrives at a point from `towards`, and what share enters.
     fn entering(&self, point: &SurfacePoint, towards: DVec3, random: &mut Sequence) -> Option<(Start, f64)> {
         let (position, face, normal) = (point.position, point.triangle, point.normal);
@@ -141,7 +127,7 @@ impl Case {
         let (solid, stream) = (self.solid(), Stream::new(1, Purpose::LightWalk));
         self.powers(walks, |k| {
             let mut random = Sequence::new(stream.item(k));
-            let (point, area) = self.point(&mut random);
+            let (point, area) = uniform_point(&self.world.scene.mesh, [(); 3].map(|()| random.uniform()));
             let arriving = self.light.illuminate(&point, [0.0; 2])?;
             let from = Some(point.triangle);
             if !self.world.rays.visible(point.position, arriving.direction, arriving.distance, from) {
@@ -161,7 +147,7 @@ impl Case {
         let lights = LightTree::new([&*self.light]);
         self.powers(walks, |k| {
             let mut random = Sequence::new(stream.item(k));
-            let (point, area) = self.point(&mut random);
+            let (point, area) = uniform_point(&self.world.scene.mesh, [(); 3].map(|()| random.uniform()));
             let (x, y) = point.normal.any_orthonormal_pair();
             let view = warp::cosine_hemisphere_in([x, y, point.normal], [random.uniform(), random.uniform()]);
             let (start, share) = self.entering(&point, view, &mut random)?;

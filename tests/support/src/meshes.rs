@@ -6,7 +6,7 @@ use crate::{
     glb::{Asset, OPTIONS},
 };
 use glam::{DQuat, DVec3, Vec3};
-use scene::{ImportOptions, Rays, Scene};
+use scene::{ImportOptions, NormalKind, Rays, Scene, SurfacePoint, warp};
 use serde_json::{Value, json};
 use std::{collections::HashMap, f64::consts::TAU, path::Path};
 
@@ -227,6 +227,18 @@ pub fn sphere(radius: f64, splits: u32) -> Mesh {
     }
     mesh.positions.iter_mut().for_each(|p| *p *= radius as f32);
     mesh
+}
+
+/// A uniform point of a mesh by three uniform numbers, and the mesh's area, m².
+pub fn uniform_point(mesh: &scene::Mesh, [choice, u, v]: [f64; 3]) -> (SurfacePoint, f64) {
+    let areas: Vec<f64> = (0..mesh.triangles.len()).map(|k| mesh.area(k)).collect();
+    let total: f64 = areas.iter().sum();
+    let mut rest = choice * total;
+    let chosen = areas.iter().position(|area| {
+        rest -= area;
+        rest < 0.0
+    });
+    (mesh.point(chosen.unwrap_or(0) as u32, warp::triangle([u, v]), NormalKind::Geometric), total)
 }
 
 #[cfg(test)]

@@ -70,13 +70,18 @@ pub fn with_picture(bytes: &[u8], material: Value, sampler: Value) -> Asset {
     let mut asset = Asset::new();
     let primitive = square(&mut asset, material);
     asset.mesh(primitive);
+    add_picture(&mut asset, bytes, sampler);
+    asset
+}
+
+/// Adds texture 0, whose picture is inside the file.
+pub fn add_picture(asset: &mut Asset, bytes: &[u8], sampler: Value) {
     let view = json!({ "buffer": 0, "byteOffset": asset.binary.len(), "byteLength": bytes.len() });
     asset.binary.extend(bytes);
     let view = asset.push("bufferViews", view);
     asset.push("images", json!({ "bufferView": view, "mimeType": "image/png", "name": "weave" }));
     asset.push("samplers", sampler);
     asset.push("textures", json!({ "source": 0, "sampler": 0 }));
-    asset
 }
 
 /// The color of the square at x and y.

@@ -1,7 +1,7 @@
 //! Normal maps, at known points of a square.
 
 use crate::{
-    import_textures::{NEAREST, encoded, square},
+    import_textures::{NEAREST, add_picture, encoded, square},
     meshes::random,
 };
 use image::{ImageFormat, Rgba, RgbaImage};
@@ -18,13 +18,7 @@ fn mapped(picture: &RgbaImage, texture: Value) -> Asset {
     let mut primitive = square(&mut asset, json!({ "name": "Bark", "normalTexture": of_material }));
     primitive["attributes"]["NORMAL"] = json!(asset.vectors(&[[0.0, 0.0, 1.0]; 4]));
     asset.mesh(primitive);
-    let bytes = encoded(picture, ImageFormat::Png);
-    let view = json!({ "buffer": 0, "byteOffset": asset.binary.len(), "byteLength": bytes.len() });
-    asset.binary.extend(bytes);
-    let view = asset.push("bufferViews", view);
-    asset.push("images", json!({ "bufferView": view, "mimeType": "image/png" }));
-    asset.push("samplers", json!({ "magFilter": NEAREST }));
-    asset.push("textures", json!({ "source": 0, "sampler": 0 }));
+    add_picture(&mut asset, &encoded(picture, ImageFormat::Png), json!({ "magFilter": NEAREST }));
     asset
 }
 

@@ -1,6 +1,6 @@
 //! Thin walls, which scatter light to both sides.
 
-use crate::import_textures::{NEAREST, linear, png};
+use crate::import_textures::{NEAREST, add_picture, linear, png};
 use scene::{
     DVec3, Rays, Scene, WallShares,
     light::{Light, LightTree, reflected},
@@ -83,13 +83,8 @@ fn files_describe_walls() {
 
 /// The leaf with a picture of two by two texels as its only texture, over the square; `extensions` name it.
 fn textured(extensions: Value) -> Asset {
-    let (mut asset, bytes) = (leaf(extensions), png());
-    let view = json!({ "buffer": 0, "byteOffset": asset.binary.len(), "byteLength": bytes.len() });
-    asset.binary.extend(bytes);
-    let view = asset.push("bufferViews", view);
-    asset.push("images", json!({ "bufferView": view, "mimeType": "image/png" }));
-    asset.push("samplers", json!({ "magFilter": NEAREST }));
-    asset.push("textures", json!({ "source": 0, "sampler": 0 }));
+    let mut asset = leaf(extensions);
+    add_picture(&mut asset, &png(), json!({ "magFilter": NEAREST }));
     asset
 }
 
