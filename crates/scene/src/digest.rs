@@ -61,24 +61,12 @@ impl Scene {
     /// Identity of what the file states of metal and roughness, as a BLAKE3 digest; none if all surfaces are matt or, if
     /// marked as translucent, smooth.
     pub fn gloss_digest(&self) -> Option<[u8; 32]> {
-        let shown = |m: &Material| m.gloss.as_ref().is_some_and(|gloss| !m.volume || gloss.is_rough());
-        self.digest_of_gloss((0..self.materials.len()).filter(|k| shown(&self.materials[*k])))
-    }
-
-    /// Identity of the roughness of a translucent material, as a BLAKE3 digest; none if it is smooth.
-    pub fn roughness_digest(&self, material: u16) -> Option<[u8; 32]> {
-        let gloss = self.materials.get(usize::from(material))?.gloss.as_ref()?;
-        self.digest_of_gloss(gloss.is_rough().then_some(usize::from(material)).into_iter())
-    }
-
-    /// That of the gloss of some materials; none if there are none.
-    fn digest_of_gloss(&self, materials: impl Iterator<Item = usize>) -> Option<[u8; 32]> {
         let mut hasher = blake3::Hasher::new();
-        let mut any = false;
-        for (k, gloss) in materials.filter_map(|k| Some((k, self.materials[k].gloss.as_ref()?))) {
-            any = true;
+        let shown = |m: &'_ Material| m.gloss.clone().filter(|gloss| !m.volume || gloss.is_rough());
+        let all: Vec<_> = self.materials.iter().enumerate().filter_map(|(k, m)| Some((k, shown(m)?))).collect();
+        for (k, gloss) in &all {
             let schlick = [gloss.dielectric.normal, gloss.dielectric.grazing].map(|v| v.to_array());
-            let numbers = [k as f64, gloss.metallic, gloss.roughness];
+            let numbers = [*k as f64, gloss.metallic, gloss.roughness];
             let numbers = numbers.into_iter().chain(schlick.into_iter().flatten());
             numbers.for_each(|x| _ = hasher.update(&x.to_le_bytes()));
             if let Some(texture) = &gloss.texture {
@@ -88,7 +76,19 @@ impl Scene {
             }
         }
         self.mesh.gloss_coordinates.as_flattened().iter().for_each(|x| _ = hasher.update(&x.to_le_bytes()));
-        any.then(|| *hasher.finalize().as_bytes())
+        (!all.is_empty()).then(|| *hasher.finalize().as_bytes())
+    }
+
+    /// Identity of the roughness of a translucent material, as a BLAKE3 digest; none if it is smooth.
+    pub fn roughness_digest(&self, material: u16) -> Option<[u8; 32]> {
+        let gloss = self.materials.get(usize::from(material))?.gloss.as_ref().filter(|gloss| gloss.is_rough())?;
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(&gloss.roughness.to_le_bytes());
+        if let Some(texture) = &gloss.texture {
+            put_texture(texture, &mut |bytes| _ = hasher.update(bytes));
+            self.mesh.gloss_coordinates.as_flattened().iter().for_each(|x| _ = hasher.update(&x.to_le_bytes()));
+        }
+        Some(*hasher.finalize().as_bytes())
     }
 
     /// Gives `put` all that normal maps depend on.

@@ -114,8 +114,8 @@ pub const MAX_REFLECTIONS: u32 = 100_000;
 const LOW_WEIGHT: f64 = 0.1;
 const ROULETTE_WEIGHT: f64 = 0.2;
 
-/// Follows one walk below a smooth boundary to its end (docs/method.md section 14); `collide` sees every collision outside of jumps, before the
-/// light is scattered.
+/// Follows one walk below a smooth boundary to its end (docs/method.md section 14); `collide` sees every collision outside
+/// of jumps, before the light is scattered.
 pub fn walk<D: Domain>(
     domain: &D,
     matter: &Matter,

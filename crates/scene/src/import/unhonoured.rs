@@ -80,7 +80,8 @@ impl Collected<'_> {
         }
     }
 
-    /// Adds the textures of base color, emission, metallic and roughness, normals, and thin walls with their samplers and images.
+    /// Adds the textures of base color, emission, metallic and roughness, normals, and thin walls with their samplers and
+    /// images.
     fn add_pictures(&mut self, root: &Root, materials: &BTreeSet<u16>) {
         let materials = materials.iter().filter_map(|k| root.materials.get(usize::from(*k)));
         let own = |m: &json::Material| {
