@@ -1,7 +1,9 @@
 //! The hierarchical sum: a cut through the tree over the samples.
 //!
 //! An open leaf contributes all of its samples. A closed node of `n` samples contributes one of them, picked uniformly,
-//! `n` times. The sum is unbiased for every cut that is chosen without regard to the samples that are picked. A node is
+//! `n` times. The sum is unbiased for every cut that is chosen without regard to the samples that are picked. Siblings
+//! pick samples of opposite places in the order: both are split alike, so that the one lies about as far to one side of
+//! its node as the other to the other side, and the errors of their positions cancel to first order. A node is
 //! opened while the standard deviation that it would add, as [`FalloffTables`] predict it, exceeds a threshold. The
 //! threshold is the same for all nodes, which takes the fewest nodes for a given sum of variances. It follows from the
 //! target error and from an estimate of the sum, which is the contribution of the open leaves and the predicted one of
@@ -78,6 +80,10 @@ const START: f32 = 0.7;
 /// The predicted error may exceed the target by this factor.
 const GOOD_ENOUGH: f32 = 1.2;
 
+/// A node whose error exceeds the threshold by this factor is opened by two levels at once, and by its square by three.
+/// From 2.8 to 6 the sums cost the same.
+const LEVEL: f32 = 4.0;
+
 /// The largest number of times that the threshold is lowered.
 const ROUNDS: usize = 6;
 
@@ -141,7 +147,7 @@ impl<M: LaneModel> Cut<'_, M> {
         let Scratch { frontier, closed, open, .. } = &mut *self.scratch;
         closed.retain(|node| {
             if node.error > threshold {
-                leaves.expand(node.id, frontier, open);
+                leaves.expand(node.id, levels(node.error, threshold), frontier, open);
                 return false;
             }
             true
@@ -166,11 +172,11 @@ impl<M: LaneModel> Cut<'_, M> {
                 let (error, value, max_value) = (predicted.error[i], predicted.value[i], predicted.max_value[i]);
                 let node = Closed { id: ids[i], error, value, max_value };
                 let opens = match criterion {
-                    Criterion::Wide => predicted.wide[i],
-                    Criterion::Above(threshold) => node.error > threshold,
+                    Criterion::Wide => u32::from(predicted.wide[i]),
+                    Criterion::Above(threshold) => levels(error, threshold),
                 };
-                if opens {
-                    leaves.expand(node.id, frontier, open);
+                if opens > 0 {
+                    leaves.expand(node.id, opens, frontier, open);
                 } else if nodes.get(ids[i] as usize).is_some_and(|n| n.flux > 0.0) {
                     closed.push(node);
                 }
@@ -194,8 +200,7 @@ impl<M: LaneModel> Cut<'_, M> {
             let Some(count) = end.min(self.samples.len() as u64).checked_sub(first).filter(|count| *count > 0) else {
                 continue;
             };
-            let xi = u64::from(random_bits(node.id, self.exit.key));
-            let index = (first + ((xi * count) >> 32)) as u32;
+            let index = (first + ((u64::from(place(node.id, self.exit.key)) * count) >> 32)) as u32;
             self.samples.prefetch(index);
             picks.push((index, count as f32));
         }
@@ -235,6 +240,23 @@ fn of_open(sum: &Accumulator, scale: f32) -> f32 {
     (sum.total().element_sum() * f64::from(scale)) as f32
 }
 
+/// The place, in the order of a node's samples, of the one that is picked: a fraction in units of 2⁻³². Siblings pick
+/// opposite places.
+#[inline(always)]
+fn place(id: u32, key: u64) -> u32 {
+    let of_pair = random_bits(id >> 1, key);
+    if id.is_multiple_of(2) { of_pair } else { !of_pair }
+}
+
+/// The number of levels by which a node is opened, 0 if it stays closed. A child has half of the flux of its parent, over
+/// less of its extent, and so about a third of its error: below a node far above the threshold all are opened.
+#[inline(always)]
+fn levels(error: f32, threshold: f32) -> u32 {
+    u32::from(error > threshold)
+        + u32::from(error > LEVEL * threshold)
+        + u32::from(error > LEVEL * LEVEL * threshold)
+}
+
 /// The leaves of the tree.
 #[derive(Clone, Copy)]
 struct Leaves {
@@ -251,11 +273,14 @@ impl Leaves {
         Leaves { first: first_leaf(tiles as u64) as u32, tiles: tiles as u32 }
     }
 
-    /// Adds the children of a node to the frontier, or a leaf to the open ones.
+    /// Adds the nodes that lie `levels` below a node, or the leaves below it, to the frontier, or a leaf to the open
+    /// ones.
     #[inline(always)]
-    fn expand(self, id: u32, frontier: &mut Vec<u32>, open: &mut Vec<u32>) {
+    fn expand(self, id: u32, levels: u32, frontier: &mut Vec<u32>, open: &mut Vec<u32>) {
         if id < self.first {
-            frontier.extend([2 * id, 2 * id + 1]);
+            let levels = levels.min(self.first.ilog2() - id.ilog2());
+            let first = id << levels;
+            frontier.extend(first..first + (1 << levels));
         } else if id - self.first < self.tiles {
             open.push(id - self.first);
         }
@@ -312,4 +337,48 @@ fn predict(tables: &FalloffTables, exit: &Exit, nodes: &[Node], scale: f32, ids:
         predicted.wide[i] = WIDE * radius[i] * radius[i] > far2;
     }
     predicted
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every node's place is uniform, that of its sibling is opposite, and that of other nodes is independent. The
+    /// products of 40,000 pairs of places from −1/2 to 1/2, of variance 1/144 each, have a mean within 5 standard
+    /// deviations, and so has the place over the root of 12.
+    ///
+    /// Seen to catch: places of siblings that are equal, and that are independent; one place for four nodes.
+    #[test]
+    fn siblings_pick_opposite_places() {
+        let centered = |id: u32, key: u64| f64::from(place(id, key)) / 2f64.powi(32) - 0.5;
+        for id in [2, 6, 1 << 20] {
+            let moments = (0..40_000u64).fold([0.0; 4], |sum, key| {
+                let key = key.wrapping_mul(0x9E37_79B9_7F4A_7C15);
+                assert_eq!(place(id, key), !place(id + 1, key));
+                let [own, next, child] = [id, id + 2, 2 * id].map(|id| centered(id, key));
+                [sum[0] + own, sum[1] + own * own, sum[2] + own * next, sum[3] + own * child]
+            });
+            let [mean, square, next, child] = moments.map(|m| m / 4e4);
+            let known = [mean / 12f64.sqrt(), square - 1.0 / 12.0, next, child];
+            assert!(known.iter().all(|m| m.abs() < 5.0 / 12.0 / 200.0), "{id}: {known:?}");
+        }
+    }
+
+    /// A node is opened by the levels that it exceeds the threshold for, but not beyond the leaves.
+    ///
+    /// Seen to catch: levels that are not limited, which take nodes of another tree's depth for leaves.
+    #[test]
+    fn nodes_far_above_the_threshold_are_opened_by_several_levels() {
+        assert_eq!([0.5, 1.0, 1.5, 4.5, 17.0].map(|error| levels(error, 1.0)), [0, 0, 1, 2, 3]);
+        let leaves = Leaves { first: 8, tiles: 6 };
+        let opened = |id, levels| {
+            let (mut frontier, mut open) = (Vec::new(), Vec::new());
+            leaves.expand(id, levels, &mut frontier, &mut open);
+            (frontier, open)
+        };
+        assert_eq!(opened(1, 2), (vec![4, 5, 6, 7], vec![]));
+        assert_eq!(opened(3, 3), (vec![12, 13, 14, 15], vec![]));
+        assert_eq!(opened(9, 3), (vec![], vec![1]));
+        assert_eq!(opened(15, 1), (vec![], vec![]));
+    }
 }
