@@ -84,11 +84,11 @@ impl PixelSum {
         [difference * difference / 4.0 + covariance(edge), (within[0] + within[1]) / 4.0]
     }
 
-    /// [`PixelSum::variances`], the first, without the part in which two images of the same paths differ; their mean
-    /// expects the pixel's variance without that part.
+    /// A quarter of the product of the differences of the halves of two images of the same paths: their mean expects
+    /// the pixel's variance without the part in which the images differ. At edges it lacks the covariance of the
+    /// halves, whose estimates are much larger than it.
     pub(crate) fn shared_variance(&self, edge: Option<&Edge>, other: &PixelSum, other_edge: Option<&Edge>) -> DVec3 {
-        let product = self.difference(edge) * other.difference(other_edge) / 4.0;
-        product + 0.5 * (covariance(edge) + covariance(other_edge))
+        self.difference(edge) * other.difference(other_edge) / 4.0
     }
 
     /// Mean light of each layer.
