@@ -53,7 +53,7 @@ fn image(alpha: u8, media: &[Medium; 2], blends: bool) -> Vec<DVec3> {
     world.scene.mesh.coordinates = vec![[0.5; 2]; world.scene.mesh.positions.len()];
     let cloud = cloud(&world, &stratified(5000, 3));
     let (scene, rays, clouds) = (&world.scene, &world.rays, from_ref(&cloud));
-    let share = SurfaceColors::new(scene, 0).mean_of(|color| 1.0 - color.w);
+    let share = SurfaceColors::new(scene, 0).mean_of(|color| 1.0 - color.base.w);
     let medium = if blends { media[0].mixed(&media[1], share) } else { media[0].clone() };
     let tinted = blends.then(|| {
         let (tint, _) = Tint::new(scene, 0, &medium, Model::HalfSpace).expect("it has a texture");

@@ -17,7 +17,7 @@ impl Blended {
     pub fn of(scene: &Scene, material: u16) -> Result<Option<Blended>, ReadMediumError> {
         let Some(stated) = scene.materials.get(usize::from(material)) else { return Ok(None) };
         let Some(media) = blended_media(stated)? else { return Ok(None) };
-        let second = SurfaceColors::new(scene, material).mean_of(|color| 1.0 - color.w).clamp(0.0, 1.0);
+        let second = SurfaceColors::new(scene, material).mean_of(|color| 1.0 - color.base.w).clamp(0.0, 1.0);
         let mean = media[0].mixed(&media[1], second);
         Ok(Some(Blended { media, mean }))
     }

@@ -2,7 +2,7 @@
 
 use crate::quoted;
 use bssrdf::{Medium, MediumError, MediumFile, Optics, Unit, built_in, single_scattering_albedo};
-use scene::{Material, ScatterExtension, StatedMedium};
+use scene::{Material, StatedMedium};
 use serde_json::{Map, Value};
 use std::{borrow::Cow, fs, io};
 
@@ -61,9 +61,8 @@ pub fn scene_medium(material: &Material) -> Result<Option<Medium>, ReadMediumErr
     let (extension, albedo) = match scatter {
         None => ("KHR_materials_volume", [0.0; 3]),
         Some(s) => {
-            // In the older draft of the extension the albedo does not depend on g.
-            let g = if s.draft == ScatterExtension::Scatter { asymmetry } else { 0.0 };
-            (s.draft.extension(), s.color.to_array().map(|color| single_scattering_albedo(color, g)))
+            let albedo = |color| single_scattering_albedo(color, s.asymmetry_of_color());
+            (s.draft.extension(), s.color.to_array().map(albedo))
         }
     };
     let extinction = volume.extinction.to_array();
@@ -146,6 +145,7 @@ mod tests {
                 stated: Some(stated),
                 blend: None,
                 medium: Some(volume.clone()),
+                scatter_texture: None,
                 double_sided: false,
             };
             scene_medium(&material).map_err(|e| e.to_string())

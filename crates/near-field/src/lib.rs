@@ -213,7 +213,7 @@ impl Around<'_> {
         if let Some(tint) = &near.tint {
             let scene = surroundings.scene;
             let own = hits.iter().filter(|hit| scene.mesh.triangles[hit.triangle as usize].material == near.material);
-            found.crossings.extend(own.map(|hit| tint.entering(scene.texture_color(hit.triangle, hit.weights))));
+            found.crossings.extend(own.map(|hit| tint.entering(&scene.texture_color(hit.triangle, hit.weights))));
         }
         found.axes.resize(found.points.len() - 1, axis);
     }

@@ -52,7 +52,13 @@ impl Scene {
                 put_texture(texture, &mut put);
             }
         }
-        for coordinates in &self.mesh.wall_coordinates {
+        for (k, material) in self.materials.iter().enumerate().filter(|(k, _)| !self.is_wall(*k as u16)) {
+            let Some(texture) = &material.scatter_texture else { continue };
+            put(b"scatter");
+            put(&(k as u64).to_le_bytes());
+            put_texture(texture, &mut put);
+        }
+        for coordinates in &self.mesh.scatter_coordinates {
             coordinates.as_flattened().iter().for_each(|x| put(&x.to_le_bytes()));
         }
         *hasher.finalize().as_bytes()

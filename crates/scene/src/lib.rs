@@ -67,5 +67,5 @@ pub use mesh::{Mesh, NormalKind, SurfacePoint, Triangle};
 pub use mesh_defects::MeshDefects;
 pub use rays::{Hit, Rays};
 pub use scene::Scene;
-pub use surface_colors::SurfaceColors;
+pub use surface_colors::{SurfaceColors, TextureColor};
 pub use view::{Camera, Projection, View, ViewFile};

@@ -30,6 +30,8 @@ pub struct Material {
     pub blend: Option<StatedMedium>,
     /// The medium of that volume, if the file describes it.
     pub medium: Option<Volume>,
+    /// A texture of the color after multiple scattering. The color of that medium is then the mean over the surface.
+    pub scatter_texture: Option<Texture>,
     /// Whether it emits to both sides.
     pub double_sided: bool,
 }
@@ -38,6 +40,11 @@ impl Material {
     /// True if any channel emits anywhere.
     pub fn emits(&self) -> bool {
         self.emission != DVec3::ZERO
+    }
+
+    /// Whether a texture changes how much light its places reflect, if it is translucent.
+    pub fn is_tinted(&self) -> bool {
+        self.base_texture.is_some() || self.scatter_texture.is_some()
     }
 
     /// True if it emits all over or, by its texture, on half of it or more. A surface with a few lights on it is no lamp.
@@ -183,6 +190,13 @@ pub struct Scatter {
     pub color: DVec3,
     /// Mean cosine of the phase function, between -1 and 1.
     pub asymmetry: f64,
+}
+
+impl Scatter {
+    /// The mean cosine that the albedo depends on beside the color: in the older draft it depends on none.
+    pub fn asymmetry_of_color(&self) -> f64 {
+        if self.draft == ScatterExtension::Scatter { self.asymmetry } else { 0.0 }
+    }
 }
 
 /// The draft extension that the numbers come from: the two give different albedos for the same numbers.

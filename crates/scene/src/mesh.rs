@@ -25,8 +25,8 @@ pub struct Mesh {
     pub emission_coordinates: Vec<[f32; 2]>,
     /// The same of metallic and roughness; empty if no vertex has any.
     pub gloss_coordinates: Vec<[f32; 2]>,
-    /// The same of the shares and of the colors of thin walls; empty if no vertex has any.
-    pub wall_coordinates: [Vec<[f32; 2]>; 2],
+    /// The same of the shares of light that thin walls scatter, and of its colors; empty if no vertex has any.
+    pub scatter_coordinates: [Vec<[f32; 2]>; 2],
     /// Linear red, green and blue, and alpha; empty if no vertex has any.
     pub colors: Vec<[f32; 4]>,
     /// The normal maps of materials, if there are any.
@@ -160,9 +160,9 @@ impl Mesh {
         self.placed(&self.gloss_coordinates, triangle, weights)
     }
 
-    /// Those of the share (0) or the color (1) of a thin wall there; 0 where the file has none.
-    pub(crate) fn wall_coordinates(&self, which: usize, triangle: u32, weights: [f64; 3]) -> [f64; 2] {
-        self.placed(&self.wall_coordinates[which], triangle, weights)
+    /// Those of the share (0) or the color (1) of scattered light there; 0 where the file has none.
+    pub(crate) fn scatter_coordinates(&self, which: usize, triangle: u32, weights: [f64; 3]) -> [f64; 2] {
+        self.placed(&self.scatter_coordinates[which], triangle, weights)
     }
 
     /// Color of the vertices at the point with barycentric `weights`.

@@ -1,7 +1,7 @@
-//! The colors of a texture over a surface, with alpha.
+//! The colors of textures over a surface, with alpha.
 
 use crate::{scene::Scene, warp};
-use glam::DVec4;
+use glam::{DVec3, DVec4};
 
 /// Points on the surface of a material; each triangle has one at least.
 const POINTS: f64 = 65_536.0;
@@ -9,15 +9,31 @@ const POINTS: f64 = 65_536.0;
 /// Steps of the sequence R2 (Roberts 2018): the inverse of the plastic number, and its square.
 const STEPS: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
 
+/// What textures say at a point of a translucent surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TextureColor {
+    /// The base color without its factor, and alpha, which blends media.
+    pub base: DVec4,
+    /// The color after multiple scattering, as a factor of that of the file; 1 without its texture.
+    pub scatter: DVec3,
+}
+
+impl TextureColor {
+    /// Both in one, with alpha.
+    fn whole(&self) -> DVec4 {
+        self.base * self.scatter.extend(1.0)
+    }
+}
+
 /// Colors at points of a surface, with the area that each stands for.
 pub struct SurfaceColors {
-    colors: Vec<(DVec4, f64)>,
-    /// Their mean.
+    colors: Vec<(TextureColor, f64)>,
+    /// The mean of both colors in one.
     pub mean: DVec4,
 }
 
 impl SurfaceColors {
-    /// Those of a material's surface, without its base color factor.
+    /// Those of a material's surface, without the factors of its colors.
     pub fn new(scene: &Scene, material: u16) -> SurfaceColors {
         let mesh = &scene.mesh;
         let own: Vec<u32> =
@@ -34,14 +50,19 @@ impl SurfaceColors {
             };
             (0..count).map(color)
         };
-        let colors: Vec<(DVec4, f64)> = own.iter().flat_map(of_triangle).collect();
-        let sum = colors.iter().map(|(color, area)| *color * *area).sum::<DVec4>();
+        let colors: Vec<(TextureColor, f64)> = own.iter().flat_map(of_triangle).collect();
+        let sum = colors.iter().map(|(color, area)| color.whole() * *area).sum::<DVec4>();
         SurfaceColors { mean: if total > 0.0 { sum / total } else { DVec4::ONE }, colors }
     }
 
+    /// The mean of the color after multiple scattering.
+    pub fn scatter_mean(&self) -> DVec3 {
+        DVec3::from_array([0, 1, 2].map(|c| self.mean_of(|color| color.scatter[c])))
+    }
+
     /// The mean of a function of the colors; 0 without any.
-    pub fn mean_of(&self, value: impl Fn(DVec4) -> f64) -> f64 {
-        let add = |(sum, all): (f64, f64), (color, area): &(DVec4, f64)| (sum + value(*color) * area, all + area);
+    pub fn mean_of(&self, value: impl Fn(&TextureColor) -> f64) -> f64 {
+        let add = |(sum, all): (f64, f64), (color, area): &(TextureColor, f64)| (sum + value(color) * area, all + area);
         let (sum, all) = self.colors.iter().fold((0.0, 0.0), add);
         if all > 0.0 { sum / all } else { 0.0 }
     }

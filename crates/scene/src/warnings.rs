@@ -50,7 +50,7 @@ impl Scene {
             let unused = [
                 (matches!(alpha, Some(Alpha::Cutoff(_))), "alphaMode MASK"),
                 (alpha == Some(Alpha::Coverage), "alphaMode BLEND"),
-                (colored[k] && material.base_texture.is_none(), "vertex colors"),
+                (colored[k] && !material.is_tinted(), "vertex colors"),
             ];
             let unused: Vec<&str> = unused.iter().filter(|u| u.0).map(|u| u.1).collect();
             if translucent(k as u16) && !unused.is_empty() {

@@ -7,19 +7,23 @@
 //!
 //! The alpha of the texture may blend two media: of the light that enters at a place, the share alpha enters the first.
 
+mod reflectances;
 mod samples;
 
 pub use samples::{Blend, Half, Tinted};
 
 use bssrdf::{Medium, Model};
-use glam::{DVec3, DVec4};
-use scene::{ScatterExtension, Scene, SurfaceColors};
+use glam::DVec3;
+use reflectances::Reflectances;
+use scene::{ScatterExtension, Scene, SurfaceColors, TextureColor};
 
 /// The tint of one material.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Tint {
     /// Reflectance over that of the medium, for a texture of 1.
     scale: DVec3,
+    /// What the color after multiple scattering changes, if the medium is of the file's colors.
+    reflectances: Option<Reflectances>,
     /// The largest such ratio: all that enters leaves.
     limit: DVec3,
     /// The medium whose share of the light this is, if there are two.
@@ -36,8 +40,8 @@ pub enum Share {
 
 impl Share {
     /// The share of a place of this color.
-    pub fn of(self, color: DVec4) -> f64 {
-        let alpha = color.w.clamp(0.0, 1.0);
+    pub fn of(self, color: &TextureColor) -> f64 {
+        let alpha = color.base.w.clamp(0.0, 1.0);
         match self {
             Share::First => alpha,
             Share::Second => 1.0 - alpha,
@@ -55,12 +59,13 @@ pub struct TintFacts {
 }
 
 impl Tint {
-    /// The tint of a translucent material, if it has a base color texture and its medium scatters. A texture that tints a
-    /// medium of the file's own colors is taken as it is, any other relative to its mean over the surface, so that the
-    /// medium is that of the mean.
+    /// The tint of a translucent material, if it has a texture of a color and its medium scatters. A base color texture that
+    /// tints a medium of the file's own colors is taken as it is, any other relative to its mean over the surface, so that
+    /// the medium is that of the mean. A texture of the color after multiple scattering states that medium: it reflects as
+    /// media of its colors do.
     pub fn new(scene: &Scene, material: u16, medium: &Medium, model: Model) -> Option<(Tint, TintFacts)> {
-        let textured = scene.materials[usize::from(material)].base_texture.is_some();
-        if !textured || medium.is_clear() {
+        let stated = &scene.materials[usize::from(material)];
+        if !stated.is_tinted() || medium.is_clear() {
             return None;
         }
         let drafts = [ScatterExtension::Scatter, ScatterExtension::VolumeScatter];
@@ -69,23 +74,33 @@ impl Tint {
         let mean = surface.mean.truncate();
         let relative = |mean: f64| if mean > 0.0 { 1.0 / mean } else { 1.0 };
         let scale = if is_of_colors { DVec3::ONE } else { mean.map(relative) };
+        let scatter = stated.medium.as_ref().and_then(|medium| medium.scatter.as_ref());
+        let scatter = scatter.filter(|_| is_of_colors && stated.scatter_texture.is_some());
+        let reflectances = scatter.map(|s| Reflectances::new(s, surface.scatter_mean(), medium.eta, model));
         let limit = DVec3::from_array(model.reflectance(medium)).map(|r| if r > 0.0 { 1.0 / r } else { f64::INFINITY });
-        let limited = surface.mean_of(|color| f64::from(u8::from((color.truncate() * scale).cmpgt(limit).any())));
-        Some((Tint { scale, limit, share: None }, TintFacts { mean, limited }))
+        let tint = Tint { scale, reflectances, limit, share: None };
+        let limited = surface.mean_of(|color| f64::from(u8::from(tint.factor(color).cmpgt(limit).any())));
+        Some((tint, TintFacts { mean, limited }))
     }
 
     /// The same for the light of one of two media.
-    pub fn of(self, share: Share) -> Tint {
-        Tint { share: Some(share), ..self }
+    pub fn of(&self, share: Share) -> Tint {
+        Tint { share: Some(share), ..self.clone() }
+    }
+
+    /// The reflectance where the textures have this color, over that of the medium.
+    fn factor(&self, color: &TextureColor) -> DVec3 {
+        let scattered = self.reflectances.as_ref().map_or(color.scatter, |of| of.relative(color.scatter));
+        color.base.truncate() * scattered * self.scale
     }
 
     /// The factor of light that leaves where the texture has this color (docs/method.md 20.1).
-    pub fn leaving(&self, color: DVec4) -> DVec3 {
-        (color.truncate() * self.scale).min(self.limit).map(f64::sqrt)
+    pub fn leaving(&self, color: &TextureColor) -> DVec3 {
+        self.factor(color).min(self.limit).map(f64::sqrt)
     }
 
     /// The factor of light that enters there. Of two media it is one's share.
-    pub fn entering(&self, color: DVec4) -> DVec3 {
+    pub fn entering(&self, color: &TextureColor) -> DVec3 {
         let factor = self.leaving(color);
         self.share.map_or(factor, |share| factor * share.of(color))
     }

@@ -43,7 +43,7 @@ const REACH: [f64; 2] = [1e-6, 1e-4];
 impl Tinted {
     /// Tints the samples of the sampled material `slot`.
     pub fn new(scene: &Scene, rays: &Rays, clouds: &[Cloud], slot: usize, tint: Tint) -> Tinted {
-        let find = Find { scene, rays, diagonal: scene.mesh.diagonal(), tint };
+        let find = Find { scene, rays, diagonal: scene.mesh.diagonal(), tint: &tint };
         let mut lost = 0;
         let mut half = |cloud: &Cloud, group: &Group, material: u16| {
             let (half, missed) = find.half(cloud.group(group), group.samples, material);
@@ -89,7 +89,7 @@ struct Find<'a> {
     scene: &'a Scene,
     rays: &'a Rays<'a>,
     diagonal: f64,
-    tint: Tint,
+    tint: &'a Tint,
 }
 
 impl Find<'_> {
@@ -113,7 +113,7 @@ impl Find<'_> {
         let sample = record.sample();
         let hit = self.triangle(sample.position.as_dvec3(), sample.normal, material, hits);
         let entering = match &hit {
-            Some(hit) => self.tint.entering(self.scene.texture_color(hit.triangle, hit.weights)),
+            Some(hit) => self.tint.entering(&self.scene.texture_color(hit.triangle, hit.weights)),
             None => DVec3::splat(self.tint.lost()),
         };
         for (flux, entering) in record.flux.iter_mut().zip(entering.to_array()) {

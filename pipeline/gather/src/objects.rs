@@ -22,9 +22,9 @@ pub fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<Translu
         let tinted = input.tints.get(slot).and_then(Option::as_ref);
         let rough = Roughness::new(&input.scene.materials[sampled.index as usize], medium.eta);
         let scattering = |medium: &Medium, tinted: Option<&'a Tinted>| {
-            let tint = tinted.map(|tinted| tinted.tint);
+            let tint = tinted.map(|tinted| tinted.tint.clone());
             let entry = rough.as_ref().map(|rough| settings.model.rough_entry(medium, &rough.interface()));
-            let near = || Some(NearField::of_clouds(settings.model, medium, input.clouds, slot)?.tinted(tint));
+            let near = || Some(NearField::of_clouds(settings.model, medium, input.clouds, slot)?.tinted(tint.clone()));
             let near = settings.near_field.then(near).flatten();
             let near = match &entry {
                 None => near,

@@ -111,7 +111,7 @@ impl TranslucentObject<'_> {
             return [1.0, 0.0, 0.0, 0.0];
         }
         let color = scene.texture_color(hit.triangle, hit.weights);
-        let [first, second] = [Share::First, Share::Second].map(|share| share.of(color));
+        let [first, second] = [Share::First, Share::Second].map(|share| share.of(&color));
         [first, first, second, second]
     }
 

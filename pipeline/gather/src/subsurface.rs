@@ -86,8 +86,8 @@ impl Renderer<'_> {
         light: &mut PathLight,
         context: &mut ThreadContext,
     ) {
-        if let Some(tint) = part.tint {
-            let color = self.input.scene.texture_color(hit.triangle, hit.weights);
+        if let Some(tint) = &part.tint {
+            let color = &self.input.scene.texture_color(hit.triangle, hit.weights);
             place.crossing = tint.entering(color);
             factor *= tint.leaving(color);
         }

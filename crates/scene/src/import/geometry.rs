@@ -99,8 +99,8 @@ struct Builder {
     emission_coordinates: Vec<[f32; 2]>,
     /// The same of metallic and roughness.
     gloss_coordinates: Vec<[f32; 2]>,
-    /// The same of the shares and colors of thin walls.
-    wall_coordinates: [Vec<[f32; 2]>; 2],
+    /// The same of the shares and colors of scattered light.
+    scatter_coordinates: [Vec<[f32; 2]>; 2],
     /// The same of normal maps.
     normal_coordinates: Vec<[f32; 2]>,
     /// Tangents of the file; vertices at the end may have none.
@@ -182,10 +182,10 @@ impl Builder {
 
     /// Adds texture coordinates and colors of the next vertices.
     fn add_colors(&mut self, part: &CheckedPrimitive) -> Result<()> {
-        let [share, color] = &mut self.wall_coordinates;
+        let [share, color] = &mut self.scatter_coordinates;
         let of_textures = [
-            (&part.wall_coordinates[0], share),
-            (&part.wall_coordinates[1], color),
+            (&part.scatter_coordinates[0], share),
+            (&part.scatter_coordinates[1], color),
             (&part.coordinates, &mut self.coordinates),
             (&part.emission_coordinates, &mut self.emission_coordinates),
             (&part.gloss_coordinates, &mut self.gloss_coordinates),
@@ -298,7 +298,7 @@ impl Builder {
             coordinates,
             emission_coordinates,
             gloss_coordinates,
-            wall_coordinates: self.wall_coordinates,
+            scatter_coordinates: self.scatter_coordinates,
             colors,
             bumps: None,
         };

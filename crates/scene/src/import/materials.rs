@@ -65,6 +65,7 @@ pub(super) fn read(context: &Context, warnings: &mut Vec<String>) -> Result<Read
             }
             read_emission(&mut material, m, &mut textures).map_err(named)?;
             read_wall(&mut material, m, &mut textures, |what| warnings.push(named(what)));
+            read_scatter(&mut material, m, &mut textures).map_err(named)?;
             // A surface without its bumps is plainer, and no fault.
             match normal_map(m, &mut textures) {
                 Ok(map) => material.normal_map = map,
@@ -125,6 +126,20 @@ fn read_wall(material: &mut Material, m: &json::Material, textures: &mut Texture
     }
 }
 
+/// Reads the texture of the color after multiple scattering, without which the medium would be another. A wall has read
+/// it.
+fn read_scatter(material: &mut Material, m: &json::Material, textures: &mut Textures) -> Result<()> {
+    material.scatter_texture = match (&material.wall, volumes::scatter_texture(m)) {
+        (Some(wall), Some(_)) => wall.textures[1].clone(),
+        (None, Some(info)) => {
+            let field = volumes::SCATTER_TEXTURE;
+            Some(textures.read(&info).map_err(|e| format!("{field}: {e}"))?)
+        }
+        (_, None) => None,
+    };
+    Ok(())
+}
+
 /// The material of triangles that name none.
 pub(super) fn default() -> Material {
     default_named("default".into())
@@ -146,6 +161,7 @@ fn default_named(name: String) -> Material {
         stated: None,
         blend: None,
         medium: None,
+        scatter_texture: None,
         double_sided: false,
     }
 }

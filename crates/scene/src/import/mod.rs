@@ -118,7 +118,7 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
     let unhonoured = [features::undeclared_effects(root, &document.survey), unhonoured::of(document, &parts)].concat();
     let sheets = panes::find(&mesh, &materials);
     warnings.extend(of_solids.into_iter().filter(|(k, _)| sheets[usize::from(*k)].is_none()).map(|(_, note)| note));
-    Ok(Scene {
+    let mut scene = Scene {
         sheets,
         files: document.files.borrow().read.clone(),
         claimed,
@@ -136,7 +136,9 @@ fn import(document: &Document, options: &ImportOptions) -> Result<Scene, Refusal
         rounded_triangles: rounded,
         duplicate_triangles: duplicates,
         unhonoured,
-    })
+    };
+    scene.take_mean_colors();
+    Ok(scene)
 }
 
 /// The triangles of all nodes. A mesh is checked once, for any number of nodes.

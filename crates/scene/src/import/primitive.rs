@@ -40,8 +40,8 @@ pub(super) struct CheckedPrimitive<'a> {
     pub emission_coordinates: Option<(CheckedAccessor<'a>, Coordinates)>,
     /// The same of the texture of metallic and roughness.
     pub gloss_coordinates: Option<(CheckedAccessor<'a>, Coordinates)>,
-    /// The same of the textures of a thin wall's share and color.
-    pub wall_coordinates: [Option<(CheckedAccessor<'a>, Coordinates)>; 2],
+    /// The same of the textures of a thin wall's share, and of the color of scattered light.
+    pub scatter_coordinates: [Option<(CheckedAccessor<'a>, Coordinates)>; 2],
     /// The same of the normal map.
     pub normal_coordinates: Option<(CheckedAccessor<'a>, Coordinates)>,
     /// Tangents with the sign of the bitangent, where there are normals and a normal map.
@@ -230,7 +230,8 @@ impl<'a> CheckedPrimitive<'a> {
         let bumps = own.and_then(|m| m.normal_texture.as_ref()).and_then(normal_info);
         let [share, color] =
             own.map_or([None, None], volumes::wall_textures).map(|stated| stated.map(|(info, _)| info));
-        let wall_coordinates = [coordinates(share.as_ref())?, coordinates(color.as_ref())?];
+        let color = color.or_else(|| own.and_then(volumes::scatter_texture));
+        let scatter_coordinates = [coordinates(share.as_ref())?, coordinates(color.as_ref())?];
         let [coordinates, emission_coordinates, gloss_coordinates, normal_coordinates] = [
             coordinates(base.as_ref().map(|(info, _)| &**info))?,
             coordinates(emission)?,
@@ -249,7 +250,7 @@ impl<'a> CheckedPrimitive<'a> {
             coordinates,
             emission_coordinates,
             gloss_coordinates,
-            wall_coordinates,
+            scatter_coordinates,
             normal_coordinates,
             tangents,
             colors,

@@ -80,8 +80,8 @@ impl Collected<'_> {
         }
     }
 
-    /// Adds the textures of base color, emission, metallic and roughness, normals, and thin walls with their samplers and
-    /// images.
+    /// Adds the textures of base color, emission, metallic and roughness, normals, thin walls, and scattering with their
+    /// samplers and images.
     fn add_pictures(&mut self, root: &Root, materials: &BTreeSet<u16>) {
         let materials = materials.iter().filter_map(|k| root.materials.get(usize::from(*k)));
         let own = |m: &json::Material| {
@@ -92,7 +92,8 @@ impl Collected<'_> {
                 m.normal_texture.as_ref().map(|texture| texture.index.value()),
             ];
             let walls = volumes::wall_textures(m).map(|stated| stated.map(|(info, _)| info.index.value()));
-            [base, others[0], others[1], others[2], walls[0], walls[1]]
+            let scatter = volumes::scatter_texture(m).map(|info| info.index.value());
+            [base, others[0], others[1], others[2], walls[0], walls[1], scatter]
         };
         let textures: BTreeSet<usize> = materials.flat_map(own).flatten().collect();
         let (mut samplers, mut images) = (BTreeSet::new(), BTreeSet::new());

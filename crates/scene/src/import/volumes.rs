@@ -76,12 +76,21 @@ pub(super) fn wall(m: &json::Material) -> Option<Wall> {
 
 /// The textures of a wall's share and color with their names, if the material describes a wall.
 pub(super) fn wall_textures(m: &json::Material) -> [Option<(Info, &'static str)>; 2] {
-    const OF_DRAFT: [&str; 2] = ["scatterStrengthTexture", "multiscatterColorTexture"];
+    const OF_DRAFT: [&str; 2] = ["scatterStrengthTexture", SCATTER_TEXTURE];
     const OF_DIFFUSE: [&str; 2] = ["diffuseTransmissionTexture", "diffuseTransmissionColorTexture"];
     let Some((e, wall)) = m.extensions.as_ref().zip(wall(m)) else { return [None, None] };
     let names = if wall.anisotropy.is_some() { OF_DRAFT } else { OF_DIFFUSE };
     let stated = drafts(e).next().map(|(_, value)| value).or_else(|| e.others.get(DIFFUSE));
     names.map(|name| Some((Info::deserialize(stated?.get(name)?).ok()?, name)))
+}
+
+/// The field of both drafts for the texture of a color.
+pub(super) const SCATTER_TEXTURE: &str = "multiscatterColorTexture";
+
+/// The texture of the color after multiple scattering, of either draft.
+pub(super) fn scatter_texture(m: &json::Material) -> Option<Info> {
+    let (_, value) = drafts(m.extensions.as_ref()?).next()?;
+    Info::deserialize(value.get(SCATTER_TEXTURE)?).ok()
 }
 
 fn transmission(e: &material::Material) -> f32 {

@@ -10,12 +10,13 @@ const TEXELS: [[u8; 4]; 2] = [[255, 200, 200, 0], [188, 64, 0, 255]];
 /// The second texel in linear light (IEC 61966-2-1).
 const LINEAR: [f64; 3] = [0.502_886_458, 0.051_269_458, 0.0];
 
-fn picture() -> Vec<u8> {
+/// A picture of these texels side by side.
+pub fn picture(texels: &[[u8; 4]]) -> Vec<u8> {
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, 2, 1);
+    let mut encoder = png::Encoder::new(&mut bytes, texels.len() as u32, 1);
     encoder.set_color(png::ColorType::Rgba);
     let mut writer = encoder.write_header().expect("a header");
-    writer.write_image_data(TEXELS.as_flattened()).expect("texels");
+    writer.write_image_data(texels.as_flattened()).expect("texels");
     writer.finish().expect("an end");
     bytes
 }
@@ -64,7 +65,7 @@ fn sample(bench: &Bench, scene: &str) -> f64 {
 #[test]
 fn a_hole_shows_what_is_behind_and_lets_light_through() {
     let bench = Bench::new();
-    bench.write("card.png", picture());
+    bench.write("card.png", picture(&TEXELS));
     let masked = bench.slab("masked.gltf", |root| with_card(root, "MASK"));
     let flux = sample(&bench, &masked);
     // Half of 0.2 m by 0.2 m. A sixth of the samples lies there, a quarter of those looks at the card's dark side
@@ -103,7 +104,7 @@ fn a_picture_that_cannot_be_read() {
     let scene = bench.slab("card.gltf", |root| with_card(root, "MASK"));
     let arguments = [scene.as_str(), "-o", "no.cloud"];
     bench.refuses("sample-surface", &arguments, &["card.gltf", "`Card`", "images[0] `card.png`", "beside it"]);
-    bench.write("card.png", &picture()[..50]);
+    bench.write("card.png", &picture(&TEXELS)[..50]);
     bench.refuses("sample-surface", &arguments, &["card.gltf", "`Card`", "images[0] `card.png`", "again"]);
 }
 
@@ -111,7 +112,7 @@ fn a_picture_that_cannot_be_read() {
 #[test]
 fn holes_of_a_translucent_surface_are_not_used() {
     let bench = Bench::new();
-    bench.write("card.png", picture());
+    bench.write("card.png", picture(&TEXELS));
     let scene = bench.slab("card.gltf", |root| with_card(root, "MASK"));
     let arguments = [&scene, "--translucent", "Card", "-n", "500", "-o", "card.cloud", "--progress", "none"];
     let said = bench.says("sample-surface", &arguments);
