@@ -75,7 +75,7 @@ mod tests {
         DVec3::from_array(model.reflectance(&Medium::new(file).expect("a medium")))
     }
 
-    /// Seen to catch: the ratio of the colors, which is off by a quarter; an albedo that knows no mean cosine.
+    /// Seen to catch: the ratio of the colors, which is off by half; an albedo that knows no mean cosine.
     #[test]
     fn colors_reflect_as_their_media() {
         let (mean, factor) = (DVec3::new(0.5, 0.25, 0.75), DVec3::new(1.0, 0.9, 0.6));

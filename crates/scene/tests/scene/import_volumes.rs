@@ -338,8 +338,8 @@ fn with_texture(draft: ScatterExtension, more: Value) -> Asset {
 /// A texture varies the color after multiple scattering, whose mean over the surface, a quarter of each texel, is that of
 /// the medium. It is a picture of sRGB, has its own set of coordinates and transform, and is no base color.
 ///
-/// Seen to catch: codes taken as linear; the coordinates of the base color; the transform left out; the mean left out; the
-/// texture, or the medium of its mean, of solids that the file calls thin left out.
+/// Seen to catch: codes taken as linear; the coordinates of the base color; the mean left out; the texture of a solid that
+/// the file calls thin left out; the picture as base color too.
 #[test]
 fn a_texture_varies_the_color_of_a_medium() {
     let moved = json!({ "KHR_texture_transform": { "offset": [0.5, 0] } });
