@@ -1,5 +1,5 @@
-# The regression test (docs/check.md): small images of each scene of the gallery but the peach, each from a cloud with a
-# seed of its own, are tested against the figures of tests/golden. Offers check, check-images, references, check-alarms and
+# The regression test (docs/check.md): small images of each scene of the gallery, each from a cloud with a seed of its
+# own, are tested against the figures of tests/golden. Offers check, check-images, references, check-alarms and
 # check-power.
 
 .PHONY: check check-images check-alarms check-power references golden
@@ -22,9 +22,7 @@ GOLDEN := tests/golden
 $(call check_names,GOLDEN CHECK_SEED CHECK_COUNT CHECK_SIZE)
 $(if $(GOLDEN),,$(error GOLDEN is empty; leave it away for tests/golden))
 CHECK_SEEDS  := $(shell seq $(CHECK_SEED) $$(($(CHECK_SEED) + $(CHECK_COUNT) - 1)))
-# The scenes that have figures. The peach has none.
-CHECK_GALLERY := $(filter-out peach:%,$(GALLERY))
-CHECK_SCENES := $(foreach g,$(CHECK_GALLERY),$(firstword $(subst :, ,$(g))))
+CHECK_SCENES := $(foreach g,$(GALLERY),$(firstword $(subst :, ,$(g))))
 # $(1) scene, $(2) SAMPLES or SPP.
 check_setting = $(or $(CHECK_$(2)_$(1)),$(CHECK_$(2)))
 check_view    = $(firstword $(sort $(wildcard data/views/$(1)/*.json)))
@@ -47,7 +45,7 @@ $(call check_folder,$(1))/%.exr: $(call check_folder,$(1))/%.cloud $(call check_
 	$$(SUBMIT) $$(GATHER) --threads $$(THREADS) --seed $$* $(call check_gather,$(1),$(2)) --quiet $$< data/scenes/$(1).glb -o $$@
 CHECK_IMAGES += $(foreach s,$(CHECK_SEEDS),$(call check_folder,$(1))/$(s).exr)
 endef
-$(foreach g,$(CHECK_GALLERY),$(eval $(call check_rules,$(word 1,$(subst :, ,$(g))),$(word 2,$(subst :, ,$(g))))))
+$(foreach g,$(GALLERY),$(eval $(call check_rules,$(word 1,$(subst :, ,$(g))),$(word 2,$(subst :, ,$(g))))))
 
 ## check: small images with new clouds against tests/golden, by statistics (docs/check.md; CHECK_SEED=N for other seeds)
 check: build
@@ -77,7 +75,7 @@ golden-$(1):
 	  '  gather --seed $$$$s $(strip $(call check_gather,$(1),$(2))) $$$$s.cloud data/scenes/$(1).glb -o $(1)/$$$$s.exr' \
 	  'done' 'compare --summarise $(1) $(GOLDEN)/$(1)' > $(GOLDEN)/$(1)/command.sh
 endef
-$(foreach g,$(CHECK_GALLERY),$(eval $(call golden,$(word 1,$(subst :, ,$(g))),$(word 2,$(subst :, ,$(g))))))
+$(foreach g,$(GALLERY),$(eval $(call golden,$(word 1,$(subst :, ,$(g))),$(word 2,$(subst :, ,$(g))))))
 
 ## check-alarms: `make check` under RUNS=200 new seeds, none of which may fail (an hour)
 RUNS ?= 200
