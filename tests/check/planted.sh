@@ -19,6 +19,7 @@ planted=(
   'skin2-sigma_a-green-1-percent|data/media/skin2.json|\[0.013, 0.07, 0.145\]|[0.013, 0.0707, 0.145]'
   'skin2-sigma_a-blue-1-percent|data/media/skin2.json|\[0.013, 0.07, 0.145\]|[0.013, 0.07, 0.14645]'
   'skin2-sigma_s-blue-2-percent|data/media/skin2.json|\[1.09, 1.59, 1.79\]|[1.09, 1.59, 1.8258]'
+  'texture-2-percent|crates/tint/src/lib.rs|\.map\(f64::sqrt\)|.powf(0.49)'
   'skin2-eta-1-percent|data/media/skin2.json|"eta": 1.3|"eta": 1.313'
   '1-over-K-1-percent|crates/sums/src/summation.rs|sum / drawn.max\(1\) as f64|sum * 1.01 / drawn.max(1) as f64'
   'triangle-pdf-2-percent|pipeline/sample-surface/src/choice.rs|pdf_area \* self.factor\(index\)|pdf_area * self.factor(index) * 1.02'
