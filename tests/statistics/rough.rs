@@ -181,7 +181,7 @@ fn a_rough_half_space_is_nearly_that_of_random_walks() {
         let below = |seed: u64| {
             let cloud = cloud(&world, &Sampling { choice: Choice::Uniform, ..by_area(20_000, seed) });
             let scatterer = Arc::new(scatterer(Model::HalfSpace, &medium));
-            let summation = Summation::of_clouds(scatterer, from_ref(&cloud), 0).behind(&entry);
+            let summation = Summation::of_clouds(scatterer, from_ref(&cloud), 0).behind(Some(&entry));
             let exit = |_| Exit::new(-world.scene.origin, DVec3::Z, 0);
             summation.whole(Estimator::Exhaustive, exit, &mut Scratch::default()).radiance.x
         };

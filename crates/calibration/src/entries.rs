@@ -36,12 +36,8 @@ impl<'a> Entries<'a> {
     /// The samples of the sampled material `slot`, whose light enters a medium of relative index `eta` behind an interface
     /// that may be rough.
     pub fn new(clouds: &'a [Cloud], slot: usize, (eta, rough): (f64, Option<&RoughEntry>)) -> Entries<'a> {
-        let behind = |samples: LitSamples<'a>| match rough {
-            None => samples,
-            Some(rough) => samples.behind(rough),
-        };
         let halves = |cloud: &'a Cloud| {
-            cloud.meta().materials[slot].halves.map(|half| behind(LitSamples::new(cloud, &half, eta)))
+            cloud.meta().materials[slot].halves.map(|half| LitSamples::new(cloud, &half, eta).behind(rough))
         };
         let groups: Vec<LitSamples> = clouds.iter().flat_map(halves).collect();
         let of = |(g, group): (usize, &LitSamples)| (0..group.tile_count()).map(move |t| (g as u32, t as u32));

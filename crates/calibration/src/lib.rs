@@ -136,18 +136,10 @@ impl Task<'_> {
     /// The model's light of the sampled material `slot`.
     fn lit<'b>(&'b self, slot: usize, rough: Option<&RoughEntry>, surroundings: &'b Surroundings<'b>) -> Lit<'b> {
         let (sampled, medium) = (&shards::materials(self.clouds)[slot], &self.media[slot]);
-        let near = NearField::of_clouds(self.model, medium, self.clouds, slot);
-        let near = match rough {
-            None => near,
-            Some(rough) => near.map(|near| near.behind(rough)),
-        };
+        let near = NearField::of_clouds(self.model, medium, self.clouds, slot).map(|near| near.behind(rough));
         let partition = near.as_ref().map_or(Partition::NONE, NearField::partition);
         let scatterer = Arc::new(Scatterer::new(self.model, medium, sampled.area_m2.sqrt()).far(partition));
-        let summation = Summation::of_clouds(scatterer, self.clouds, slot);
-        let summation = match rough {
-            None => summation,
-            Some(rough) => summation.behind(rough),
-        };
+        let summation = Summation::of_clouds(scatterer, self.clouds, slot).behind(rough);
         Lit { summation, near: near.map(|near| (near, surroundings)) }
     }
 

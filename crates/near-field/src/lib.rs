@@ -107,9 +107,9 @@ impl NearField {
         NearField { model, partition, reach, eta, material, tint: None, radii, plane, rough: None }
     }
 
-    /// The same near part behind a rough interface.
-    pub fn behind(self, rough: &RoughEntry) -> NearField {
-        NearField { rough: Some(rough.clone()), ..self }
+    /// The same near part behind an interface that may be rough.
+    pub fn behind(self, rough: Option<&RoughEntry>) -> NearField {
+        NearField { rough: rough.cloned(), ..self }
     }
 
     /// The same below a texture.

@@ -82,9 +82,12 @@ impl<'a> LitSamples<'a> {
         LitSamples { tiles, nodes, len: len.min(tiles.len() * TILE), entry: EntryRefraction::new(eta), scale }
     }
 
-    /// The same samples behind a rough interface.
-    pub fn behind(self, rough: &RoughEntry) -> LitSamples<'a> {
-        LitSamples { entry: self.entry.behind(rough), ..self }
+    /// The same samples behind an interface that may be rough.
+    pub fn behind(self, rough: Option<&RoughEntry>) -> LitSamples<'a> {
+        match rough {
+            None => self,
+            Some(rough) => LitSamples { entry: self.entry.behind(rough), ..self },
+        }
     }
 
     /// The number of samples, without the fillers of the last tile.

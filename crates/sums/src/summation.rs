@@ -48,8 +48,8 @@ impl<'a> Summation<'a> {
         Summation::new(scatterer, clouds.iter().map(halves).collect(), DrawnCounts::of(clouds))
     }
 
-    /// The same sum behind a rough interface.
-    pub fn behind(mut self, rough: &RoughEntry) -> Summation<'a> {
+    /// The same sum behind an interface that may be rough.
+    pub fn behind(mut self, rough: Option<&RoughEntry>) -> Summation<'a> {
         self.shards = self.shards.into_iter().map(|halves| halves.map(|half| half.behind(rough))).collect();
         self
     }

@@ -24,23 +24,16 @@ pub fn objects<'a>(input: &Input<'a>, settings: &Settings) -> Vec<Option<Translu
         let scattering = |medium: &Medium, tinted: Option<&'a Tinted>| {
             let tint = tinted.map(|tinted| tinted.tint.clone());
             let entry = rough.as_ref().map(|rough| settings.model.rough_entry(medium, &rough.interface()));
-            let near = || Some(NearField::of_clouds(settings.model, medium, input.clouds, slot)?.tinted(tint.clone()));
+            let near = || NearField::of_clouds(settings.model, medium, input.clouds, slot);
             let near = settings.near_field.then(near).flatten();
-            let near = match &entry {
-                None => near,
-                Some(entry) => near.map(|near| near.behind(entry)),
-            };
+            let near = near.map(|near| near.tinted(tint.clone()).behind(entry.as_ref()));
             let partition = near.as_ref().map_or(Partition::NONE, NearField::partition);
             let scatterer = Arc::new(Scatterer::new(settings.model, medium, sampled.area_m2.sqrt()).far(partition));
             let summation = match tinted {
                 Some(tinted) => Summation::new(scatterer, tinted.samples(medium.eta), DrawnCounts::of(input.clouds)),
                 None => Summation::of_clouds(scatterer, input.clouds, slot),
             };
-            let summation = match &entry {
-                None => summation,
-                Some(entry) => summation.behind(entry),
-            };
-            Scattering { summation, near, tint }
+            Scattering { summation: summation.behind(entry.as_ref()), near, tint }
         };
         let parts = match tinted.and_then(|tinted| Some((tinted, tinted.blend.as_ref()?))) {
             None => vec![scattering(medium, tinted)],
