@@ -29,6 +29,7 @@ mod meshes;
 mod normal_maps;
 mod panes;
 mod rays;
+mod scatter_textures;
 mod shadows;
 mod unhonoured;
 mod walls;

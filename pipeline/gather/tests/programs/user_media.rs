@@ -138,8 +138,7 @@ fn seen(bench: &Bench, scene: &str, known: Known) -> Vec<f32> {
 /// A texture of the color after multiple scattering is the color of its places: one color is that of the factor, for the
 /// model, for a calibration and for random walks, and each half of a picture of two is as that color, all over it.
 ///
-/// Seen to catch: the medium of the factor alone; tints by the texture and not by what media of its colors reflect; tints
-/// that are not relative to the medium of the mean.
+/// Seen to catch: the medium of the factor alone; places that reflect by their colors, and not as media of these colors do.
 #[test]
 fn a_texture_of_scattered_light_is_its_color() {
     let bench = Bench::new();
