@@ -40,8 +40,8 @@ fn it_follows_the_noise_of_the_paths() {
     let fixed = of("figure", &["--width", "40", "--height", "30"]);
     assert_eq!(fixed, 0.005);
     let [smooth, rough] = ["sphere", "figure"].map(|scene| of(scene, &SIZE));
-    // The least that is asked, which is less than what the cut adds while the noise is measured.
-    assert_eq!(smooth, 0.00125);
+    // Less than what the cut adds while the noise is measured; the squared error times the time is the least at 0.002.
+    assert!((0.00125..0.003).contains(&smooth), "{smooth}");
     assert!(rough > 2.0 * fixed, "{rough}");
     assert_eq!(of("figure", &[&SIZE[..], &["--accuracy", "0.013"]].concat()), 0.013);
     assert_eq!(of("figure", &[&SIZE[..], &["--target-error", "0.08"]].concat()), 0.04);
