@@ -252,9 +252,7 @@ fn place(id: u32, key: u64) -> u32 {
 /// less of its extent, and so about a third of its error: below a node far above the threshold all are opened.
 #[inline(always)]
 fn levels(error: f32, threshold: f32) -> u32 {
-    u32::from(error > threshold)
-        + u32::from(error > LEVEL * threshold)
-        + u32::from(error > LEVEL * LEVEL * threshold)
+    u32::from(error > threshold) + u32::from(error > LEVEL * threshold) + u32::from(error > LEVEL * LEVEL * threshold)
 }
 
 /// The leaves of the tree.
