@@ -109,13 +109,15 @@ impl Round<'_> {
         }
         // The variance of a pixel falls at least as fast as the number of its paths grows.
         let allowed = self.passes.expected_variance(self.paths) / (excess * excess);
-        let (mut few, mut enough) = (self.paths / 2, double / 2);
+        // Shares are rounded to pairs of paths, one for each half of the cloud.
+        let step = if self.passes.shares() { 1 } else { 2 };
+        let (mut few, mut enough) = (self.paths / step, double / step);
         while few + 1 < enough {
             let middle = few.midpoint(enough);
-            let is_enough = self.passes.expected_variance(2 * middle) <= allowed;
+            let is_enough = self.passes.expected_variance(step * middle) <= allowed;
             *(if is_enough { &mut enough } else { &mut few }) = middle;
         }
-        2 * enough
+        step * enough
     }
 
     /// The number of lit samples.
