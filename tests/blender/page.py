@@ -216,7 +216,10 @@ Scattered light by the cosine between the view and the normal, ratios with stand
 * Roughness changes the scattered light of the whole sphere by {mine} % in ours, by {exact} % in our walks and by
   {other} % in Cycles, with a standard error of {spread} %. A walk meets the boundary several times, and the two
   programs differ in what meets several microfacets there: a direction of its own here, and in Cycles a factor on those
-  that meet one (see *Metal*). That this is all of the difference is not shown.
+  that meet one (see *Metal*). With a rule like that of Cycles, by which such light draws another microfacet, our walks
+  are 0.45, 0.59 and 0.79 % brighter (standard error 0.14 %), alike in all three parts of the sphere. Measured once, with
+  320 paths of Cycles and 1024 of ours: the whole sphere is 0.992 0.990 0.987 of that of Cycles (standard error 0.2 %)
+  and with that rule 0.996 0.996 0.994, as the smooth one is; the ring 0.996 0.995 0.989 and 1.001 1.001 0.997 (0.3 %).
 
 ## Noise and time
 

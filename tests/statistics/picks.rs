@@ -75,23 +75,27 @@ fn a_closed_node_picks_its_samples_evenly() {
     assert_fits("picks of one node", &observed, &vec![draws as f64 / COUNT as f64; COUNT]);
 }
 
-/// Two nodes, red and green, on either side of the exitant point: every pair of picks is equally frequent.
+/// Two nodes, red and green, on either side of the exitant point, and a blue one farther away: every pair of picks from
+/// red and blue is equally frequent. The red and the green one have one parent, and pick at opposite places.
 ///
-/// Seen to catch: one random number for all nodes of a sum.
+/// Seen to catch: one random number for all nodes of a sum; picks of siblings that are independent.
 #[test]
-fn nodes_pick_independently() {
+fn nodes_pick_independently_of_all_but_their_siblings() {
     const COUNT: usize = 256;
     let sides = numbered(-1.0, COUNT, Vec3::X).chain(numbered(1.0, COUNT, Vec3::Y));
-    let (both, one) = (in_one_half(sides), in_one_half(numbered(-1.0, 1, Vec3::ONE)));
+    let all = in_one_half(sides.chain(numbered(4.0, 2 * COUNT, Vec3::Z)));
     let mut experiment = Experiment::new(22);
-    let unit = experiment.sum(&one, 0.0).radiance.x * COUNT as f64;
+    let [near, far] = [-1.0, 4.0].map(|x| experiment.sum(&in_one_half(numbered(x, 1, Vec3::ONE)), 0.0).radiance.x);
     let mut observed = vec![0; 256];
     let draws = 60_000 * EFFORT;
     for _ in 0..draws {
-        let picked = experiment.sum(&both, 0.0);
-        assert_eq!(picked.evaluations, 2);
-        let [red, green] = [picked.radiance.x, picked.radiance.y].map(|x| (whole(x / unit) - 1) / 16);
-        observed[16 * red + green] += 1;
+        let picked = experiment.sum(&all, 0.0);
+        assert_eq!(picked.evaluations, 3);
+        let number = |light: f64, unit: f64, count: usize| whole(light / (unit * count as f64));
+        let [red, green] = [picked.radiance.x, picked.radiance.y].map(|light| number(light, near, COUNT));
+        assert_eq!(red + green, COUNT + 1);
+        let blue = number(picked.radiance.z, far, 2 * COUNT);
+        observed[16 * ((red - 1) / 16) + (blue - 1) / 32] += 1;
     }
     assert_fits("pairs of picks", &observed, &vec![draws as f64 / 256.0; 256]);
 }
