@@ -30,7 +30,7 @@ const PATHS: u32 = 8;
 
 /// One pixel in so many is tried, of images with enough of them.
 const PIXELS_FOR_ONE: usize = 128;
-const TRIED: RangeInclusive<usize> = 64..=512;
+const TRIED: RangeInclusive<usize> = 64..=256;
 
 /// Pixels that are looked at for each that is tried.
 const SEEN_FOR_ONE: usize = 16;
