@@ -135,6 +135,9 @@ fn read_scatter(material: &mut Material, m: &json::Material, textures: &mut Text
             let field = volumes::SCATTER_TEXTURE;
             Some(textures.read(&info).map_err(|e| format!("{field}: {e}"))?)
         }
+        (_, None) if volumes::has_scatter_texture(m) => {
+            return Err(format!("{}: not a texture; give an object with an `index`", volumes::SCATTER_TEXTURE));
+        }
         (_, None) => None,
     };
     Ok(())

@@ -93,6 +93,12 @@ pub(super) fn scatter_texture(m: &json::Material) -> Option<Info> {
     Info::deserialize(value.get(SCATTER_TEXTURE)?).ok()
 }
 
+/// Whether the file has that field, with a texture or with anything else.
+pub(super) fn has_scatter_texture(m: &json::Material) -> bool {
+    let draft = m.extensions.as_ref().and_then(|e| drafts(e).next());
+    draft.is_some_and(|(_, value)| value.get(SCATTER_TEXTURE).is_some())
+}
+
 fn transmission(e: &material::Material) -> f32 {
     e.transmission.as_ref().map_or(0.0, |t| t.transmission_factor.0)
 }

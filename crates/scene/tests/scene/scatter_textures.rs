@@ -75,7 +75,7 @@ fn a_texture_varies_the_color_of_a_medium() {
 /// A picture that cannot be read would change the medium, and is refused; one of a material that the scene does not use is
 /// not read. The identity of a scene covers the texture.
 ///
-/// Seen to catch: the texture left out of the identity.
+/// Seen to catch: the texture left out of the identity; a number in place of a texture that is passed over.
 #[test]
 fn a_texture_of_scattering_belongs_to_the_scene() {
     let asset = || with_texture(ScatterExtension::Scatter, json!({}));
@@ -94,6 +94,9 @@ fn a_texture_of_scattering_belongs_to_the_scene() {
     for word in ["`wax`", "multiscatterColorTexture", "images[0] `lost.png`"] {
         assert!(message.contains(word), "{word}: {message}");
     }
+    let mut number = asset();
+    number.set("/materials/0/extensions/KHR_materials_scatter/multiscatterColorTexture", json!(3));
+    assert!(fault(&number).contains("multiscatterColorTexture: not a texture"));
     lost.push("materials", json!({ "name": "other" }));
     lost.set("/meshes/0/primitives/0/material", json!(1));
     assert!(lost.import().is_ok());
