@@ -25,6 +25,33 @@ impl TextureColor {
     }
 }
 
+impl Scene {
+    /// The colors at the point of a triangle with these barycentric weights, without their factors, that tint translucent
+    /// surfaces.
+    pub fn texture_color(&self, triangle: u32, weights: [f64; 3]) -> TextureColor {
+        let material = &self.materials[self.mesh.triangles[triangle as usize].material as usize];
+        let texture = material.base_texture.as_ref();
+        let texel = texture.map_or(DVec4::ONE, |t| t.at(self.mesh.coordinates(triangle, weights)));
+        let scatter = material.scatter_texture.as_ref();
+        let scatter = scatter.map_or(DVec4::ONE, |t| t.at(self.mesh.scatter_coordinates(1, triangle, weights)));
+        TextureColor { base: texel * self.mesh.color(triangle, weights), scatter: scatter.truncate() }
+    }
+
+    /// Gives media whose color a texture states that of its mean over the surface.
+    pub(crate) fn take_mean_colors(&mut self) {
+        for k in 0..self.materials.len() {
+            let material = &self.materials[k];
+            let is_textured = material.scatter_texture.is_some() && !self.is_wall(k as u16);
+            if !is_textured || material.medium.as_ref().is_none_or(|medium| medium.scatter.is_none()) {
+                continue;
+            }
+            let mean = SurfaceColors::new(self, k as u16).scatter_mean();
+            let medium = self.materials[k].medium.as_mut();
+            medium.and_then(|medium| medium.scatter.as_mut()).into_iter().for_each(|scatter| scatter.color *= mean);
+        }
+    }
+}
+
 /// Colors at points of a surface, with the area that each stands for.
 pub struct SurfaceColors {
     colors: Vec<(TextureColor, f64)>,
