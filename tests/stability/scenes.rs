@@ -14,7 +14,11 @@ use test_support::{
 /// exact.
 pub const SKY: DVec3 = DVec3::new(1.0, 0.5, 4.0);
 
-/// Renders, and fails if a number of the image is not finite or a radiance is negative.
+/// What is known of a path's light before it is traced may exceed it, so that a pixel at an edge may be negative
+/// (docs/method.md 13.2), in images of a few coarse pixels by up to so much of the brightest one: 0.13 was seen.
+const BELOW_ZERO: f32 = 0.2;
+
+/// Renders, and fails if a number of the image is not finite or a radiance is negative without an edge.
 pub fn render(world: &World, cloud: &Cloud, media: &[Medium], camera: &Camera, settings: &Settings) -> Rendered {
     let input = input(world, std::slice::from_ref(cloud), media, camera);
     let rendered = gather::render(&input, settings, |_| ());
@@ -22,7 +26,9 @@ pub fn render(world: &World, cloud: &Cloud, media: &[Medium], camera: &Camera, s
     let image = film::image(&rendered.pixels, settings.width, settings.height);
     for channel in &image.channels {
         let signed = ["N.", "P.", "Z"].iter().any(|prefix| channel.name.starts_with(prefix));
-        assert!(channel.samples.iter().all(|x| x.is_finite() && (signed || *x >= 0.0)), "{}", channel.name);
+        let brightest = channel.samples.iter().fold(0.0f32, |max, x| max.max(*x));
+        let least = if rendered.counts.edge_pixels == 0 { 0.0 } else { -BELOW_ZERO * brightest };
+        assert!(channel.samples.iter().all(|x| x.is_finite() && (signed || *x >= least)), "{}", channel.name);
     }
     rendered
 }

@@ -21,9 +21,14 @@ const SAMPLES: u64 = 150;
 
 const CUT: Estimator = Estimator::Cut { accuracy: 0.1 };
 
+/// The usual direction of the camera.
+const TOWARDS: DVec3 = DVec3::new(1.0, 1.2, 1.5);
+
 pub struct Scene {
     pub world: World,
     pub medium: Medium,
+    /// The direction of the camera.
+    pub towards: DVec3,
     /// Half of the width that the image shows, m.
     pub half_height: f64,
     pub sampling: fn(u64, u64) -> Sampling,
@@ -44,14 +49,14 @@ fn edge_under_sky(medium: Medium) -> Scene {
 fn edge_under(medium: Medium, environment: DVec3) -> Scene {
     let body = Part::translucent(slab(DVec3::new(3e-3, 2e-3, 1e-3), 4));
     let world = world(&[body], &[sun(DVec3::ONE), lamp()], environment);
-    Scene { world, medium, half_height: 3.5e-3, sampling: stratified, shards: 1 }
+    Scene { world, medium, towards: TOWARDS, half_height: 3.5e-3, sampling: stratified, shards: 1 }
 }
 
 fn image(scene: &Scene, settings: &Settings, seed: u64) -> Vec<Pixel> {
     let count = scene.shards;
     let shard = |index| Sampling { shard: Shard { index, count }, ..(scene.sampling)(SAMPLES, seed) };
     let clouds: Vec<Cloud> = (0..count).map(|index| cloud(&scene.world, &shard(index))).collect();
-    let (media, camera) = ([scene.medium.clone()], orthographic(DVec3::new(1.0, 1.2, 1.5), scene.half_height));
+    let (media, camera) = ([scene.medium.clone()], orthographic(scene.towards, scene.half_height));
     let (scene_of, rays) = (&scene.world.scene, &scene.world.rays);
     let input =
         Input { scene: scene_of, rays, clouds: &clouds, media: &media, tints: &[], calibration: None, camera: &camera };

@@ -53,7 +53,18 @@ impl Camera {
         }
     }
 
-    /// The same, through the place on the lens that the uniform numbers `xi` choose.
+    /// The point of an image of `size` pixels whose ray meets a world position, m; none behind a camera with a perspective.
+    pub fn project(&self, position: DVec3, size: DVec2) -> Option<DVec2> {
+        let offset = position - self.position;
+        let scale = match self.projection {
+            Projection::Perspective { tangent } => tangent * offset.dot(self.forward),
+            Projection::Orthographic { half_height } => half_height,
+        };
+        let (x, y) = (offset.dot(self.right) / scale, offset.dot(self.up) / scale);
+        (scale > 0.0).then(|| DVec2::new(0.5 * (x * size.y + size.x), 0.5 * (1.0 - y) * size.y))
+    }
+
+    /// The same as [`Camera::ray`], through the place on the lens that the uniform numbers `xi` choose.
     pub fn ray_through(&self, point: DVec2, size: DVec2, xi: [f64; 2]) -> (DVec3, DVec3) {
         let (origin, direction) = self.ray(point, size);
         let Some(lens) = self.lens else { return (origin, direction) };
@@ -287,6 +298,23 @@ mod tests {
         assert!((top_left - DVec3::new(-2.0, 1.0, -1.0).normalize()).length() < 1e-15);
         let (_, center) = camera.ray(size / 2.0, size);
         assert!((center - DVec3::NEG_Z).length() < 1e-15);
+    }
+
+    /// Seen to catch: x and y exchanged, points behind the camera taken for ones before it, the width for the height.
+    #[test]
+    fn points_are_projected_to_where_their_rays_start() {
+        let perspective = view(r#"{"eye":[1,2,3],"target":[4,2,-1],"yfov":30}"#).expect("valid");
+        let orthographic = Camera { projection: Projection::Orthographic { half_height: 2.0 }, ..perspective.clone() };
+        let size = DVec2::new(200.0, 100.0);
+        for camera in [perspective, orthographic] {
+            for point in [DVec2::ZERO, DVec2::new(30.5, 77.25), size] {
+                let (origin, direction) = camera.ray(point, size);
+                let projected = camera.project(origin + 7.0 * direction, size).expect("a point before the camera");
+                assert!((projected - point).length() < 1e-9, "{point}: {projected}");
+            }
+            let behind = camera.project(camera.position - camera.forward, size);
+            assert_eq!(behind.is_some(), matches!(camera.projection, Projection::Orthographic { .. }));
+        }
     }
 
     /// OpenEXR multiplies row vectors: p · M.

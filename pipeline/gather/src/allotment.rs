@@ -13,7 +13,7 @@ const REACH: usize = 2;
 
 /// The least noise that is expected of a pixel whose neighbors have any, as a share of the root mean square of those
 /// pixels': few paths miss what is rare.
-const FLOOR: f64 = 0.2;
+const FLOOR: f64 = 0.1;
 
 /// The shares of the pixels of an image in its paths.
 #[derive(Clone, Debug)]
@@ -102,7 +102,7 @@ mod tests {
         let shares = Allotment::by_noise(4, 6, &variances, &edges, stream).shares;
         let noise = [4.0 / 3.0, 1.0, 1.0 / 4.0, 1.0 / 3.0].map(f64::sqrt);
         let mean = noise.iter().sum::<f64>() / 4.0;
-        let least = 0.2 * ((4.0 / 3.0 + 1.0 + 1.0 / 4.0 + 1.0 / 3.0) / 4.0f64).sqrt();
+        let least = FLOOR * ((4.0 / 3.0 + 1.0 + 1.0 / 4.0 + 1.0 / 3.0) / 4.0f64).sqrt();
         let expected = [least / mean, noise[0] / mean, noise[1] / mean, 1.0, noise[3] / mean, 1.0];
         assert!(shares.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{shares:?}, {expected:?}");
     }

@@ -7,11 +7,11 @@
 
 use crate::{
     counts::Counts,
-    edge,
+    edge::{self, Corner},
     image::Filter,
     passes::Passes,
     path_state::{Layer, ThreadContext},
-    pixel_sum::{PixelSum, Sums},
+    pixel_sum::PixelSum,
 };
 use rayon::prelude::*;
 use scene::{
@@ -68,7 +68,7 @@ impl Passes<'_> {
         }
         let (own, stream) = (self.renderer().gathers, Stream::new(settings.seed, Purpose::Balance));
         let pixels = self.pixels_to_try(count, stream);
-        let tried = |passes: &Self| -> Vec<Sums> { pixels.par_iter().map(|pixel| passes.tried(pixel)).collect() };
+        let tried = |passes: &Self| -> Vec<PixelSum> { pixels.par_iter().map(|pixel| passes.tried(pixel)).collect() };
         let [first, again] = [own, stream].map(|gathers| self.trying(PATHS, gathers, tried));
         relative_noise(pixels.iter().map(|pixel| pixel.weight).zip(first.iter().zip(&again)))
     }
@@ -80,7 +80,7 @@ impl Passes<'_> {
         let seen = |index: u32| {
             let [x, y, ..] = spread.point(index);
             let at = [x * size.x, y * size.y].map(|place| place as usize);
-            let corner = |[x, y]: [usize; 2]| self.through_corner([at[0] + x, at[1] + y], &mut Counts::default());
+            let corner = |[x, y]: [usize; 2]| self.seen_at_corner([at[0] + x, at[1] + y], &mut Counts::default());
             Tried { at, corners: [[0, 0], [1, 0], [0, 1], [1, 1]].map(corner), weight: 1.0 }
         };
         let seen: Vec<Tried> = (0..(SEEN_FOR_ONE * count) as u32).into_par_iter().map(seen).collect();
@@ -95,11 +95,11 @@ impl Passes<'_> {
     }
 
     /// The sums of a pixel of the image with [`PATHS`] paths.
-    fn tried(&self, pixel: &Tried) -> Sums {
+    fn tried(&self, pixel: &Tried) -> PixelSum {
         let mut context = ThreadContext::new(self.renderer().objects.len());
         let edge = match self.settings().filter {
-            Filter::Box => edge::across(pixel.corners),
-            Filter::Point => None,
+            Filter::Box => edge::is_between(pixel.corners),
+            Filter::Point => false,
         };
         self.add_to(pixel.at, (PixelSum::default(), edge), 0..PATHS, &mut context)
     }
@@ -109,17 +109,16 @@ impl Passes<'_> {
 #[derive(Clone, Copy)]
 struct Tried {
     at: [usize; 2],
-    /// The least and largest transmittance of the first interface at each corner.
-    corners: [[f64; 2]; 4],
+    corners: [Corner; 4],
     /// The number of pixels that it stands for, relative to those of other kinds.
     weight: f64,
 }
 
 impl Tried {
     fn kind(&self) -> Kind {
-        if edge::across(self.corners).is_some() {
+        if edge::is_between(self.corners) {
             Kind::Edge
-        } else if self.corners.iter().any(|[_, high]| *high > 0.0) {
+        } else if self.corners.iter().flatten().any(|[_, high]| *high > 0.0) {
             Kind::Within
         } else {
             Kind::Beside
@@ -149,12 +148,11 @@ impl Kind {
 
 /// The error of one path over the root mean square of the scattered light, from two images of the same paths, whose
 /// pixels have weights.
-fn relative_noise<'a>(pixels: impl Iterator<Item = (f64, (&'a Sums, &'a Sums))>) -> Option<f64> {
+fn relative_noise<'a>(pixels: impl Iterator<Item = (f64, (&'a PixelSum, &'a PixelSum))>) -> Option<f64> {
     let (mut variance, mut power) = (0.0, 0.0);
-    for (weight, ((one, edge), (other, other_edge))) in pixels {
-        let (edge, other_edge) = (edge.as_deref(), other_edge.as_deref());
-        variance += weight * one.shared_variance(edge, other, other_edge).element_sum();
-        power += weight * one.layers(edge)[Layer::Subsurface as usize].length_squared();
+    for (weight, (one, other)) in pixels {
+        variance += weight * one.shared_variance(other).element_sum();
+        power += weight * one.layers()[Layer::Subsurface as usize].length_squared();
     }
     (power > 0.0).then(|| (f64::from(PATHS) * variance.max(0.0) / power).sqrt())
 }
@@ -181,7 +179,7 @@ mod tests {
     fn what_the_cut_adds_is_not_counted() {
         let stream = Stream::new(3, Purpose::Balance);
         let normal = |item: u64| (0..12).map(|d| stream.item(item).uniform(d)).sum::<f64>() - 6.0;
-        let image = |own: u64| -> Vec<Sums> {
+        let image = |own: u64| -> Vec<PixelSum> {
             let pixel = |index: u64| {
                 let mut sum = PixelSum::default();
                 for path in 0..PATHS {
@@ -193,7 +191,7 @@ mod tests {
                     of_path.layers[Layer::Subsurface as usize] = DVec3::splat(light);
                     sum.add(path, false, &of_path);
                 }
-                (sum, None)
+                sum
             };
             (0..40_000).map(pixel).collect()
         };
@@ -206,7 +204,8 @@ mod tests {
     /// Seen to catch: within and beside exchanged; an edge by the first corner alone.
     #[test]
     fn pixels_are_of_three_kinds() {
-        let kind = |corners: [f64; 4]| Tried { at: [0; 2], corners: corners.map(|c| [c; 2]), weight: 1.0 }.kind();
+        let kind =
+            |corners: [f64; 4]| Tried { at: [0; 2], corners: corners.map(|c| [[c; 2], [0.0; 2]]), weight: 1.0 }.kind();
         assert!(kind([0.0; 4]) == Kind::Beside && kind([0.9; 4]) == Kind::Within);
         assert!(kind([0.9, 0.9, 0.9, 0.0]) == Kind::Edge);
         assert_eq!([Kind::Edge, Kind::Within, Kind::Beside].map(Kind::eighths).iter().sum::<usize>(), 8);
@@ -214,7 +213,7 @@ mod tests {
 
     #[test]
     fn nothing_is_known_of_black_pixels() {
-        assert_eq!(relative_noise([(1.0, (&Sums::default(), &Sums::default()))].into_iter()), None);
+        assert_eq!(relative_noise([(1.0, (&PixelSum::default(), &PixelSum::default()))].into_iter()), None);
     }
 
     #[test]

@@ -1,7 +1,6 @@
 //! The errors of an image, estimated from the sums of its pixels.
 
 use crate::{
-    edge::Edge,
     freedom::{self, Cells},
     path_state::Layer,
     pixel_sum::PixelSum,
@@ -30,13 +29,13 @@ pub struct Errors {
 
 impl Errors {
     /// The errors of an image of this size from its pixels, row by row; none for a black image.
-    pub fn of<'a>(size: [usize; 2], pixels: impl Iterator<Item = (&'a PixelSum, Option<&'a Edge>)>) -> Option<Errors> {
+    pub fn of<'a>(size: [usize; 2], pixels: impl Iterator<Item = &'a PixelSum>) -> Option<Errors> {
         let (mut power, mut scattered, mut half) = (0.0, 0.0, f64::INFINITY);
         let (mut total, mut paths, mut squares, mut total_squares) = (0.0, 0.0, 0.0, 0.0);
         let mut cells = Cells::new(size);
-        for (pixel, (sum, edge)) in pixels.enumerate() {
-            let layers = sum.layers(edge);
-            let [between, within] = sum.variances(edge).map(DVec3::element_sum);
+        for (pixel, sum) in pixels.enumerate() {
+            let layers = sum.layers();
+            let [between, within] = sum.variances().map(DVec3::element_sum);
             power += layers.iter().sum::<DVec3>().length_squared();
             scattered += layers[Layer::Subsurface as usize].length_squared();
             total += between;
@@ -44,7 +43,7 @@ impl Errors {
             squares += within * within;
             total_squares += between * between;
             half = half.min(sum.counts[1]);
-            cells.add(pixel, sum.difference(edge));
+            cells.add(pixel, sum.difference());
         }
         let relative = |variance: f64| (variance.max(0.0) / power).sqrt();
         // The channels of a pixel are correlated and count as one value.
@@ -69,11 +68,10 @@ impl Errors {
 
 /// The degrees of freedom of the paths' error, from the sums over the pixels of their two variances and of the squares of
 /// these: by the scatter within halves, and by the difference of the halves. The square of a difference has a mean square
-/// of three times its squared mean, and what is estimated for edge pixels, of either sign, a larger one: where it happens
-/// to cancel, little is known.
+/// of three times its squared mean.
 fn paths_freedom([within, within_squares]: [f64; 2], [between, between_squares]: [f64; 2]) -> f64 {
     let freedom = |sum: f64, squares: f64| if squares > 0.0 { (sum * sum / squares).max(1.0) } else { 1.0 };
-    freedom(within, within_squares).min(freedom(between.max(0.0), between_squares / 3.0))
+    freedom(within, within_squares).min(freedom(between, between_squares / 3.0))
 }
 
 /// Degrees of freedom that give an error a relative uncertainty of an eighth.
@@ -84,14 +82,14 @@ mod tests {
     use super::*;
 
     /// By hand: 100 pixels of variance 1, whose differences have the mean square 3; then so few of them that they are
-    /// less certain than the scatter, and variances of either sign that cancel.
+    /// less certain than the scatter; then halves that agree.
     ///
-    /// Seen to catch: the scatter within halves alone; the square of a negative sum; the factor three left out.
+    /// Seen to catch: the scatter within halves alone; the factor three left out.
     #[test]
-    fn variances_that_cancel_have_few_degrees_of_freedom() {
+    fn few_pixels_have_few_degrees_of_freedom() {
         assert_eq!(paths_freedom([100.0, 100.0], [100.0, 300.0]), 100.0);
         assert!((paths_freedom([100.0, 100.0], [50.0, 300.0]) - 25.0).abs() < 1e-9);
-        assert_eq!(paths_freedom([100.0, 100.0], [-100.0, 300.0]), 1.0);
+        assert_eq!(paths_freedom([100.0, 100.0], [0.0, 0.0]), 1.0);
         assert_eq!(paths_freedom([0.0; 2], [0.0; 2]), 1.0);
     }
 }

@@ -141,7 +141,7 @@ fn look(renderer: &Renderer, (origin, direction): (DVec3, DVec3), index: u64) ->
     let material = mesh.triangles[hit.triangle as usize].material;
     renderer.objects[usize::from(material)].as_ref()?;
     let mut context = ThreadContext::new(renderer.input.scene.materials.len());
-    let path = PathIndex { pixel: index, path: 0, walks: None, near: None, surface: None };
+    let path = PathIndex { pixel: index, path: 0, edge: false, walks: None, near: None, surface: None };
     let light = renderer.trace(path, origin, direction, &mut context);
     Some(strength(light.layers.iter().sum()))
 }

@@ -14,8 +14,8 @@ const MAX_VARIANCE: DVec3 = DVec3::splat(f32::MAX as f64);
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Pixel {
     layers: Layers,
-    /// Estimate of the variance of the mean; at edges it may be negative. As a square it exceeds float32 long before
-    /// the pixel does; the file then contains the largest float32.
+    /// Estimate of the variance of the mean. As a square it exceeds float32 long before the pixel does; the file then
+    /// contains the largest float32.
     variance: DVec3,
     guide: Guide,
 }
@@ -39,11 +39,8 @@ impl Pixel {
         let mut values = [0.0; 28];
         // The position is 0 where no surface was met, whatever the origin.
         let position = if self.guide.normal == DVec3::ZERO { DVec3::ZERO } else { self.guide.position - origin };
-        let vectors = [
-            &[self.beauty()],
-            &self.layers[..],
-            &[self.variance.clamp(DVec3::ZERO, MAX_VARIANCE), self.guide.normal, position],
-        ];
+        let vectors =
+            [&[self.beauty()], &self.layers[..], &[self.variance.min(MAX_VARIANCE), self.guide.normal, position]];
         let numbers = vectors.concat().into_iter().flat_map(|v| v.to_array()).chain([self.guide.depth]);
         values.iter_mut().zip(numbers).for_each(|(value, x)| *value = x as f32);
         values
@@ -114,13 +111,9 @@ pub fn negative_count(pixels: &[Pixel]) -> usize {
 }
 
 /// The relative standard error of the image: the root mean square of the pixels' standard errors over the root mean
-/// square of their values, all channels; none for a black image. Variances of edge pixels are estimated without bias,
-/// and may be below zero. Where those of all pixels together are, their own scatter is more than the error, and is stated
-/// in its place.
+/// square of their values, all channels; none for a black image.
 pub fn relative_error(pixels: &[Pixel]) -> Option<f64> {
-    let sum: f64 = pixels.iter().map(|p| p.variance.element_sum()).sum();
-    let scatter = pixels.iter().map(|p| p.variance.element_sum().powi(2)).sum::<f64>().sqrt();
-    let variance = if sum > 0.0 { sum } else { scatter };
+    let variance: f64 = pixels.iter().map(|p| p.variance.element_sum()).sum();
     let power: f64 = pixels.iter().map(|p| p.beauty().length_squared()).sum();
     (power > 0.0).then(|| (variance / power).sqrt())
 }

@@ -52,6 +52,7 @@ pub mod film;
 mod freedom;
 mod glossy;
 mod image;
+mod known;
 mod meeting;
 mod objects;
 mod passes;

@@ -4,7 +4,7 @@ use crate::{
     counts::Counts,
     path_state::{Layer, PathState},
 };
-use bsdf::{Bsdf, Lobe, Side, Surface, View};
+use bsdf::{Bsdf, Lobe, Sample, Side, Surface, View};
 use scene::{DVec3, SurfacePoint};
 
 /// A surface point where a path meets a BSDF.
@@ -35,13 +35,10 @@ impl Meeting<'_> {
         self.bsdf.transmittance(&self.view)
     }
 
-    /// Sends the path on in a direction of one lobe, and assigns its light to the layer `event`. The direction is
-    /// sampled about the geometric normal if the interpolated one puts it on the wrong side of the triangle. False if
-    /// there is none.
-    pub fn scatter(&self, state: &mut PathState, lobe: Lobe, event: Layer, counts: &mut Counts) -> bool {
+    /// A direction of one lobe, by the numbers of `xi` if it has several. It is sampled about the geometric normal if the
+    /// interpolated one puts it on the wrong side of the triangle.
+    pub fn sample(&self, lobe: Lobe, mut xi: impl FnMut() -> [f64; 2], counts: &mut Counts) -> Option<Sample> {
         let geometric = self.point.geometric_normal;
-        let mut first = if self.bsdf.is_specular() { None } else { state.mirrored.take() };
-        let mut xi = || first.take().unwrap_or_else(|| [state.uniform(), state.uniform()]);
         let mut sample = |view: &View| self.bsdf.sample(view, lobe, &mut xi);
         let mut sampled = sample(&self.view);
         let on_wrong_side = |direction: DVec3| match lobe {
@@ -51,13 +48,20 @@ impl Meeting<'_> {
         let fails = sampled.is_none_or(|sample| on_wrong_side(sample.direction));
         // A rough surface has directions that lead nowhere, whose light is not missing.
         if fails && !self.bsdf.is_specular() {
-            return false;
+            return None;
         }
         if fails {
             counts.geometric_normals += 1;
             sampled = sample(&View { normal: geometric, ..self.view });
         }
-        let Some(sample) = sampled else {
+        sampled
+    }
+
+    /// Sends the path on in a direction of one lobe, and assigns its light to the layer `event`. False if there is none.
+    pub fn scatter(&self, state: &mut PathState, lobe: Lobe, event: Layer, counts: &mut Counts) -> bool {
+        let mut first = if self.bsdf.is_specular() { None } else { state.mirrored.take() };
+        let xi = || first.take().unwrap_or_else(|| [state.uniform(), state.uniform()]);
+        let Some(sample) = self.sample(lobe, xi, counts) else {
             return false;
         };
         state.throughput *= sample.weight;

@@ -5,14 +5,15 @@ use crate::{
     counts::Counts,
     crop::Crop,
     cut_correction,
-    edge::{self, Edge},
+    edge::{self, Corner},
     errors::Errors,
     film::Pixel,
     image::{Filter, Input, Rendered, Settings},
+    known::Known,
     objects::objects,
-    path_state::{PathIndex, ThreadContext},
+    path_state::{PathIndex, PathLight, ThreadContext, Way},
     pixel_numbers::{PixelNumbers, Streams, halves},
-    pixel_sum::{PixelSum, Sums},
+    pixel_sum::PixelSum,
     reference::{Walks, meets_light},
     renderer::{Renderer, TranslucentObject},
     state::State,
@@ -54,8 +55,8 @@ pub struct Passes<'a> {
     /// The part of the image that is rendered. Its pixels are indexed row by row.
     part: Crop,
     sums: Vec<PixelSum>,
-    /// One entry for each pixel; none unless it is an edge pixel.
-    edges: Vec<Option<Box<Edge>>>,
+    /// Whether each pixel is an edge pixel.
+    edges: Vec<bool>,
     /// Paths that each pixel has so far, or that all share for each.
     paths: u32,
     /// The shares of the pixels in the paths, once they are shared out.
@@ -80,6 +81,7 @@ impl<'a> Passes<'a> {
             settings: settings.clone(),
             lights: LightTree::new(input.scene.lights()),
             surroundings,
+            known: Known::new([settings.width, settings.height]),
             objects,
             drawn: DrawnCounts::of(input.clouds),
             paths_per_pixel: f64::from(settings.paths_per_pixel),
@@ -102,7 +104,7 @@ impl<'a> Passes<'a> {
         };
         let mut passes = Passes {
             renderer,
-            edges: vec![None; settings.part().pixels()],
+            edges: vec![false; settings.part().pixels()],
             sums: vec![PixelSum::default(); settings.part().pixels()],
             part: settings.part(),
             paths: 0,
@@ -118,6 +120,7 @@ impl<'a> Passes<'a> {
             passes.balance();
         }
         cut_correction::correct(&mut passes.renderer);
+        passes.renderer.known = Known::new([settings.width, settings.height]);
         passes
     }
 
@@ -147,39 +150,42 @@ impl<'a> Passes<'a> {
         &self.renderer
     }
 
-    /// Finds edge pixels by the transmittance at the corners of all pixels, and across the lens if there is one. There
+    /// Finds edge pixels by what is seen at the corners of all pixels, and across the lens if there is one. There
     /// are none with one path per pixel, which has no second half to estimate the factor of the control variate from,
     /// nor with rays through pixel centers, which are all the same.
     fn find_edges(&mut self) {
         let settings = &self.renderer.settings;
-        if settings.paths_per_pixel == 1 || settings.filter == Filter::Point {
+        if settings.paths_per_pixel == 1 || settings.filter == Filter::Point || settings.reference {
             return;
         }
         let Crop { x: left, y: upper, width, height } = self.part;
         let row = |y: usize| {
             let mut counts = Counts::default();
-            let corner = |x: usize, counts: &mut Counts| self.through_corner([left + x, upper + y], counts);
-            ((0..=width).map(|x| corner(x, &mut counts)).collect::<Vec<[f64; 2]>>(), counts)
+            let corner = |x: usize, counts: &mut Counts| self.seen_at_corner([left + x, upper + y], counts);
+            ((0..=width).map(|x| corner(x, &mut counts)).collect::<Vec<Corner>>(), counts)
         };
-        let rows: Vec<(Vec<[f64; 2]>, Counts)> = (0..=height).into_par_iter().map(row).collect();
+        let rows: Vec<(Vec<Corner>, Counts)> = (0..=height).into_par_iter().map(row).collect();
         for index in 0..width * height {
             let (x, y) = (index % width, index / width);
             let corners = [rows[y].0[x], rows[y].0[x + 1], rows[y + 1].0[x], rows[y + 1].0[x + 1]];
-            self.edges[index] = edge::across(corners);
+            self.edges[index] = edge::is_between(corners);
         }
         rows.iter().for_each(|(_, counts)| self.counts.add(counts));
-        self.counts.edge_pixels = self.edges.iter().flatten().count() as u64;
+        self.counts.edge_pixels = self.edges.iter().filter(|edge| **edge).count() as u64;
     }
 
-    /// The least and the largest transmittance at the upper left corner of a pixel, through all of the lens.
-    pub(crate) fn through_corner(&self, [x, y]: [usize; 2], counts: &mut Counts) -> [f64; 2] {
+    /// What is seen of scattered light at the upper left corner of a pixel, through all of the lens.
+    pub(crate) fn seen_at_corner(&self, [x, y]: [usize; 2], counts: &mut Counts) -> Corner {
         let lens: &[Option<[f64; 2]>] = if self.streams.lens.is_some() { &ACROSS_THE_LENS } else { &[None] };
-        let range = |[low, high]: [f64; 2], lens: &Option<[f64; 2]>| {
+        let range = |mut corner: Corner, lens: &Option<[f64; 2]>| {
             let (origin, direction) = self.renderer.camera_ray(DVec2::new(x as f64, y as f64), *lens);
-            let through = self.renderer.through(origin, direction, counts);
-            [low.min(through), high.max(through)]
+            for ([low, high], seen) in corner.iter_mut().zip(self.renderer.seen(origin, direction, counts)) {
+                let share = seen.map_or(0.0, |(_, share)| share);
+                (*low, *high) = (low.min(share), high.max(share));
+            }
+            corner
         };
-        lens.iter().fold([1.0, 0.0], range)
+        lens.iter().fold([[1.0, 0.0]; 2], range)
     }
 
     /// The indices of the pixels of a tile, row by row.
@@ -202,23 +208,23 @@ impl<'a> Passes<'a> {
     }
 
     /// The sums of a pixel of the part with more paths.
-    fn add_paths(&self, index: usize, paths: Range<u32>, context: &mut ThreadContext) -> Sums {
+    fn add_paths(&self, index: usize, paths: Range<u32>, context: &mut ThreadContext) -> PixelSum {
         // The random numbers of a pixel do not depend on what part of the image is rendered.
-        self.add_to(self.part.pixel(index), (self.sums[index], self.edges[index].clone()), paths, context)
+        self.add_to(self.part.pixel(index), (self.sums[index], self.edges[index]), paths, context)
     }
 
     /// The sums of any pixel of the image, by its column and row, with more paths.
     pub(crate) fn add_to(
         &self,
         at: [usize; 2],
-        (mut sum, edge): Sums,
+        (mut sum, edge): (PixelSum, bool),
         paths: Range<u32>,
         context: &mut ThreadContext,
-    ) -> Sums {
+    ) -> PixelSum {
         let settings = &self.renderer.settings;
         let pixel = (at[1] * settings.width + at[0]) as u64;
         let numbers = PixelNumbers::new(pixel, self.streams);
-        let mut edge = edge.map(|edge| (edge, halves(self.edge_stream, pixel)));
+        let spread = edge.then(|| halves(self.edge_stream, pixel));
         let alone = settings.paths_per_pixel == 1;
         for path in paths {
             let offset = match settings.filter {
@@ -229,28 +235,51 @@ impl<'a> Passes<'a> {
             let path_index = PathIndex {
                 pixel,
                 path,
+                edge,
                 walks: numbers.walks(path),
                 near: numbers.near(path),
                 surface: numbers.surface(path),
             };
-            let light = self.renderer.trace(path_index, origin, direction, context);
+            let mut light = self.renderer.trace(path_index, origin, direction, context);
+            if let Some(spread) = &spread {
+                let spread = &spread[path as usize % 2];
+                let rays = (0..edge::RAYS).map(|ray| spread.point(path / 2 * edge::RAYS + ray));
+                self.control(at, &mut light, rays, context);
+            }
             sum.add(path, alone, &light);
-            if let Some((edge, spread)) = &mut edge {
-                let half = path as usize % 2;
-                edge.add_path(half, &light);
-                for ray in 0..edge::RAYS {
-                    let [x, y, u, v] = spread[half].point(path / 2 * edge::RAYS + ray);
-                    let (origin, direction) = self.ray(at, DVec2::new(x, y), self.streams.lens.map(|_| [u, v]));
-                    edge.add_ray(half, self.renderer.through(origin, direction, &mut context.counts));
+        }
+        sum
+    }
+
+    /// Replaces what is known of a path in an edge pixel by its mean over rays through the pixel, by the numbers of each
+    /// for its place and for that on the lens.
+    fn control(
+        &self,
+        at: [usize; 2],
+        light: &mut PathLight,
+        rays: impl Iterator<Item = [f64; 4]>,
+        context: &mut ThreadContext,
+    ) {
+        let mut means = [DVec3::ZERO; 2];
+        for [x, y, u, v] in rays {
+            let (origin, direction) = self.ray(at, DVec2::new(x, y), self.streams.lens.map(|_| [u, v]));
+            let seen = self.renderer.seen(origin, direction, &mut context.counts);
+            let Some(first) = seen[0].as_ref().map(|(direct, _)| direct.point.position) else { continue };
+            for ((mean, seen), way) in means.iter_mut().zip(&seen).zip([Way::Direct, Way::Mirrored]) {
+                if let Some((glimpse, share)) = seen {
+                    *mean += share / f64::from(edge::RAYS) * self.renderer.known_light(first, way, glimpse, context);
                 }
             }
         }
-        (sum, edge.map(|(edge, _)| edge))
+        for ((mean, known), layer) in means.into_iter().zip(light.known).zip(edge::LAYER_OF) {
+            light.layers[layer as usize] += mean - known;
+            light.halves.iter_mut().for_each(|half| *half += mean - known);
+        }
     }
 
     fn pixel(&self, index: usize) -> Pixel {
         let (origin, direction) = self.ray(self.part.pixel(index), DVec2::splat(0.5), None);
-        self.sums[index].pixel(self.edges[index].as_deref(), self.renderer.guide(origin, direction))
+        self.sums[index].pixel(self.renderer.guide(origin, direction))
     }
 
     /// Paths that each pixel has, or that all share for each.
@@ -284,7 +313,7 @@ impl<'a> Passes<'a> {
                 added += u64::from(after - before);
                 (index, self.add_paths(index, before..after, &mut context))
             };
-            let sums: Vec<(usize, Sums)> = self.pixels_of(tile).map(add).collect();
+            let sums: Vec<(usize, PixelSum)> = self.pixels_of(tile).map(add).collect();
             watch.done(&Tile { part: self.part, sums: &sums, paths: added });
             context.counts.near_field(&context.near.work);
             Some((sums, context.counts))
@@ -293,20 +322,25 @@ impl<'a> Passes<'a> {
         let Some(tiles) = tiles else { return false };
         for (sums, counts) in tiles {
             self.counts.add(&counts);
-            sums.into_iter().for_each(|(index, sum)| (self.sums[index], self.edges[index]) = sum);
+            sums.into_iter().for_each(|(index, sum)| self.sums[index] = sum);
         }
         self.paths = end;
         true
     }
 
     /// The sums of a pixel of the part.
-    pub(crate) fn sums(&self, index: usize) -> (&PixelSum, Option<&Edge>) {
-        (&self.sums[index], self.edges[index].as_deref())
+    pub(crate) fn sums(&self, index: usize) -> &PixelSum {
+        &self.sums[index]
+    }
+
+    /// Whether a pixel of the part is an edge pixel.
+    pub(crate) fn is_edge(&self, index: usize) -> bool {
+        self.edges[index]
     }
 
     /// The sums so far, from which [`Passes::resume`] goes on.
     pub fn state(&self) -> State {
-        State::of(self.paths, &self.sums, &self.edges, self.allotment.as_ref())
+        State::of(self.paths, &self.sums, self.allotment.as_ref())
     }
 
     /// Goes on from the sums of an image of the same settings and part, as if its paths were those of this one. All paths
@@ -314,7 +348,7 @@ impl<'a> Passes<'a> {
     pub fn resume(&mut self, state: &State) {
         self.allotment = state.allotment(self.rounding());
         let paths: Vec<u32> = (0..self.sums.len()).map(|index| self.paths_of(index, state.paths)).collect();
-        state.restore(&paths, &mut self.sums, &mut self.edges);
+        state.restore(&paths, &mut self.sums);
         self.paths = state.paths;
         self.plan(self.renderer.settings.paths_per_pixel.saturating_sub(self.paths));
     }
@@ -340,7 +374,7 @@ impl<'a> Passes<'a> {
 
     /// The errors of the image so far; none if it is black.
     pub fn errors(&self) -> Option<Errors> {
-        Errors::of([self.part.width, self.part.height], self.sums.iter().zip(self.edges.iter().map(Option::as_deref)))
+        Errors::of([self.part.width, self.part.height], self.sums.iter())
     }
 
     /// The image so far.

@@ -3,8 +3,9 @@
 
 use crate::{
     counts::Counts,
+    known::Glimpse,
     meeting::Meeting,
-    path_state::{Guide, Layer, PathIndex, PathLight, PathState, ThreadContext, Trace},
+    path_state::{Guide, Layer, PathIndex, PathLight, PathState, ThreadContext, Trace, Way},
     renderer::{Renderer, TranslucentObject},
 };
 use bsdf::{Bsdf, Lobe, Side, Surface, View};
@@ -18,9 +19,21 @@ impl Renderer<'_> {
     /// Light that arrives at the camera along one path. At its first interface the path splits into a refracted and a
     /// reflected branch.
     pub fn trace(&self, index: PathIndex, origin: DVec3, direction: DVec3, context: &mut ThreadContext) -> PathLight {
+        let mut state = self.begin(index, origin, direction);
+        let mut trace = Trace::default();
+        context.counts.paths += 1;
+        self.follow(&mut state, &mut trace, context);
+        if let Some(mut state) = trace.mirrored.take() {
+            self.follow(&mut state, &mut trace, context);
+        }
+        trace.light
+    }
+
+    /// A path before its first surface.
+    pub(crate) fn begin(&self, index: PathIndex, origin: DVec3, direction: DVec3) -> PathState {
         let item = index.pixel << 32 | u64::from(index.path);
         let half = index.path as usize % 2;
-        let mut state = PathState {
+        PathState {
             origin,
             direction,
             from: None,
@@ -33,20 +46,16 @@ impl Renderer<'_> {
             shard_pick: self.pick_shard(index),
             walks: index.walks,
             near: index.near,
+            mirrors: 0.0,
+            edge: index.edge,
+            accuracy: None,
             light: index.surface.map(|numbers| numbers.light),
             mirrored: index.surface.map(|numbers| numbers.mirrored),
             random: self.paths.item(item),
             dimension: 0,
             key: self.gathers.item(item),
             near_points: self.near_points.item(item),
-        };
-        let mut trace = Trace::default();
-        context.counts.paths += 1;
-        self.follow(&mut state, &mut trace, context);
-        if let Some(mut state) = trace.mirrored.take() {
-            self.follow(&mut state, &mut trace, context);
         }
-        trace.light
     }
 
     /// Picks the shard that a path gathers from. Shards alternate over the paths of one half and one pass.
@@ -214,6 +223,7 @@ impl Renderer<'_> {
         let surface = object.surface(self.input.scene, hit);
         let meeting = Meeting::new(point, surface, Side::Outside, -state.direction, counts);
         let transmittance = meeting.transmittance();
+        let (mut way, from) = (None, state.origin);
         let splits = state.layer.is_none() && transmittance > 0.0;
         if !splits && state.uniform() >= transmittance {
             return self.reflect(state, &meeting, &mut trace.light, counts);
@@ -228,16 +238,24 @@ impl Renderer<'_> {
                     ..*state
                 };
                 branch.throughput *= 1.0 - transmittance;
+                branch.mirrors = if meeting.bsdf.is_specular() { 1.0 - transmittance } else { 0.0 };
                 let follows = self.reflect(&mut branch, &meeting, &mut trace.light, counts);
                 trace.mirrored = (follows && branch.events < self.settings.max_depth).then_some(branch);
                 counts.cut_by_depth += u64::from(follows && trace.mirrored.is_none());
             }
             state.throughput *= transmittance;
-            trace.light.through = if object.is_dark() { 0.0 } else { transmittance };
+            way = Some((Way::Direct, transmittance));
+        } else if state.mirrors > 0.0 && state.events == 1 {
+            way = Some((Way::Mirrored, state.mirrors));
         }
         let emission = self.input.scene.emission(hit.triangle, hit.weights) * self.share_of(state, point.material);
         trace.light.add(state, Layer::Emission, emission);
         self.gather(state, object, (point, hit), &meeting.view, &mut trace.light, context);
+        if let Some((way, share)) = way.filter(|_| state.edge) {
+            let glimpse = Glimpse { object, hit: *hit, point: *point, view: meeting.view };
+            let first = if way == Way::Direct { point.position } else { from };
+            trace.light.known[way as usize] = share * self.known_light(first, way, &glimpse, context);
+        }
         (state.walks, state.near) = (None, None);
         state.inside = Some(point.material);
         // If only the interpolated normal lets light through, the path ends here.
@@ -270,21 +288,44 @@ impl Renderer<'_> {
         true
     }
 
-    /// [`PathLight::through`] of a path along this ray.
-    pub fn through(&self, origin: DVec3, direction: DVec3, counts: &mut Counts) -> f64 {
+    /// What a ray sees of the light that is scattered below surfaces, by [`Way`]: where, and the expected share of that
+    /// light which a path sees.
+    pub fn seen(&self, origin: DVec3, direction: DVec3, counts: &mut Counts) -> [Option<(Glimpse<'_>, f64)>; 2] {
         counts.edge_rays += 1;
-        let Some(hit) = self.input.rays.closest(origin, direction, None) else {
-            return 0.0;
+        let Some(direct) = self.glimpse(origin, direction, None) else {
+            return [None, None];
         };
+        // What the path's other branch does is nothing that a ray counts.
+        let ignored = &mut Counts::default();
+        let surface = direct.object.surface(self.input.scene, &direct.hit);
+        let meeting = Meeting::new(&direct.point, surface, Side::Outside, -direction, ignored);
+        let (transmittance, mirrors) = (meeting.transmittance(), 1.0 - meeting.transmittance());
+        let splits = meeting.bsdf.is_specular() && transmittance > 0.0 && mirrors > 0.0;
+        let mut mirrored = || {
+            let direction = meeting.sample(Lobe::Reflection, || [0.0; 2], ignored)?.direction;
+            counts.edge_rays += 1;
+            let glimpse = self.glimpse(direct.point.position, direction, Some(direct.point.triangle))?;
+            let surface = glimpse.object.surface(self.input.scene, &glimpse.hit);
+            let meeting = Meeting::new(&glimpse.point, surface, Side::Outside, -direction, ignored);
+            let share = mirrors * meeting.transmittance();
+            Some((glimpse, share))
+        };
+        let mirrored = if splits && self.settings.max_depth > 1 { mirrored() } else { None };
+        [Some((direct, transmittance)), mirrored]
+    }
+
+    /// The outside of a translucent object, if that is what a ray meets first.
+    pub(crate) fn glimpse(&self, origin: DVec3, direction: DVec3, from: Option<u32>) -> Option<Glimpse<'_>> {
+        let hit = self.input.rays.closest(origin, direction, from)?;
         let point = self.input.scene.mesh.point(hit.triangle, hit.weights, self.settings.normals);
-        let view = -direction;
-        match &self.objects[point.material as usize] {
-            Some(object) if view.dot(point.geometric_normal) > 0.0 && !object.is_dark() => {
-                let surface = object.surface(self.input.scene, &hit);
-                Meeting::new(&point, surface, Side::Outside, view, &mut Counts::default()).transmittance()
-            }
-            _ => 0.0,
+        let object = self.objects[point.material as usize].as_ref()?;
+        if direction.dot(point.geometric_normal) >= 0.0 {
+            return None;
         }
+        let point = point.facing(-direction);
+        let view =
+            Meeting::new(&point, Surface::dielectric(1.0), Side::Outside, -direction, &mut Counts::default()).view;
+        Some(Glimpse { object, hit, point, view })
     }
 
     /// Normal, position, depth and material of what the ray meets first.

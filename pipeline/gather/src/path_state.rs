@@ -10,6 +10,8 @@ pub struct PathIndex {
     pub pixel: u64,
     /// Index in the pixel. Even paths gather from the first half of the cloud, odd ones from the second.
     pub path: u32,
+    /// Whether its pixel is an edge pixel.
+    pub edge: bool,
     /// The first numbers of the walks that it begins at its first interface, one for each channel, if it begins any.
     pub walks: Option<WalkStarts>,
     /// The numbers of its points around the first exitant point, if it draws any.
@@ -82,6 +84,12 @@ pub struct PathState {
     pub walks: Option<WalkStarts>,
     /// The numbers of the points around the first exitant point, until they are used.
     pub near: Option<near_field::Numbers>,
+    /// The share of its light that a smooth first interface mirrored; 0 of all other branches.
+    pub mirrors: f64,
+    /// Whether its pixel is an edge pixel.
+    pub edge: bool,
+    /// The relative error of its gathers, if it is not that of the image.
+    pub accuracy: Option<f64>,
     /// The numbers at the first surface with many directions, until they are used.
     pub light: Option<[f64; 2]>,
     pub mirrored: Option<[f64; 2]>,
@@ -152,8 +160,18 @@ pub struct PathLight {
     /// The sum of the layers as each half of the cloud alone estimates it; without scattered light for a half that the
     /// path did not gather from.
     pub halves: [DVec3; 2],
-    /// Transmittance of the first interface for scattered light; 0 without such an interface.
-    pub through: f64,
+    /// The part of the scattered light that is known without it, by [`Way`], W/(m² sr), in an edge pixel.
+    pub known: [DVec3; 2],
+}
+
+/// A way in which a path sees light that is scattered below a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(usize)]
+pub enum Way {
+    /// Below the first interface.
+    Direct = 0,
+    /// Below the surface that the first interface mirrors, if that is smooth.
+    Mirrored = 1,
 }
 
 /// The first surface that the ray through a pixel's center meets; zero where there is none.

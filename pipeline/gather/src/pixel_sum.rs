@@ -1,14 +1,10 @@
 //! The sums over the paths of one pixel, with its mean and variance.
 
 use crate::{
-    edge::Edge,
     film::Pixel,
-    path_state::{Guide, Layer, Layers, PathLight},
+    path_state::{Guide, Layers, PathLight},
 };
 use scene::DVec3;
-
-/// The sums of one pixel, and those of an edge pixel.
-pub(crate) type Sums = (PixelSum, Option<Box<Edge>>);
 
 /// Sums over the paths of one pixel.
 #[derive(Clone, Copy, Debug, Default)]
@@ -58,64 +54,51 @@ impl PixelSum {
     }
 
     /// The light of the pixel, W/(m² sr).
-    pub(crate) fn light(&self, edge: Option<&Edge>) -> DVec3 {
-        self.layers(edge).iter().sum()
+    pub(crate) fn light(&self) -> DVec3 {
+        self.layers().iter().sum()
     }
 
     /// The difference of the means of the two halves.
-    pub(crate) fn difference(&self, edge: Option<&Edge>) -> DVec3 {
+    pub(crate) fn difference(&self) -> DVec3 {
         let mean = |half: usize| self.halves[half] / self.counts[half];
-        let [even, odd] = [0, 1].map(|half| mean(half) + edge.map_or(DVec3::ZERO, |e| e.correction(half)));
-        even - odd
+        mean(0) - mean(1)
     }
 
     /// Two estimates of the pixel's variance: from the difference of the halves, which includes the error of the cloud,
     /// and from the variance of the paths within each half. The second expects the paths' part of the first if paths
     /// are independent, and more than that if they are stratified.
-    pub(crate) fn variances(&self, edge: Option<&Edge>) -> [DVec3; 2] {
+    pub(crate) fn variances(&self) -> [DVec3; 2] {
         let mean = |half: usize| self.halves[half] / self.counts[half];
-        let difference = self.difference(edge);
+        let difference = self.difference();
         let within = [0, 1].map(|half| {
             let n = self.counts[half];
-            let (of_mean, of_square) = edge.map_or((DVec3::ZERO, DVec3::ZERO), |e| e.removed(half));
-            let rest = mean(half) - of_mean;
-            (self.squares[half] / n - of_square - rest * rest).max(DVec3::ZERO) / (n - 1.0).max(1.0)
+            (self.squares[half] / n - mean(half) * mean(half)).max(DVec3::ZERO) / (n - 1.0).max(1.0)
         });
-        [difference * difference / 4.0 + covariance(edge), (within[0] + within[1]) / 4.0]
+        [difference * difference / 4.0, (within[0] + within[1]) / 4.0]
     }
 
     /// A quarter of the product of the differences of the halves of two images of the same paths: their mean expects
-    /// the pixel's variance without the part in which the images differ. At edges it lacks the covariance of the
-    /// halves, whose estimates are much larger than it.
-    pub(crate) fn shared_variance(&self, edge: Option<&Edge>, other: &PixelSum, other_edge: Option<&Edge>) -> DVec3 {
-        self.difference(edge) * other.difference(other_edge) / 4.0
+    /// the pixel's variance without the part in which the images differ.
+    pub(crate) fn shared_variance(&self, other: &PixelSum) -> DVec3 {
+        self.difference() * other.difference() / 4.0
     }
 
     /// Mean light of each layer.
-    pub(crate) fn layers(&self, edge: Option<&Edge>) -> Layers {
-        let mut layers = self.layers.map(|sum| sum / self.count);
-        if let Some(edge) = edge {
-            let corrections = [0, 1].map(|half| edge.correction(half) * self.counts[half] / self.count);
-            layers[Layer::Subsurface as usize] += corrections[0] + corrections[1];
-        }
-        layers
+    pub(crate) fn layers(&self) -> Layers {
+        self.layers.map(|sum| sum / self.count)
     }
 
-    /// The finished pixel. The halves have the same expectation, so a quarter of the squared difference estimates the
-    /// variance of their mean if they are independent; at edges their covariance is that of their corrections.
-    pub fn pixel(&self, edge: Option<&Edge>, guide: Guide) -> Pixel {
-        Pixel::new(self.layers(edge), self.variances(edge)[0], guide)
+    /// The finished pixel. The halves have the same expectation and are independent, so a quarter of the squared
+    /// difference estimates the variance of their mean.
+    pub fn pixel(&self, guide: Guide) -> Pixel {
+        Pixel::new(self.layers(), self.variances()[0], guide)
     }
-}
-
-/// The covariance of the halves of an edge pixel: each takes its factor from the other.
-fn covariance(edge: Option<&Edge>) -> DVec3 {
-    edge.map_or(DVec3::ZERO, |e| e.correction(0) * e.correction(1))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::path_state::Layer;
 
     #[test]
     fn mean_and_variance_of_four_paths() {
@@ -125,7 +108,7 @@ mod tests {
             path.layers[Layer::Subsurface as usize] = DVec3::splat(x);
             sum.add(index as u32, false, &path);
         }
-        let pixel = sum.pixel(None, Guide::default());
+        let pixel = sum.pixel(Guide::default());
         assert_eq!(pixel.beauty(), DVec3::splat(3.0));
         // Even paths have the mean 2, odd ones, by their half, −4.
         assert_eq!(pixel.variance(), DVec3::splat(9.0));
@@ -135,6 +118,6 @@ mod tests {
     fn one_path_estimates_the_error_of_the_cloud() {
         let mut sum = PixelSum::default();
         sum.add(0, true, &PathLight { halves: [DVec3::splat(2.0), DVec3::splat(3.0)], ..PathLight::default() });
-        assert_eq!(sum.pixel(None, Guide::default()).variance(), DVec3::splat(0.25));
+        assert_eq!(sum.pixel(Guide::default()).variance(), DVec3::splat(0.25));
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::{
     image::{Input, Settings},
+    known::Known,
     reference::Walks,
 };
 use bsdf::{SMOOTH_BELOW, Surface};
@@ -22,6 +23,8 @@ pub struct Renderer<'a> {
     pub lights: LightTree<'a>,
     /// What lights near fields; none if there is no near field.
     pub surroundings: Option<Surroundings<'a>>,
+    /// What is known of the light at the centers of pixels.
+    pub known: Known,
     /// The translucent object of each material; none for opaque materials.
     pub objects: Vec<Option<TranslucentObject<'a>>>,
     /// Samples of each cloud, the unlit ones included.

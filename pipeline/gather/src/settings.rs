@@ -207,13 +207,16 @@ pub fn accuracy_of_gather(estimator: Estimator, paths: u32) -> Option<f64> {
     Some(estimator.accuracy()? * f64::from(paths).sqrt())
 }
 
+/// The tenths of a target error that the cut may add: half of its square is left to the paths.
+const TENTHS: f64 = 7.0;
+
 /// The estimator of this name with the parameters that were given, for so many paths per pixel.
 fn estimator(arguments: &Arguments, paths: u32) -> Result<Estimator, Failure> {
     match arguments.estimator {
         Estimator::Cut { .. } => {
-            // The cut may add half of the target error, which is a quarter of its square.
-            let default =
-                arguments.target_error.map_or_else(|| gather::accuracy_of_unknown_noise(paths), |target| 0.5 * target);
+            let default = arguments
+                .target_error
+                .map_or_else(|| gather::accuracy_of_unknown_noise(paths), |target| target / 10.0 * TENTHS);
             Ok(Estimator::Cut { accuracy: arguments.accuracy.unwrap_or(default) })
         }
         _ if arguments.accuracy.is_some() => {

@@ -14,10 +14,7 @@ impl Passes<'_> {
             return;
         }
         let part = settings.part();
-        let noise = |pixel: usize| {
-            let (sum, edge) = self.sums(pixel);
-            (sum.variances(edge)[1].element_sum(), edge.is_some())
-        };
+        let noise = |pixel: usize| (self.sums(pixel).variances()[1].element_sum(), self.is_edge(pixel));
         let (variances, edges): (Vec<f64>, Vec<bool>) = (0..part.pixels()).into_par_iter().map(noise).unzip();
         self.allotment = Some(Allotment::by_noise(self.paths(), part.width, &variances, &edges, self.rounding()));
     }
@@ -56,8 +53,7 @@ impl Passes<'_> {
         let (mut power, mut by_paths) = (0.0, 0.0);
         if self.allotment.is_some() {
             for pixel in 0..self.settings().part().pixels() {
-                let (sum, edge) = self.sums(pixel);
-                let light = sum.layers(edge)[Layer::Subsurface as usize].length_squared();
+                let light = self.sums(pixel).layers()[Layer::Subsurface as usize].length_squared();
                 power += light;
                 by_paths += light / f64::from(self.paths_of(pixel, level));
             }

@@ -23,7 +23,7 @@ const OF_MEDIA: u64 = 1 << 40;
 impl TranslucentObject<'_> {
     /// The factor of the light that leaves at a point for the eye's `view`: the exit lobe or, if the object is calibrated, the
     /// factor of its surface.
-    fn factor(&self, point: &SurfacePoint, view: &View) -> DVec3 {
+    pub(crate) fn factor(&self, point: &SurfacePoint, view: &View) -> DVec3 {
         match &self.factors {
             None => self.exit_lobe(view.normal.dot(view.direction)),
             Some(factors) => {
@@ -97,7 +97,10 @@ impl Renderer<'_> {
             let key = state.key.bits(OF_MEDIA * (index % 2) + 2 * state.dimension + half as u64);
             Exit::new(place.position, place.normal, key).besides(besides)
         };
-        let estimator = self.estimator_for(state.throughput.max_element());
+        let estimator = match state.accuracy {
+            None => self.estimator_for(state.throughput.max_element()),
+            Some(accuracy) => self.settings.estimator.map_accuracy(|_| accuracy),
+        };
         let scratch = &mut context.scratch[place.surface.material as usize];
         let mut leaving = if self.gathers_by_shard() {
             part.summation.by_shard(estimator, state.half, state.shard_pick, exit, scratch)

@@ -1,6 +1,6 @@
 //! What is told of a pass while it runs, from all of its threads.
 
-use crate::{crop::Crop, pixel_sum::Sums};
+use crate::{crop::Crop, pixel_sum::PixelSum};
 
 /// A listener of a pass.
 pub trait Watch: Sync {
@@ -24,7 +24,7 @@ pub struct Tile<'a> {
     /// The part of the image that is rendered.
     pub(crate) part: Crop,
     /// The indices of its pixels in the part, and their sums.
-    pub(crate) sums: &'a [(usize, Sums)],
+    pub(crate) sums: &'a [(usize, PixelSum)],
     /// The paths that were added to all of them.
     pub paths: u64,
 }
@@ -45,7 +45,7 @@ impl Tile<'_> {
 
     /// The light of its pixels: red, green and blue of each, W/(m² sr).
     pub fn light(&self) -> Vec<f32> {
-        let light = |(sum, edge): &Sums| sum.light(edge.as_deref()).to_array().map(|x| x as f32);
+        let light = |sum: &PixelSum| sum.light().to_array().map(|x| x as f32);
         self.sums.iter().flat_map(|(_, sums)| light(sums)).collect()
     }
 }
