@@ -18,8 +18,8 @@ use std::{
 /// Pixels that an image can have.
 const MAX_PIXELS: u64 = 1 << 28;
 
-/// Memory that a pixel takes, bytes: sums, their copies while a pass is joined, the pixel and its channels, if all
-/// pixels are edges.
+/// Memory that a pixel takes at most, bytes: sums, their copies while a pass is joined, the pixel and its channels, and what
+/// is known at its center if all pixels are edges.
 const BYTES_PER_PIXEL: u64 = 1376;
 
 /// The same of the sums that are kept, as numbers and as channels.

@@ -63,6 +63,7 @@ mod pixel_sum;
 pub mod preview;
 mod reference;
 pub mod renderer;
+mod seen;
 mod shared;
 mod state;
 mod subsurface;

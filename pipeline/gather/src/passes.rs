@@ -11,7 +11,7 @@ use crate::{
     image::{Filter, Input, Rendered, Settings},
     known::Known,
     objects::objects,
-    path_state::{PathIndex, PathLight, ThreadContext, Way},
+    path_state::{PathIndex, ThreadContext},
     pixel_numbers::{PixelNumbers, Streams, halves},
     pixel_sum::PixelSum,
     reference::{Walks, meets_light},
@@ -150,9 +150,9 @@ impl<'a> Passes<'a> {
         &self.renderer
     }
 
-    /// Finds edge pixels by what is seen at the corners of all pixels, and across the lens if there is one. There
-    /// are none with one path per pixel, which has no second half to estimate the factor of the control variate from,
-    /// nor with rays through pixel centers, which are all the same.
+    /// Finds edge pixels by what is seen at the corners of all pixels, and across the lens if there is one. There are none
+    /// with one path per pixel, whose image is that of its paths alone, nor with rays through pixel centers, which are all
+    /// the same, nor for random walks, of which one tells little of the light nearby.
     fn find_edges(&mut self) {
         let settings = &self.renderer.settings;
         if settings.paths_per_pixel == 1 || settings.filter == Filter::Point || settings.reference {
@@ -244,37 +244,11 @@ impl<'a> Passes<'a> {
             if let Some(spread) = &spread {
                 let spread = &spread[path as usize % 2];
                 let rays = (0..edge::RAYS).map(|ray| spread.point(path / 2 * edge::RAYS + ray));
-                self.control(at, &mut light, rays, context);
+                self.renderer.control(at, &mut light, rays, context);
             }
             sum.add(path, alone, &light);
         }
         sum
-    }
-
-    /// Replaces what is known of a path in an edge pixel by its mean over rays through the pixel, by the numbers of each
-    /// for its place and for that on the lens.
-    fn control(
-        &self,
-        at: [usize; 2],
-        light: &mut PathLight,
-        rays: impl Iterator<Item = [f64; 4]>,
-        context: &mut ThreadContext,
-    ) {
-        let mut means = [DVec3::ZERO; 2];
-        for [x, y, u, v] in rays {
-            let (origin, direction) = self.ray(at, DVec2::new(x, y), self.streams.lens.map(|_| [u, v]));
-            let seen = self.renderer.seen(origin, direction, &mut context.counts);
-            let Some(first) = seen[0].as_ref().map(|(direct, _)| direct.point.position) else { continue };
-            for ((mean, seen), way) in means.iter_mut().zip(&seen).zip([Way::Direct, Way::Mirrored]) {
-                if let Some((glimpse, share)) = seen {
-                    *mean += share / f64::from(edge::RAYS) * self.renderer.known_light(first, way, glimpse, context);
-                }
-            }
-        }
-        for ((mean, known), layer) in means.into_iter().zip(light.known).zip(edge::LAYER_OF) {
-            light.layers[layer as usize] += mean - known;
-            light.halves.iter_mut().for_each(|half| *half += mean - known);
-        }
     }
 
     fn pixel(&self, index: usize) -> Pixel {

@@ -3,10 +3,10 @@
 
 use crate::{
     counts::Counts,
-    known::Glimpse,
     meeting::Meeting,
     path_state::{Guide, Layer, PathIndex, PathLight, PathState, ThreadContext, Trace, Way},
     renderer::{Renderer, TranslucentObject},
+    seen::Glimpse,
 };
 use bsdf::{Bsdf, Lobe, Side, Surface, View};
 use scene::{DVec3, Hit, SurfacePoint, light::all_light_at};
@@ -286,46 +286,6 @@ impl Renderer<'_> {
             state.leave(point, state.direction, Layer::Transmission);
         }
         true
-    }
-
-    /// What a ray sees of the light that is scattered below surfaces, by [`Way`]: where, and the expected share of that
-    /// light which a path sees.
-    pub fn seen(&self, origin: DVec3, direction: DVec3, counts: &mut Counts) -> [Option<(Glimpse<'_>, f64)>; 2] {
-        counts.edge_rays += 1;
-        let Some(direct) = self.glimpse(origin, direction, None) else {
-            return [None, None];
-        };
-        // What the path's other branch does is nothing that a ray counts.
-        let ignored = &mut Counts::default();
-        let surface = direct.object.surface(self.input.scene, &direct.hit);
-        let meeting = Meeting::new(&direct.point, surface, Side::Outside, -direction, ignored);
-        let (transmittance, mirrors) = (meeting.transmittance(), 1.0 - meeting.transmittance());
-        let splits = meeting.bsdf.is_specular() && transmittance > 0.0 && mirrors > 0.0;
-        let mut mirrored = || {
-            let direction = meeting.sample(Lobe::Reflection, || [0.0; 2], ignored)?.direction;
-            counts.edge_rays += 1;
-            let glimpse = self.glimpse(direct.point.position, direction, Some(direct.point.triangle))?;
-            let surface = glimpse.object.surface(self.input.scene, &glimpse.hit);
-            let meeting = Meeting::new(&glimpse.point, surface, Side::Outside, -direction, ignored);
-            let share = mirrors * meeting.transmittance();
-            Some((glimpse, share))
-        };
-        let mirrored = if splits && self.settings.max_depth > 1 { mirrored() } else { None };
-        [Some((direct, transmittance)), mirrored]
-    }
-
-    /// The outside of a translucent object, if that is what a ray meets first.
-    pub(crate) fn glimpse(&self, origin: DVec3, direction: DVec3, from: Option<u32>) -> Option<Glimpse<'_>> {
-        let hit = self.input.rays.closest(origin, direction, from)?;
-        let point = self.input.scene.mesh.point(hit.triangle, hit.weights, self.settings.normals);
-        let object = self.objects[point.material as usize].as_ref()?;
-        if direction.dot(point.geometric_normal) >= 0.0 {
-            return None;
-        }
-        let point = point.facing(-direction);
-        let view =
-            Meeting::new(&point, Surface::dielectric(1.0), Side::Outside, -direction, &mut Counts::default()).view;
-        Some(Glimpse { object, hit, point, view })
     }
 
     /// Normal, position, depth and material of what the ray meets first.
