@@ -75,7 +75,13 @@ pub fn read(image: &Path, threads: NonZeroUsize) -> Result<(State, About), Failu
         fail(format!("{}: cannot read: {e}; render the image that is continued with --keep-sums", sums.display()))
     })?;
     let file = Image::decode_with(&file, threads).map_err(|e| fail(format!("{}: {e}", sums.display())))?;
-    let kept = parse(&file).ok_or_else(|| fail(format!("{}: these are no sums of an image", sums.display())))?;
+    let kept = parse(&file).ok_or_else(|| {
+        fail(format!(
+            "{}: these are no sums of an image, or those of another version of gather; render the image that is \
+                                                         continued again with --keep-sums",
+            sums.display()
+        ))
+    })?;
     match file.attributes.get(IMAGE) {
         Some(Attribute::Text(text)) if *text == digest(&of_image) => Ok(kept),
         _ => Err(fail(format!("{}: these are the sums of another image than {}", sums.display(), image.display()))),
@@ -102,7 +108,12 @@ fn parse(file: &Image) -> Option<(State, About)> {
         Some(Attribute::Int(base)) => Some(u32::try_from(*base).ok().filter(|base| (1..=paths).contains(base))?),
         Some(_) => return None,
     };
-    let planes: Vec<Vec<f64>> = (0..State::PLANES + usize::from(base.is_some())).map(plane).collect::<Option<_>>()?;
+    // Versions that keep other sums have files of another number of channels.
+    let count = State::PLANES + usize::from(base.is_some());
+    if file.channels.len() != 2 * count {
+        return None;
+    }
+    let planes: Vec<Vec<f64>> = (0..count).map(plane).collect::<Option<_>>()?;
     // Shares are 1 on average, or less, and edge pixels may have 1 more.
     let shares = || planes[State::PLANES..].iter().flatten();
     let most = (2 * file.width * file.height) as f64;
@@ -146,7 +157,8 @@ mod tests {
 
     /// Shares are kept to the last bit, and files whose shares are missing or would never end are refused.
     ///
-    /// Seen to catch: the last plane read as that of a sum; shares that are not checked, or are not missed.
+    /// Seen to catch: the last plane read as that of a sum; shares that are not checked, or are not missed; the first planes
+    /// of a file that has more.
     #[test]
     fn shares_return_or_are_refused() {
         let planes: Vec<Vec<f64>> = (0..State::PLANES).map(|k| vec![k as f64; 6]).collect();
@@ -158,7 +170,10 @@ mod tests {
         assert_eq!((plain.base, plain.planes.len()), (None, State::PLANES));
         let of = |share: f64| shared(&[1.0, 1.0, share, 1.0, 1.0, 1.0]);
         let none = State { planes: planes.clone(), ..of(1.0) };
-        let bad = [of(f64::NAN), of(-0.5), of(7.5), State { base: Some(10), ..of(1.0) }, none];
+        let others = [&planes[..], &planes[..]].concat();
+        let of_other_version = [None, Some(4)].map(|base| State { paths: 9, base, planes: others.clone() });
+        let bad = [of(f64::NAN), of(-0.5), of(7.5), State { base: Some(10), ..of(1.0) }, none].into_iter();
+        let bad = bad.chain(of_other_version);
         for state in bad {
             let message = returned(&state).expect_err("refused").message;
             assert!(message.contains("no sums of an image"), "{message}");
