@@ -7,7 +7,7 @@ use crate::{
     steps::{Live, Steps},
 };
 use cli::{Common, Failure, Progress, count};
-use gather::{Input, Passes, Rendered, Settings, State, estimator::Estimator};
+use gather::{Input, Passes, Rendered, Settings, State, can_share, estimator::Estimator};
 use sums::confidence::Estimate;
 
 /// A rendered image, and why it has no more paths.
@@ -105,7 +105,8 @@ impl Work<'_> {
     fn render_to(&self, target: f64) -> Result<(Passes<'_>, End), Failure> {
         let (settings, input) = (&self.job.settings, &self.input);
         let max_paths = settings.paths_per_pixel;
-        let mut paths = FIRST_PATHS.max(self.before.as_ref().map_or(0, |before| before.paths)).min(max_paths);
+        let first = if can_share(input, settings) { FIRST_SHARED } else { FIRST_PATHS };
+        let mut paths = first.max(self.before.as_ref().map_or(0, |before| before.paths)).min(max_paths);
         let mut passes = self.begin(&Settings { paths_per_pixel: paths, ..settings.clone() })?;
         let mut steps = Steps::new(self.live, input.clouds.len());
         let unknown = Estimate { error: f64::INFINITY, freedom: 1.0 };
@@ -158,3 +159,6 @@ pub fn outcome(passes: &Passes, end: End, keeps_sums: bool) -> Outcome {
 
 /// Paths of the first pass: two for each half of the cloud.
 const FIRST_PATHS: u32 = 4;
+
+/// The same where further paths go to pixels with noise, one for each half: in most pixels the light hardly varies.
+const FIRST_SHARED: u32 = 2;

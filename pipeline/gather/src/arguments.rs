@@ -63,7 +63,7 @@ pub struct Arguments {
         value_parser = one_of(&Estimator::ALL, Estimator::name))]
     pub estimator: Estimator,
     /// Relative error that the cut may add to a pixel's scattered light [default: by the measured noise of the paths;
-    /// 0.7 of a target error]
+    /// 0.75 of a target error]
     #[arg(long, value_name = "X", value_parser = parse_relative_error)]
     pub accuracy: Option<f64>,
     /// Acceptance rule of the roulette; mean is the note's, and has unbounded variance in colored media

@@ -171,8 +171,9 @@ fn variance_quantile(freedom: f64) -> f64 {
     (1.0 - a + 3.09 * a.sqrt()).powi(3)
 }
 
-/// The cloud's own error may be at most this share of the target, so that its square is about half of the target's.
-const CLOUD_LIMITS: f64 = 0.7;
+/// The cloud's own error may be at most this share of the target: its square and that of what the cut may add, 0.75 of
+/// the target, are the target's.
+const CLOUD_LIMITS: f64 = 0.66;
 
 /// Paths of each pixel after which rendering ends if no two paths of the image differ.
 const UNKNOWN_PATHS: u32 = 64;

@@ -75,6 +75,7 @@ pub use balance::unmeasured as accuracy_of_unknown_noise;
 pub use crop::Crop;
 pub use image::{Filter, Input, Rendered, Settings};
 pub use passes::{Passes, render};
+pub use shared::can_share;
 pub use state::State;
 pub use sums::{Summation, estimator, samples};
 pub use watch::{Tile, Watch};

@@ -66,15 +66,24 @@ impl PixelSum {
 
     /// Two estimates of the pixel's variance: from the difference of the halves, which includes the error of the cloud,
     /// and from the variance of the paths within each half. The second expects the paths' part of the first if paths
-    /// are independent, and more than that if they are stratified.
+    /// are independent, and more than that if they are stratified. Of a half with a single path nothing is known but
+    /// what the other half tells; where both have one, all of their difference counts as the paths'.
     pub(crate) fn variances(&self) -> [DVec3; 2] {
-        let mean = |half: usize| self.halves[half] / self.counts[half];
         let difference = self.difference();
-        let within = [0, 1].map(|half| {
-            let n = self.counts[half];
-            (self.squares[half] / n - mean(half) * mean(half)).max(DVec3::ZERO) / (n - 1.0).max(1.0)
-        });
-        [difference * difference / 4.0, (within[0] + within[1]) / 4.0]
+        let between = difference * difference / 4.0;
+        let of_path = |half: usize| {
+            let (n, mean) = (self.counts[half], self.halves[half] / self.counts[half]);
+            (n > 1.0).then(|| (self.squares[half] / n - mean * mean).max(DVec3::ZERO) * (n / (n - 1.0)))
+        };
+        let of_mean = |variances: [DVec3; 2]| variances[0] / self.counts[0] + variances[1] / self.counts[1];
+        let within = match [of_path(0), of_path(1)] {
+            // Both halves of a single path have the same light but for the cloud.
+            _ if self.count < 2.0 => DVec3::ZERO,
+            [Some(one), Some(other)] => of_mean([one, other]) / 4.0,
+            [Some(known), None] | [None, Some(known)] => of_mean([known; 2]) / 4.0,
+            [None, None] => between,
+        };
+        [between, within]
     }
 
     /// A quarter of the product of the differences of the halves of two images of the same paths: their mean expects
@@ -112,6 +121,25 @@ mod tests {
         assert_eq!(pixel.beauty(), DVec3::splat(3.0));
         // Even paths have the mean 2, odd ones, by their half, −4.
         assert_eq!(pixel.variance(), DVec3::splat(9.0));
+    }
+
+    /// By hand: of 1, 2, 3, 6 the even paths 1 and 3 vary by 2, the odd ones by 8: (2/2 + 8/2)/4; of three paths the odd
+    /// one counts like the even ones, (2/2 + 2/1)/4; two paths differ by 1; one path tells nothing.
+    ///
+    /// Seen to catch: a half of one path that does not vary; the difference of two paths left to the cloud, and that of a
+    /// single path's halves not.
+    #[test]
+    fn the_variance_of_paths_is_known_from_two_paths_on() {
+        let within = |paths: &[f64]| {
+            let mut sum = PixelSum::default();
+            for (index, x) in paths.iter().enumerate() {
+                let halves = [DVec3::splat(*x), DVec3::splat(if paths.len() == 1 { 9.0 } else { *x })];
+                sum.add(index as u32, paths.len() == 1, &PathLight { halves, ..PathLight::default() });
+            }
+            sum.variances()[1].x
+        };
+        let found = [&[1.0, 2.0, 3.0, 6.0][..], &[1.0, 2.0, 3.0], &[1.0, 2.0], &[1.0]].map(within);
+        assert_eq!(found, [1.25, 0.75, 0.25, 0.0]);
     }
 
     #[test]

@@ -207,8 +207,8 @@ pub fn accuracy_of_gather(estimator: Estimator, paths: u32) -> Option<f64> {
     Some(estimator.accuracy()? * f64::from(paths).sqrt())
 }
 
-/// The tenths of a target error that the cut may add: half of its square is left to the paths.
-const TENTHS: f64 = 7.0;
+/// The tenths of a target error that the cut may add: nearly half of its square is left to the paths.
+const TENTHS: f64 = 7.5;
 
 /// The estimator of this name with the parameters that were given, for so many paths per pixel.
 fn estimator(arguments: &Arguments, paths: u32) -> Result<Estimator, Failure> {

@@ -1,19 +1,28 @@
 //! Images whose pixels share their paths, and what that does to their error.
 
-use crate::{allotment::Allotment, passes::Passes, path_state::Layer};
+use crate::{
+    allotment::Allotment,
+    image::{Input, Settings},
+    passes::Passes,
+    path_state::Layer,
+};
 use rayon::prelude::*;
 use scene::random::{Purpose, Stream};
 
+/// Whether the pixels of an image can share their paths: not those of random walks, nor of several clouds, whose shards
+/// are picked for all paths of a pixel.
+pub fn can_share(input: &Input, settings: &Settings) -> bool {
+    !settings.reference && input.clouds.len() == 1
+}
+
 impl Passes<'_> {
-    /// Shares all further paths out by the noise of those that there are, once. Nothing changes for random walks, nor
-    /// for several clouds, whose shards are picked for all paths of a pixel, nor before there are two paths for each half.
+    /// Shares all further paths out by the noise of those that there are, once. Nothing changes before there is a path for
+    /// each half of the cloud.
     pub fn share_out(&mut self) {
-        let settings = self.settings();
-        let is_fit = !settings.reference && self.renderer().input.clouds.len() == 1;
-        if self.allotment.is_some() || !is_fit || self.paths() < 4 {
+        if self.allotment.is_some() || !can_share(&self.renderer().input, self.settings()) || self.paths() < 2 {
             return;
         }
-        let part = settings.part();
+        let part = self.settings().part();
         let noise = |pixel: usize| (self.sums(pixel).variances()[1].element_sum(), self.is_edge(pixel));
         let (variances, edges): (Vec<f64>, Vec<bool>) = (0..part.pixels()).into_par_iter().map(noise).unzip();
         self.allotment = Some(Allotment::by_noise(self.paths(), part.width, &variances, &edges, self.rounding()));
