@@ -5,10 +5,14 @@ use crate::{
     path_state::{Guide, LAYERS, Layers},
 };
 use formats::{Channel, Image, Window};
+use rayon::prelude::*;
 use scene::DVec3;
 
 /// The largest variance in a file.
 const MAX_VARIANCE: DVec3 = DVec3::splat(f32::MAX as f64);
+
+/// Pixels whose values a task collects.
+const CHUNK: usize = 4096;
 
 /// A pixel's values.
 #[derive(Clone, Copy, Debug, Default)]
@@ -39,9 +43,9 @@ impl Pixel {
         let mut values = [0.0; 28];
         // The position is 0 where no surface was met, whatever the origin.
         let position = if self.guide.normal == DVec3::ZERO { DVec3::ZERO } else { self.guide.position - origin };
-        let vectors =
-            [&[self.beauty()], &self.layers[..], &[self.variance.min(MAX_VARIANCE), self.guide.normal, position]];
-        let numbers = vectors.concat().into_iter().flat_map(|v| v.to_array()).chain([self.guide.depth]);
+        let after = [self.variance.min(MAX_VARIANCE), self.guide.normal, position];
+        let vectors = [self.beauty()].into_iter().chain(self.layers).chain(after);
+        let numbers = vectors.flat_map(|v| v.to_array()).chain([self.guide.depth]);
         values.iter_mut().zip(numbers).for_each(|(value, x)| *value = x as f32);
         values
     }
@@ -99,9 +103,16 @@ pub fn image(pixels: &[Pixel], width: usize, height: usize) -> Image {
 fn about(pixels: &[Pixel], width: usize, height: usize, origin: DVec3) -> Image {
     let mut channels: Vec<Channel> =
         channel_names().into_iter().map(|name| Channel { name, samples: Vec::with_capacity(pixels.len()) }).collect();
-    for pixel in pixels {
-        channels.iter_mut().zip(pixel.values(origin)).for_each(|(channel, x)| channel.samples.push(x));
-    }
+    let columns = |pixels: &[Pixel]| {
+        let mut columns: Vec<Vec<f32>> = channels.iter().map(|_| Vec::with_capacity(pixels.len())).collect();
+        for pixel in pixels {
+            columns.iter_mut().zip(pixel.values(origin)).for_each(|(column, x)| column.push(x));
+        }
+        columns
+    };
+    let parts: Vec<Vec<Vec<f32>>> = pixels.par_chunks(CHUNK).map(columns).collect();
+    let join = |(k, channel): (usize, &mut Channel)| parts.iter().for_each(|part| channel.samples.extend(&part[k]));
+    channels.par_iter_mut().enumerate().for_each(join);
     Image { width, height, channels, ..Image::default() }
 }
 

@@ -12,7 +12,7 @@ use crate::{
     known::Known,
     objects::objects,
     path_state::{PathIndex, ThreadContext},
-    pixel_numbers::{PixelNumbers, Streams, halves},
+    pixel_numbers::{NearNumbers, PixelNumbers, Streams, halves},
     pixel_sum::PixelSum,
     reference::{Walks, meets_light},
     renderer::{Renderer, TranslucentObject},
@@ -237,7 +237,7 @@ impl<'a> Passes<'a> {
                 path,
                 edge,
                 walks: numbers.walks(path),
-                near: numbers.near(path),
+                near: self.streams.near.map(|streams| NearNumbers::new(streams, pixel, path)),
                 surface: numbers.surface(path),
             };
             let mut light = self.renderer.trace(path_index, origin, direction, context);
@@ -354,16 +354,15 @@ impl<'a> Passes<'a> {
     /// The image so far.
     pub fn image(&self) -> Rendered {
         let pixels: Vec<Pixel> = (0..self.sums.len()).into_par_iter().map(|index| self.pixel(index)).collect();
-        let bad = || pixels.iter().enumerate().filter(|(_, p)| !p.is_finite()).map(|(k, _)| k);
-        let (non_finite, non_finite_count) = (bad().take(8).collect(), bad().count() as u64);
+        let bad: Vec<usize> = (0..pixels.len()).into_par_iter().filter(|index| !pixels[*index].is_finite()).collect();
         let paths = || (0..self.sums.len()).map(|index| self.paths_of(index, self.paths));
         Rendered {
             pixels,
             paths_per_pixel: self.paths,
             fewest_and_most: [paths().min(), paths().max()].map(|paths| paths.unwrap_or(self.paths)),
             counts: self.counts,
-            non_finite,
-            non_finite_count,
+            non_finite: bad.iter().take(8).copied().collect(),
+            non_finite_count: bad.len() as u64,
         }
     }
 }

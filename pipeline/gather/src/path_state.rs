@@ -1,6 +1,6 @@
 //! The state of one camera path, the light that it gathers, and the memory of its thread.
 
-use crate::{counts::Counts, estimator::Scratch};
+use crate::{counts::Counts, estimator::Scratch, pixel_numbers::NearNumbers};
 use scene::{DVec3, SurfacePoint, random::Item, sequence::turned};
 use sums::drawn::ShardPick;
 
@@ -15,7 +15,7 @@ pub struct PathIndex {
     /// The first numbers of the walks that it begins at its first interface, one for each channel, if it begins any.
     pub walks: Option<WalkStarts>,
     /// The numbers of its points around the first exitant point, if it draws any.
-    pub near: Option<near_field::Numbers>,
+    pub near: Option<NearNumbers>,
     /// The numbers at its first surface with many directions, if there may be one.
     pub surface: Option<SurfaceNumbers>,
 }
@@ -83,7 +83,7 @@ pub struct PathState {
     /// The first numbers of the walks at the path's first interface, until they are used.
     pub walks: Option<WalkStarts>,
     /// The numbers of the points around the first exitant point, until they are used.
-    pub near: Option<near_field::Numbers>,
+    pub near: Option<NearNumbers>,
     /// The share of its light that a smooth first interface mirrored; 0 of all other branches.
     pub mirrors: f64,
     /// Whether its pixel is an edge pixel.

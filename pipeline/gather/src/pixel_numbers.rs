@@ -30,8 +30,16 @@ pub struct PixelNumbers {
     surface: Option<[Ordered; 2]>,
     /// Of each half, the channels' walks.
     walks: Option<[[Sequence; 3]; 2]>,
-    /// The first four numbers of the points around exitant points, and the rest.
-    near: Option<[[Sequence; 2]; 2]>,
+}
+
+/// The numbers of the points around the first exitant point of a path. Most paths meet none, so they are found when they
+/// are used.
+#[derive(Clone, Copy, Debug)]
+pub struct NearNumbers {
+    /// The first four numbers, and the rest.
+    streams: [Stream; 2],
+    pixel: u64,
+    path: u32,
 }
 
 /// A sequence in an order of its own, which random bits choose.
@@ -54,23 +62,27 @@ impl Ordered {
 
 /// The sequences of the halves of a pixel.
 pub fn halves(stream: Stream, pixel: u64) -> [Sequence; 2] {
-    [0, 1].map(|half| Sequence::new(stream.item(2 * pixel + half), stream))
+    [0, 1].map(|index| half(stream, pixel, index))
+}
+
+/// The sequence of one half of a pixel.
+fn half(stream: Stream, pixel: u64, half: u32) -> Sequence {
+    Sequence::new(stream.item(2 * pixel + u64::from(half)), stream)
 }
 
 impl PixelNumbers {
-    /// The numbers of one pixel, with those of the lens, of walks and of points around exitant points if there are any.
+    /// The numbers of one pixel, with those of the lens and of walks if there are any.
     pub fn new(pixel: u64, streams: Streams) -> PixelNumbers {
-        let Streams { places, lens, walks, near, surface } = streams;
+        let Streams { places, lens, walks, surface, .. } = streams;
         let walks_of = |stream: Stream| {
             let of = |half: u64| {
                 [0, 1, 2].map(|channel| Sequence::new(stream.item((2 * pixel + half) * 3 + channel), stream))
             };
             [0, 1].map(of)
         };
-        let near_of = |streams: [Stream; 2]| streams.map(|stream| halves(stream, pixel));
         let [lens, surface] = [lens, surface].map(|stream| Some(Ordered::halves(stream?, pixel)));
         let places = halves(places, pixel);
-        PixelNumbers { places, lens, surface, walks: walks.map(walks_of), near: near.map(near_of) }
+        PixelNumbers { places, lens, surface, walks: walks.map(walks_of) }
     }
 
     /// Where the path crosses the pixel, in pixels from its corner.
@@ -95,13 +107,17 @@ impl PixelNumbers {
     pub fn walks(&self, path: u32) -> Option<WalkStarts> {
         self.walks.as_ref().map(|by_half| by_half[path as usize % 2].map(|sequence| sequence.point(path / 2)))
     }
+}
 
-    /// The numbers of the points around the path's first exitant point.
-    pub fn near(&self, path: u32) -> Option<Numbers> {
-        let by_stream = self.near.as_ref()?;
-        let [[radius, azimuth, l1, l2], [axis, light, ..]] =
-            by_stream.each_ref().map(|by_half| by_half[path as usize % 2].point(path / 2));
-        Some([radius, azimuth, axis, light, l1, l2])
+impl NearNumbers {
+    pub fn new(streams: [Stream; 2], pixel: u64, path: u32) -> NearNumbers {
+        NearNumbers { streams, pixel, path }
+    }
+
+    pub fn numbers(&self) -> Numbers {
+        let of = |stream| half(stream, self.pixel, self.path % 2).point(self.path / 2);
+        let [[radius, azimuth, l1, l2], [axis, light, ..]] = self.streams.map(of);
+        [radius, azimuth, axis, light, l1, l2]
     }
 }
 

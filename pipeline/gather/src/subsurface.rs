@@ -121,7 +121,7 @@ impl Renderer<'_> {
     fn nearby(&self, state: &PathState, part: &Scattering, at: &Place, context: &mut ThreadContext) -> [DVec3; 2] {
         let random =
             |k: usize, half: u64| state.near_points.uniform(LATER + NUMBERS * (2 * state.dimension + half) + k as u64);
-        let first = state.near.unwrap_or_else(|| std::array::from_fn(|k| random(k, 0)));
+        let first = state.near.map_or_else(|| std::array::from_fn(|k| random(k, 0)), |near| near.numbers());
         let one = self.nearby_once(part, at, &first, state.near_points, context);
         if self.gathers_by_shard() {
             return [one; 2];

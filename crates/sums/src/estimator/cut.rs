@@ -84,6 +84,9 @@ const GOOD_ENOUGH: f32 = 1.2;
 /// From 2.8 to 6 the sums cost the same.
 const LEVEL: f32 = 4.0;
 
+/// A cut has at least as many nodes, if the tree has them: as many are predicted in the time of one.
+const FIRST_NODES: u32 = LANES as u32;
+
 /// The largest number of times that the threshold is lowered.
 const ROUNDS: usize = 6;
 
@@ -108,7 +111,8 @@ impl<M: LaneModel> Cut<'_, M> {
     fn choose(&mut self, sum: &mut Accumulator) -> (u64, f64) {
         self.scratch.closed.clear();
         self.scratch.open.clear();
-        self.scratch.frontier.push(1);
+        let first = Leaves::of(self.samples).first.min(FIRST_NODES);
+        self.scratch.frontier.extend(first..2 * first);
         let mut visited = self.sweep(Criterion::Wide);
         let mut added = self.add_open(0, sum);
         let scale = self.samples.scale;
