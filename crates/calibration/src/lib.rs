@@ -46,7 +46,7 @@ pub use factors::Factors;
 pub use patches::{Patches, Site};
 
 use bssrdf::{Medium, Model, Partition, RoughEntry};
-use compared::Compared;
+use compared::{Compared, HOLES};
 use entries::Entries;
 use errors::Light;
 use fit::Smoothness;
@@ -201,9 +201,7 @@ fn calibrate_material(
     let interface = rough.as_ref().map(Roughness::interface);
     let of_model = interface.as_ref().map(|interface| task.model.rough_entry(medium, interface));
     let of_walks = interface.as_ref().map(RoughEntry::new);
-    let sums = surface.light(&task.lit(slot, of_model.as_ref(), surroundings), &solid, task.seed, progress);
     let entries = Entries::new(task.clouds, slot, (medium.eta, of_walks.as_ref()));
-    let light = Light::new(&sums, &cell_of, &areas, medium.eta, entries.white());
     let walking = Walking {
         scene: task.scene,
         solid: &solid,
@@ -214,6 +212,12 @@ fn calibrate_material(
         seed: task.seed,
         slot,
     };
+    let open = |share: f64| CalibrateError::Open { material: sampled.name.clone(), share: 100.0 * share };
+    if let Some(share) = walking.is_open(medium, HOLES) {
+        return Err(open(share));
+    }
+    let sums = surface.light(&task.lit(slot, of_model.as_ref(), surroundings), &solid, task.seed, progress);
+    let light = Light::new(&sums, &cell_of, &areas, medium.eta, entries.white());
     let smoothness = Smoothness::new(&patches, &sites, &cell_of);
     let views = Views::new(&surface.points, &sums, (&cell_of, patches.cells()), task.rays);
     let compared = Compared { views, medium, patches: &patches, smoothness, light, walking, walks };
@@ -225,7 +229,6 @@ fn calibrate_material(
     };
     let mut errors = [ChannelErrors::default(); 3];
     for channel in 0..3 {
-        let open = |share| CalibrateError::Open { material: sampled.name.clone(), share: 100.0 * share };
         let Some(found) = compared.channel(channel, progress).map_err(open)? else {
             continue;
         };
