@@ -125,7 +125,9 @@ impl Work<'_> {
             let errors = passes.errors();
             passes.share_out();
             let round = Round { target, input, paths, done, before, passes: &passes };
-            match round.judge(errors.as_ref(), settings) {
+            // Two paths tell little of what few paths see, and silhouettes look like stairs: noisy pixels have more.
+            let is_first = passes.shares() && paths == FIRST_SHARED && paths < max_paths;
+            match if is_first { Verdict::More } else { round.judge(errors.as_ref(), settings) } {
                 Verdict::Met => break End::TargetError,
                 Verdict::OutOfReach(why) => {
                     self.common.warn(why);

@@ -26,6 +26,19 @@ fn gather(bench: &Bench, cloud: &str, output: &str, more: &[&str]) -> String {
     message
 }
 
+/// However loose the target is, noisy pixels have more paths than the first two.
+///
+/// Seen to catch: an image that ends as soon as it meets its target.
+#[test]
+fn pixels_share_paths_once_at_least() {
+    let bench = Bench::new();
+    bench.succeed("sample-surface", &[&data("scenes/sphere.glb"), "-n", "20k", "-o", "x.cloud"]);
+    gather(&bench, "x.cloud", "x.exr", &["--target-error", "0.9"]);
+    let number = |name: &str| bench.json("stats.json")[name].as_u64().expect("a number");
+    let paths = ["fewest_paths_of_a_pixel", "paths_per_pixel", "most_paths_of_a_pixel"].map(number);
+    assert!(paths[..2] == [2, 3] && paths[2] >= 4, "{paths:?}");
+}
+
 /// Seen to fail with a target taken ten times too large in either program.
 #[test]
 fn targets_are_met_or_the_cloud_is_named() {
