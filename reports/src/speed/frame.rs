@@ -1,4 +1,5 @@
-//! A full-size frame: the dragon of marble, 1920 x 1080, to one per cent of estimated error.
+//! Frames as anybody would render them, to one per cent of estimated error: a full-size one of the dragon, and a small one
+//! of the bunny, of marble.
 
 use crate::{
     error::Error,
@@ -14,26 +15,44 @@ use crate::{
 /// The target error, as `gather` estimates it.
 const ERROR: f64 = 0.01;
 
-/// The most seconds that the frame should take, and the most paths of a pixel.
-const SECONDS: f64 = 60.0;
+/// The most paths of a pixel.
 const MOST_PATHS: u64 = 4096;
 
-/// Renders the frame with paths to the target error, as anybody would: their number is what it takes.
-pub fn frame(harness: &mut Harness, subject: &Subject) -> Result<Findings, Error> {
-    let size = harness.effort.of([96, 54], [1920, 1080], [1920, 1080]);
-    // So many samples lie close enough that almost no light enters between them.
-    let samples = harness.effort.of(10_000, 8_000_000, 8_000_000);
+/// A frame.
+struct Frame {
+    size: [u64; 2],
+    samples: u64,
+    /// The most seconds that it should take, sampling included.
+    seconds: f64,
+}
+
+/// So many samples lie close enough that almost no light enters between them.
+const LARGE: Frame = Frame { size: [1920, 1080], samples: 8_000_000, seconds: 60.0 };
+
+/// As many samples as by default.
+const SMALL: Frame = Frame { size: [512, 512], samples: 1_000_000, seconds: 3.0 };
+
+/// Renders both frames with as many paths as the target error takes.
+pub fn frames(harness: &mut Harness, [large, small]: [&Subject; 2]) -> Result<Findings, Error> {
+    let mut findings = frame(harness, large, &LARGE)?;
+    findings.add(frame(harness, small, &SMALL)?);
+    Ok(findings)
+}
+
+fn frame(harness: &mut Harness, subject: &Subject, frame: &Frame) -> Result<Findings, Error> {
+    let size = harness.effort.of([96, 54], frame.size, frame.size);
+    let samples = harness.effort.of(10_000, frame.samples, frame.samples);
     let more = vec!["--target-error".into(), ERROR.to_string()];
     let shot = Shot { size, samples, spp: MOST_PATHS, more, ..harness.shot(subject, MARBLE, DEFAULTS) };
-    harness.say(&format!("frame: K {}, to {}", count(samples), percent(ERROR)));
+    harness.say(&format!("{}, frame: K {}, to {}", subject.name, count(samples), percent(ERROR)));
     let taken = harness.take(&shot)?;
     let mut findings = Findings::default();
-    findings.section(format!("A frame of {} x {}", size[0], size[1]), costs(&taken, size));
+    findings.section(format!("A frame of {} x {}: {}", size[0], size[1], subject.name), costs(&taken, size));
     harness.forget_clouds();
     let what = format!("{}, marble, {} x {}: seconds to 1 % estimated error", subject.name, size[0], size[1]);
     let reached = estimate(&taken) <= ERROR;
     let basis = format!("measured, {}", percent(estimate(&taken)));
-    findings.targets.push(Target::at_most(what, SECONDS, reached.then(|| taken.seconds()), basis));
+    findings.targets.push(Target::at_most(what, frame.seconds, reached.then(|| taken.seconds()), basis));
     Ok(findings)
 }
 

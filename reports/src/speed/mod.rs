@@ -79,7 +79,7 @@ fn measure_all(harness: &mut Harness, subjects: &Subjects, truths: &Exact) -> Re
     findings.add(sizes::sizes(harness, &main[0])?);
     findings.add(peers::peers(harness, subjects)?);
     findings.add(everywhere::everywhere(harness, main)?);
-    findings.add(frame::frame(harness, &main[main.len() - 1])?);
+    findings.add(frame::frames(harness, [&main[main.len() - 1], &main[0]])?);
     findings.add(clouds::clouds(harness, subjects.bunny_of_peers.as_ref().unwrap_or(&main[0]))?);
     findings.add(growth::growth(harness, &main[0])?);
     findings.add(accuracy::accuracy(harness, main)?);
