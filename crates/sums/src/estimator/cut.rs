@@ -84,8 +84,10 @@ const GOOD_ENOUGH: f32 = 1.2;
 /// From 2.8 to 6 the sums cost the same.
 const LEVEL: f32 = 4.0;
 
-/// A cut has at least as many nodes, if the tree has them: as many are predicted in the time of one.
+/// The cut of a large tree has so many nodes at least, as many as are predicted in the time of one, each of so many leaves
+/// or more.
 const FIRST_NODES: u32 = LANES as u32;
+const LEAVES_OF_FIRST: u32 = 64;
 
 /// The largest number of times that the threshold is lowered.
 const ROUNDS: usize = 6;
@@ -111,7 +113,7 @@ impl<M: LaneModel> Cut<'_, M> {
     fn choose(&mut self, sum: &mut Accumulator) -> (u64, f64) {
         self.scratch.closed.clear();
         self.scratch.open.clear();
-        let first = Leaves::of(self.samples).first.min(FIRST_NODES);
+        let first = (Leaves::of(self.samples).first / LEAVES_OF_FIRST).clamp(1, FIRST_NODES);
         self.scratch.frontier.extend(first..2 * first);
         let mut visited = self.sweep(Criterion::Wide);
         let mut added = self.add_open(0, sum);
