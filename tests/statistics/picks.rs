@@ -75,6 +75,20 @@ fn a_closed_node_picks_its_samples_evenly() {
     assert_fits("picks of one node", &observed, &vec![draws as f64 / COUNT as f64; COUNT]);
 }
 
+/// The cut of a large tree begins with sixteen nodes, of which ten have samples here: they stand for all of them.
+///
+/// Seen to catch: a node that is left out, and one that counts twice.
+#[test]
+fn the_first_nodes_of_a_large_tree_stand_for_all_samples() {
+    const COUNT: usize = 40_000;
+    let alike = |count: usize| in_one_half(numbered(0.0, count, Vec3::ONE).map(|s| Sample { flux: Vec3::ONE, ..s }));
+    let (many, one) = (alike(COUNT), alike(1));
+    let mut experiment = Experiment::new(23);
+    let unit = experiment.sum(&one, 1.0).radiance.x;
+    let all = experiment.sum(&many, 1.0);
+    assert_eq!((all.evaluations, whole(all.radiance.x / unit)), (10, COUNT));
+}
+
 /// Two nodes, red and green, on either side of the exitant point, and a blue one farther away: every pair of picks from
 /// red and blue is equally frequent. The red and the green one have one parent, and pick at opposite places.
 ///
