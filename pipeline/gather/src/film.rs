@@ -11,7 +11,7 @@ use scene::DVec3;
 /// The largest variance in a file.
 const MAX_VARIANCE: DVec3 = DVec3::splat(f32::MAX as f64);
 
-/// Pixels whose values a task collects.
+/// Pixels whose values a task takes down.
 const CHUNK: usize = 4096;
 
 /// A pixel's values.
@@ -101,18 +101,16 @@ pub fn image(pixels: &[Pixel], width: usize, height: usize) -> Image {
 
 /// The pixels as an image without attributes, with positions relative to `origin`, m.
 fn about(pixels: &[Pixel], width: usize, height: usize, origin: DVec3) -> Image {
-    let mut channels: Vec<Channel> =
-        channel_names().into_iter().map(|name| Channel { name, samples: Vec::with_capacity(pixels.len()) }).collect();
-    let columns = |pixels: &[Pixel]| {
-        let mut columns: Vec<Vec<f32>> = channels.iter().map(|_| Vec::with_capacity(pixels.len())).collect();
-        for pixel in pixels {
-            columns.iter_mut().zip(pixel.values(origin)).for_each(|(column, x)| column.push(x));
+    let channel = |name| Channel { name, samples: vec![0.0; pixels.len()] };
+    let mut channels: Vec<Channel> = channel_names().into_iter().map(channel).collect();
+    let mut rest: Vec<_> = channels.iter_mut().map(|channel| channel.samples.chunks_mut(CHUNK)).collect();
+    let parts: Vec<_> =
+        pixels.chunks(CHUNK).map(|part| (part, rest.iter_mut().flat_map(Iterator::next).collect())).collect();
+    parts.into_par_iter().for_each(|(part, mut columns): (&[Pixel], Vec<&mut [f32]>)| {
+        for (row, pixel) in part.iter().enumerate() {
+            columns.iter_mut().zip(pixel.values(origin)).for_each(|(column, x)| column[row] = x);
         }
-        columns
-    };
-    let parts: Vec<Vec<Vec<f32>>> = pixels.par_chunks(CHUNK).map(columns).collect();
-    let join = |(k, channel): (usize, &mut Channel)| parts.iter().for_each(|part| channel.samples.extend(&part[k]));
-    channels.par_iter_mut().enumerate().for_each(join);
+    });
     Image { width, height, channels, ..Image::default() }
 }
 

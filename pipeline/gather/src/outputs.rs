@@ -38,7 +38,8 @@ pub fn write(facts: &Facts, output: Output, mut seconds: Seconds) -> Result<(), 
 fn write_image(facts: &Facts, mut output: Output, group: &mut Group) -> Result<(), Failure> {
     let (outputs, settings, part) = (&facts.request.outputs, &facts.settings, facts.settings.part());
     let origin = facts.inputs.clouds()[0].meta().exchange_origin_m().map(f64::from).into();
-    let mut image = film::part(&facts.rendered.pixels, part, [settings.width, settings.height], origin);
+    let size = [settings.width, settings.height];
+    let mut image = facts.request.common.in_pool(|| film::part(&facts.rendered.pixels, part, size, origin))?;
     let has = |layer: ExtraLayer| outputs.layers.contains(&layer);
     image.channels.extend(film::guides(&facts.rendered.pixels, has(ExtraLayer::Albedo), has(ExtraLayer::Id)));
     image.attributes = facts.attributes();

@@ -1,6 +1,10 @@
 //! The state of one camera path, the light that it gathers, and the memory of its thread.
 
-use crate::{counts::Counts, estimator::Scratch, pixel_numbers::NearNumbers};
+use crate::{
+    counts::Counts,
+    estimator::Scratch,
+    pixel_numbers::{NearNumbers, SurfaceNumbers, WalkStarts},
+};
 use scene::{DVec3, SurfacePoint, random::Item, sequence::turned};
 use sums::drawn::ShardPick;
 
@@ -19,16 +23,6 @@ pub struct PathIndex {
     /// The numbers at its first surface with many directions, if there may be one.
     pub surface: Option<SurfaceNumbers>,
 }
-
-/// Numbers at a surface: those that choose a direction towards a light, and those of a direction that is mirrored.
-#[derive(Clone, Copy, Debug)]
-pub struct SurfaceNumbers {
-    pub light: [f64; 2],
-    pub mirrored: [f64; 2],
-}
-
-/// The first numbers of the walks of three channels.
-pub type WalkStarts = [[f64; walks::FIRST]; 3];
 
 /// Counts and memory of one thread.
 #[derive(Debug, Default)]

@@ -1,6 +1,5 @@
 //! The random numbers of a pixel's paths that are spread evenly over all of them.
 
-use crate::path_state::{SurfaceNumbers, WalkStarts};
 use near_field::Numbers;
 use scene::{
     random::Stream,
@@ -41,6 +40,16 @@ pub struct NearNumbers {
     pixel: u64,
     path: u32,
 }
+
+/// Numbers at a surface: those that choose a direction towards a light, and those of a direction that is mirrored.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceNumbers {
+    pub light: [f64; 2],
+    pub mirrored: [f64; 2],
+}
+
+/// The first numbers of the walks of three channels.
+pub type WalkStarts = [[f64; walks::FIRST]; 3];
 
 /// A sequence in an order of its own, which random bits choose.
 struct Ordered {
