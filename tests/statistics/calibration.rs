@@ -194,12 +194,12 @@ fn a_mesh_of_many_holes_is_refused_at_once() {
         });
         let ball = Sunlit::of(mesh, DVec3::X, gray(50.0, 1000.0, 0.0, 1.3), 1.0, 1 << 14);
         let work = AtomicU64::new(0);
-        let made = calibrate(&ball.task(Model::HalfSpace, 30_000, 1), |done| _ = work.fetch_add(done, Relaxed));
+        let made = calibrate(&ball.task(Model::HalfSpace, 200_000, 1), |done| _ = work.fetch_add(done, Relaxed));
         assert!(matches!(made, Err(CalibrateError::Open { share, .. }) if share > 0.1), "{:?}", made.err());
         work.into_inner()
     };
     assert_eq!(worked(&|index, _| index % 40 == 0), 0);
-    assert!(worked(&|index, at| at.x > 3e-3 && index % 600 == 0) > 30_000);
+    assert!(worked(&|index, at| at.x > 3e-3 && index % 600 == 0) > 200_000);
 }
 
 /// Samples that are ten mean free paths apart and more give the factors of a hundred times as many: what enters nearby

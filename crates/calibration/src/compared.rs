@@ -14,7 +14,7 @@ use scene::DVec3;
 use walks::Roughness;
 
 /// The largest share of walks that may leave through holes.
-pub const HOLES: f64 = 1e-3;
+const HOLES: f64 = 1e-3;
 
 /// The model's light on one material, and the walks that it is compared with.
 pub struct Compared<'a> {

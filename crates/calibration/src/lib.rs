@@ -46,7 +46,7 @@ pub use factors::Factors;
 pub use patches::{Patches, Site};
 
 use bssrdf::{Medium, Model, Partition, RoughEntry};
-use compared::{Compared, HOLES};
+use compared::Compared;
 use entries::Entries;
 use errors::Light;
 use fit::Smoothness;
@@ -213,7 +213,7 @@ fn calibrate_material(
         slot,
     };
     let open = |share: f64| CalibrateError::Open { material: sampled.name.clone(), share: 100.0 * share };
-    if let Some(share) = walking.is_open(medium, HOLES) {
+    if let Some(share) = walking.is_open(medium, walks) {
         return Err(open(share));
     }
     let sums = surface.light(&task.lit(slot, of_model.as_ref(), surroundings), &solid, task.seed, progress);

@@ -122,20 +122,18 @@ struct Chunk {
     opaque: u64,
 }
 
-/// Walks of each channel that tell a mesh with many holes before any other work is done for it.
+/// A mesh has many holes if so many walks leave through them, of the first few that are tried before any other work is
+/// done: of all walks of a channel the 64th part, and this many at most.
+const MANY: u64 = 15;
 const TRIED: u64 = 4096;
 
 impl Walking<'_> {
-    /// The share of the walks that leave through holes, if a few of them in some channel show that it exceeds `limit`: for
-    /// a limit of 1e-3 and a share below it, that happens to one calibration in 13,000.
-    pub fn is_open(&self, medium: &Medium, limit: f64) -> Option<f64> {
-        let share = |channel: usize| {
-            let tally = self.tally(channel, &medium.channels[channel], TRIED, |_| ());
-            tally.holes as f64 / TRIED as f64
-        };
-        // Five standard deviations.
-        let least = limit + 5.0 * (limit / TRIED as f64).sqrt();
-        (0..3).map(share).find(|share| *share > least)
+    /// The share of the walks that leave through holes, if a few of `walks` show in some channel that it exceeds one in a
+    /// thousand. Where it does not, that happens to one mesh in 13,000 at most.
+    pub fn is_open(&self, medium: &Medium, walks: u64) -> Option<f64> {
+        let tried = (walks / 64).min(TRIED);
+        let holes = |channel: usize| self.tally(channel, &medium.channels[channel], tried, |_| ()).holes;
+        (0..3).map(holes).find(|holes| *holes >= MANY).map(|holes| holes as f64 / tried as f64)
     }
 
     /// Makes `count` walks of one channel.
