@@ -122,14 +122,15 @@ struct Chunk {
     opaque: u64,
 }
 
-/// A mesh has many holes if so many walks leave through them, of the first few that are tried before any other work is
-/// done: of all walks of a channel the 64th part, and this many at most.
-const MANY: u64 = 15;
+/// Before any other work is done, one walk in 64 of each channel is tried, and this many at most.
 const TRIED: u64 = 4096;
 
+/// A mesh has many holes if so many of the walks that are tried leave through them.
+const MANY: u64 = 15;
+
 impl Walking<'_> {
-    /// The share of the walks that leave through holes, if a few of `walks` show in some channel that it exceeds one in a
-    /// thousand. Where it does not, that happens to one mesh in 13,000 at most.
+    /// The share of walks that leave through holes, if a few of `walks` show in some channel that it exceeds one in a
+    /// thousand. A mesh in which it does not is taken for one in which it does with a chance of one in 13,000 at most.
     pub fn is_open(&self, medium: &Medium, walks: u64) -> Option<f64> {
         let tried = (walks / 64).min(TRIED);
         let holes = |channel: usize| self.tally(channel, &medium.channels[channel], tried, |_| ()).holes;

@@ -125,7 +125,7 @@ impl Work<'_> {
             let errors = passes.errors();
             passes.share_out();
             let round = Round { target, input, paths, done, before, passes: &passes };
-            // Two paths tell little of what few paths see, and silhouettes look like stairs: noisy pixels have more.
+            // Two paths draw silhouettes as stairs, and miss what one path in many sees: noisy pixels have more at least once.
             let is_first = passes.shares() && paths == FIRST_SHARED && paths < max_paths;
             match if is_first { Verdict::More } else { round.judge(errors.as_ref(), settings) } {
                 Verdict::Met => break End::TargetError,
@@ -162,5 +162,6 @@ pub fn outcome(passes: &Passes, end: End, keeps_sums: bool) -> Outcome {
 /// Paths of the first pass: two for each half of the cloud.
 const FIRST_PATHS: u32 = 4;
 
-/// The same where further paths go to pixels with noise, one for each half: in most pixels the light hardly varies.
+/// The same of images whose pixels share all further paths by their noise: one for each half of the cloud, which is enough
+/// inside silhouettes.
 const FIRST_SHARED: u32 = 2;

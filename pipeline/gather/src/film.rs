@@ -11,7 +11,7 @@ use scene::DVec3;
 /// The largest variance in a file.
 const MAX_VARIANCE: DVec3 = DVec3::splat(f32::MAX as f64);
 
-/// Pixels whose values a task takes down.
+/// The number of pixels that one task copies to the channels.
 const CHUNK: usize = 4096;
 
 /// A pixel's values.

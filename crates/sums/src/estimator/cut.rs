@@ -84,9 +84,10 @@ const GOOD_ENOUGH: f32 = 1.2;
 /// From 2.8 to 6 the sums cost the same.
 const LEVEL: f32 = 4.0;
 
-/// The cut of a large tree has so many nodes at least, as many as are predicted in the time of one, each of so many leaves
-/// or more.
+/// The cut of a large tree begins with so many nodes in place of the root: they are predicted in the time of one.
 const FIRST_NODES: u32 = LANES as u32;
+
+/// Each of the first nodes has so many leaves at least.
 const LEAVES_OF_FIRST: u32 = 64;
 
 /// The largest number of times that the threshold is lowered.
