@@ -65,7 +65,7 @@ impl<'s, F: Fn(&Meeting) -> RoughDielectric<'s>> Observer for Lamps<'_, F> {
         let (surface, view) = ((self.surface)(meeting), meeting.view());
         self.last = Some((at, view));
         let xi = || [random.uniform(), random.uniform()];
-        let arriving = all_lights_at(self.lights, self.rays, &at, xi, &mut self.shadow_rays, |light| {
+        let arriving = all_lights_at(self.lights, self.rays, &at, (1, xi), &mut self.shadow_rays, |light| {
             let passed = surface.evaluate(&view, light.direction).x;
             // Light that walks meet as well counts by the balance heuristic.
             let met = if light.density > 0.0 { passed * normal.dot(light.direction) } else { 0.0 };

@@ -30,7 +30,7 @@ impl Renderer<'_> {
     ) -> bool {
         let gloss = Gloss::new(stated);
         let meeting = Meeting::new(point, Surface::Gloss(gloss), side, -state.direction, counts);
-        self.add_lights(state, &meeting, Some(&gloss), light, counts);
+        let tries = self.add_lights(state, &meeting, Some(&gloss), light, counts);
         if state.layer.is_some() {
             let mirrored = gloss.albedo(meeting.view.normal.dot(meeting.view.direction)).max_element();
             let survival = mirrored.clamp(MIN_SURVIVAL, 1.0);
@@ -39,7 +39,7 @@ impl Renderer<'_> {
             }
             state.throughput /= survival;
         }
-        mirror(&meeting, state, counts)
+        mirror(&meeting, tries, state, counts)
     }
 
     /// Follows the reflection lobe of a translucent surface, whose share the path has accounted for.
@@ -50,13 +50,12 @@ impl Renderer<'_> {
         light: &mut PathLight,
         counts: &mut Counts,
     ) -> bool {
-        if !meeting.bsdf.is_specular() {
-            self.add_lights(state, meeting, None, light, counts);
-        }
-        mirror(meeting, state, counts)
+        let tries = if meeting.bsdf.is_specular() { 0 } else { self.add_lights(state, meeting, None, light, counts) };
+        mirror(meeting, tries, state, counts)
     }
 
-    /// Adds the light of sampled lights: what a surface mirrors, and what its base reflects.
+    /// Adds the light of sampled lights: what a surface mirrors, and what its base reflects. Returns the number of
+    /// directions towards each.
     fn add_lights(
         &self,
         state: &mut PathState,
@@ -64,12 +63,13 @@ impl Renderer<'_> {
         base: Option<&Gloss>,
         light: &mut PathLight,
         counts: &mut Counts,
-    ) {
+    ) -> usize {
         let (view, bsdf) = (&meeting.view, &meeting.bsdf);
         let at = SurfacePoint { normal: view.normal, ..*meeting.point };
         let share = 1.0 - meeting.transmittance();
+        let (tries, xi) = state.light_numbers();
         let reflect = |arriving: &Illumination| {
-            let left = match arriving.density {
+            let left = match arriving.density * tries as f64 {
                 0.0 => 1.0,
                 density => density / (density + bsdf.density(view, arriving.direction)),
             };
@@ -79,10 +79,11 @@ impl Renderer<'_> {
                 diffuse: diffuse * arriving.irradiance,
             }
         };
-        let (rays, xi) = (self.input.rays, state.light_numbers());
-        let reflected = all_lights_at(&self.lights, rays, &at, xi, &mut counts.shadow_rays, reflect);
+        let rays = self.input.rays;
+        let reflected = all_lights_at(&self.lights, rays, &at, (tries, xi), &mut counts.shadow_rays, reflect);
         light.add(state, Layer::Diffuse, reflected.diffuse);
         light.add(state, Layer::Specular, reflected.mirrored);
+        tries
     }
 
     /// The share of the light of an emitting surface that is left to a ray which meets it.
@@ -94,12 +95,12 @@ impl Renderer<'_> {
     }
 }
 
-/// Sends the path on in a mirrored direction; false if there is none.
-fn mirror(meeting: &Meeting, state: &mut PathState, counts: &mut Counts) -> bool {
+/// Sends the path on in a mirrored direction; false if there is none. Each light was sampled in `tries` directions.
+fn mirror(meeting: &Meeting, tries: usize, state: &mut PathState, counts: &mut Counts) -> bool {
     let follows = meeting.scatter(state, Lobe::Reflection, Layer::Specular, counts);
     if follows && !meeting.bsdf.is_specular() {
         let at = SurfacePoint { normal: meeting.view.normal, ..*meeting.point };
-        let density = meeting.bsdf.density(&meeting.view, state.direction);
+        let density = meeting.bsdf.density(&meeting.view, state.direction) / tries as f64;
         state.drawn = Some(Drawn { at, density });
     }
     follows

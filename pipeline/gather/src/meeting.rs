@@ -59,7 +59,8 @@ impl Meeting<'_> {
 
     /// Sends the path on in a direction of one lobe, and assigns its light to the layer `event`. False if there is none.
     pub fn scatter(&self, state: &mut PathState, lobe: Lobe, event: Layer, counts: &mut Counts) -> bool {
-        let mut first = if self.bsdf.is_specular() { None } else { state.mirrored.take() };
+        let mut first =
+            if self.bsdf.is_specular() { None } else { state.mirrored.take().map(|numbers| numbers.mirrored()) };
         let xi = || first.take().unwrap_or_else(|| [state.uniform(), state.uniform()]);
         let Some(sample) = self.sample(lobe, xi, counts) else {
             return false;

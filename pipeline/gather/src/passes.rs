@@ -12,7 +12,7 @@ use crate::{
     known::Known,
     objects::objects,
     path_state::{PathIndex, ThreadContext},
-    pixel_numbers::{NearNumbers, PixelNumbers, Streams, halves},
+    pixel_numbers::{NearNumbers, PixelNumbers, Streams, SurfaceNumbers, halves},
     pixel_sum::PixelSum,
     reference::{Walks, meets_light},
     renderer::{Renderer, TranslucentObject},
@@ -238,7 +238,7 @@ impl<'a> Passes<'a> {
                 edge,
                 walks: numbers.walks(path),
                 near: self.streams.near.map(|streams| NearNumbers::new(streams, pixel, path)),
-                surface: numbers.surface(path),
+                surface: self.streams.surface.map(|stream| SurfaceNumbers::new(stream, pixel, path)),
             };
             let mut light = self.renderer.trace(path_index, origin, direction, context);
             if let Some(spread) = &spread {

@@ -9,7 +9,7 @@ use crate::{
     seen::Glimpse,
 };
 use bsdf::{Bsdf, Lobe, Side, Surface, View};
-use scene::{DVec3, Hit, SurfacePoint, light::all_light_at};
+use scene::{DVec3, Hit, SurfacePoint, light::all_lights_at};
 use sums::drawn::ShardPick;
 
 /// The second branch of a path uses the random numbers from this dimension on.
@@ -49,8 +49,8 @@ impl Renderer<'_> {
             mirrors: 0.0,
             edge: index.edge,
             accuracy: None,
-            light: index.surface.map(|numbers| numbers.light),
-            mirrored: index.surface.map(|numbers| numbers.mirrored),
+            light: index.surface,
+            mirrored: index.surface,
             random: self.paths.item(item),
             dimension: 0,
             key: self.gathers.item(item),
@@ -202,8 +202,9 @@ impl Renderer<'_> {
             return meeting.scatter(state, Lobe::Reflection, Layer::Specular, counts);
         }
         let view = View { normal: point.normal, direction: -state.direction, side };
-        let shadow_rays = &mut counts.shadow_rays;
-        let irradiance = all_light_at(&self.lights, self.input.rays, point, state.light_numbers(), shadow_rays);
+        let (numbers, shadow_rays) = (state.light_numbers(), &mut counts.shadow_rays);
+        let irradiance =
+            all_lights_at(&self.lights, self.input.rays, point, numbers, shadow_rays, |light| light.irradiance);
         // A diffuse BSDF has one value for all directions, which the irradiance of all lights is multiplied by.
         light.add(state, Layer::Diffuse, bsdf.evaluate(&view, view.normal) * irradiance);
         false

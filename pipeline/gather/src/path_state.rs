@@ -51,7 +51,7 @@ pub struct Trace {
 #[derive(Clone, Copy)]
 pub struct Drawn {
     pub at: SurfacePoint,
-    /// Density of the direction, 1/sr.
+    /// Density of the direction over the number of directions towards each light, 1/sr.
     pub density: f64,
 }
 
@@ -85,8 +85,8 @@ pub struct PathState {
     /// The relative error of its gathers, if it is not that of the image.
     pub accuracy: Option<f64>,
     /// The numbers at the first surface with many directions, until they are used.
-    pub light: Option<[f64; 2]>,
-    pub mirrored: Option<[f64; 2]>,
+    pub light: Option<SurfaceNumbers>,
+    pub mirrored: Option<SurfaceNumbers>,
     /// Random numbers of its other points around exitant points.
     pub near_points: Item,
     /// Random numbers of the path, and the dimension of the next one.
@@ -103,16 +103,19 @@ impl PathState {
         self.random.uniform(self.dimension - 1)
     }
 
-    /// The numbers that choose directions towards lights, one pair for each call.
-    pub fn light_numbers(&mut self) -> impl FnMut() -> [f64; 2] + use<'_> {
-        let (first, mut index) = (self.light.take(), 0);
-        move || match first {
+    /// The number of directions towards each light, and the numbers that choose them, one pair for each call. They are
+    /// many at the first surface alone: shadow rays cost less than paths, and what later surfaces reflect is less.
+    pub fn light_numbers(&mut self) -> (usize, impl FnMut() -> [f64; 2] + use<'_>) {
+        let (first, mut index) = (self.light.take().map(|numbers| numbers.lights()), 0);
+        let tries = first.map_or(1, |first| first.len());
+        let xi = move || match first {
             None => [self.uniform(), self.uniform()],
             Some(first) => {
                 index += 1;
-                turned(first, index - 1)
+                turned(first[(index - 1) % tries], (index - 1) / tries)
             }
-        }
+        };
+        (tries, xi)
     }
 
     /// Sends the path on from a surface point. The layer of its light becomes `event` if this is its first event.

@@ -25,8 +25,6 @@ pub struct PixelNumbers {
     places: [Sequence; 2],
     /// Of each half: the place in the pixel and that on the lens must not go together.
     lens: Option<[Ordered; 2]>,
-    /// The same of the first surface.
-    surface: Option<[Ordered; 2]>,
     /// Of each half, the channels' walks.
     walks: Option<[[Sequence; 3]; 2]>,
 }
@@ -41,11 +39,13 @@ pub struct NearNumbers {
     path: u32,
 }
 
-/// Numbers at a surface: those that choose a direction towards a light, and those of a direction that is mirrored.
+/// The numbers at the first surface of a path that has many directions. Most paths of some scenes meet none, so they are
+/// found when they are used.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceNumbers {
-    pub light: [f64; 2],
-    pub mirrored: [f64; 2],
+    stream: Stream,
+    pixel: u64,
+    path: u32,
 }
 
 /// The first numbers of the walks of three channels.
@@ -58,10 +58,9 @@ struct Ordered {
 }
 
 impl Ordered {
-    fn halves(stream: Stream, pixel: u64) -> [Ordered; 2] {
-        let [even, odd] = halves(stream, pixel);
-        let order = |half: u64| stream.item(2 * pixel + half).bits(ORDER);
-        [Ordered { sequence: even, order: order(0) }, Ordered { sequence: odd, order: order(1) }]
+    fn new(stream: Stream, pixel: u64, index: u32) -> Ordered {
+        let order = stream.item(2 * pixel + u64::from(index)).bits(ORDER);
+        Ordered { sequence: half(stream, pixel, index), order }
     }
 
     fn point(&self, index: u32) -> [f64; 4] {
@@ -82,16 +81,16 @@ fn half(stream: Stream, pixel: u64, half: u32) -> Sequence {
 impl PixelNumbers {
     /// The numbers of one pixel, with those of the lens and of walks if there are any.
     pub fn new(pixel: u64, streams: Streams) -> PixelNumbers {
-        let Streams { places, lens, walks, surface, .. } = streams;
+        let Streams { places, lens, walks, .. } = streams;
         let walks_of = |stream: Stream| {
             let of = |half: u64| {
                 [0, 1, 2].map(|channel| Sequence::new(stream.item((2 * pixel + half) * 3 + channel), stream))
             };
             [0, 1].map(of)
         };
-        let [lens, surface] = [lens, surface].map(|stream| Some(Ordered::halves(stream?, pixel)));
+        let lens = lens.map(|stream| [0, 1].map(|half| Ordered::new(stream, pixel, half)));
         let places = halves(places, pixel);
-        PixelNumbers { places, lens, surface, walks: walks.map(walks_of) }
+        PixelNumbers { places, lens, walks: walks.map(walks_of) }
     }
 
     /// Where the path crosses the pixel, in pixels from its corner.
@@ -106,15 +105,39 @@ impl PixelNumbers {
         Some([x, y])
     }
 
-    /// The numbers at the first surface of the path that has many directions.
-    pub fn surface(&self, path: u32) -> Option<SurfaceNumbers> {
-        let [a, b, c, d] = self.surface.as_ref()?[path as usize % 2].point(path / 2);
-        Some(SurfaceNumbers { light: [a, b], mirrored: [c, d] })
-    }
-
     /// The first numbers of the walks that the path begins.
     pub fn walks(&self, path: u32) -> Option<WalkStarts> {
         self.walks.as_ref().map(|by_half| by_half[path as usize % 2].map(|sequence| sequence.point(path / 2)))
+    }
+}
+
+/// Directions towards each light at the first surface of a path that has many. Of one, two, four, eight and sixteen, four
+/// have the least error for their time where lamps are large, and eight below a sky (docs/method.md 13).
+const LIGHT_TRIES: usize = 4;
+
+impl SurfaceNumbers {
+    pub fn new(stream: Stream, pixel: u64, path: u32) -> SurfaceNumbers {
+        SurfaceNumbers { stream, pixel, path }
+    }
+
+    /// The numbers of the path's half.
+    fn half(&self) -> Ordered {
+        Ordered::new(self.stream, self.pixel, self.path % 2)
+    }
+
+    /// Those that choose directions towards lights.
+    pub fn lights(&self) -> [[f64; 2]; LIGHT_TRIES] {
+        let (half, first) = (self.half(), self.path / 2 * LIGHT_TRIES as u32);
+        std::array::from_fn(|k| {
+            let [x, y, ..] = half.point(first + k as u32);
+            [x, y]
+        })
+    }
+
+    /// Those of the direction that is mirrored.
+    pub fn mirrored(&self) -> [f64; 2] {
+        let [.., x, y] = self.half().point(self.path / 2);
+        [x, y]
     }
 }
 
@@ -135,22 +158,22 @@ mod tests {
     use super::*;
     use scene::random::Purpose;
 
-    /// Of sixteen paths of a half, one chooses a light's direction in each of sixteen squares; so do the next sixteen.
+    /// Of sixteen directions towards a light in a half, which belong to four paths, one is in each of sixteen squares; so
+    /// are the next sixteen, and those of sixteen paths that are mirrored.
     ///
-    /// Seen to catch: numbers by the path instead of its place in the half.
+    /// Seen to catch: numbers by the path instead of its place in the half; the same directions for each path.
     #[test]
     fn directions_at_the_first_surface_are_spread_over_paths() {
-        let stream = Stream::new(1, Purpose::FirstSurface);
-        let streams = Streams { places: stream, lens: None, walks: None, near: None, surface: Some(stream) };
-        let numbers = PixelNumbers::new(7, streams);
-        for (half, block) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+        let numbers = |path| SurfaceNumbers::new(Stream::new(1, Purpose::FirstSurface), 7, path);
+        let all_squares = |points: Vec<[f64; 2]>| {
             let mut squares = [false; 16];
-            for k in 0..16 {
-                let of_path = numbers.surface(32 * block + 2 * k + half).expect("there is a stream");
-                let [x, y] = of_path.light.map(|u| (4.0 * u) as usize);
-                squares[4 * y + x] = true;
-            }
-            assert!(squares.iter().all(|hit| *hit), "half {half}, block {block}: {squares:?}");
+            points.iter().map(|p| p.map(|u| (4.0 * u) as usize)).for_each(|[x, y]| squares[4 * y + x] = true);
+            squares.iter().all(|hit| *hit)
+        };
+        for (half, block) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            let lights = (0..4).flat_map(|k| numbers(8 * block + 2 * k + half).lights()).collect();
+            let mirrored = (0..16).map(|k| numbers(32 * block + 2 * k + half).mirrored()).collect();
+            assert!(all_squares(lights) && all_squares(mirrored), "half {half}, block {block}");
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::{counts::Counts, path_state::PathState, renderer::Renderer};
 use bsdf::{Bsdf, Side, ThinWall, View};
-use scene::{DVec3, SurfacePoint, light::all_light_at};
+use scene::{DVec3, SurfacePoint, light::all_lights_at};
 
 impl Renderer<'_> {
     /// Radiance that a wall scatters to the viewer, from lights on the viewer's side and behind, W/(m² sr). The normals of
@@ -16,10 +16,11 @@ impl Renderer<'_> {
     ) -> DVec3 {
         let view = View { normal: point.normal, direction: -state.direction, side };
         let behind = point.facing(-point.geometric_normal);
+        let (tries, mut xi) = state.light_numbers();
         let mut of_side = |at: &SurfacePoint| {
-            let xi = state.light_numbers();
             // A diffuse BSDF has one value for all directions of a side, which the irradiance of all lights is multiplied by.
-            let irradiance = all_light_at(&self.lights, self.input.rays, at, xi, &mut counts.shadow_rays);
+            let (numbers, shadow_rays) = ((tries, &mut xi), &mut counts.shadow_rays);
+            let irradiance = all_lights_at(&self.lights, self.input.rays, at, numbers, shadow_rays, |l| l.irradiance);
             wall.evaluate(&view, at.normal) * irradiance
         };
         of_side(point) + of_side(&behind)

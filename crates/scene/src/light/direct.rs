@@ -65,7 +65,7 @@ impl Div<f64> for Reflected {
     }
 }
 
-/// Irradiance for surfaces that are lit once a path, as of [`all_lights_at`].
+/// Irradiance for surfaces that are lit once a path, as of [`all_lights_at`] with one direction each.
 pub fn all_light_at(
     lights: &LightTree,
     rays: &Rays,
@@ -73,16 +73,17 @@ pub fn all_light_at(
     xi: impl FnMut() -> [f64; 2],
     shadow_rays: &mut u64,
 ) -> DVec3 {
-    all_lights_at(lights, rays, at, xi, shadow_rays, |light| light.irradiance)
+    all_lights_at(lights, rays, at, (1, xi), shadow_rays, |light| light.irradiance)
 }
 
-/// The sum over all lights of what `reflect` makes of each that is not hidden. Up to `MAX_FLAT` lights are all sampled, one direction each, since
-/// the choice of one would be noise; of more, as many are picked. Each call of `xi` gives two uniform numbers.
+/// The sum over all lights of what `reflect` makes of each that is not hidden. Up to `MAX_FLAT` lights are all sampled, in
+/// the mean of `tries` directions each, since the choice of one would be noise; of more, as many are picked, one direction
+/// each. Each call of `xi` gives two uniform numbers; those of one light follow each other.
 pub fn all_lights_at<T: Default + Add<Output = T> + Div<f64, Output = T>>(
     lights: &LightTree,
     rays: &Rays,
     at: &SurfacePoint,
-    mut xi: impl FnMut() -> [f64; 2],
+    (tries, mut xi): (usize, impl FnMut() -> [f64; 2]),
     shadow_rays: &mut u64,
     reflect: impl Fn(&Illumination) -> T,
 ) -> T {
@@ -93,7 +94,12 @@ pub fn all_lights_at<T: Default + Add<Output = T> + Div<f64, Output = T>>(
         if clear { reflect(&arriving) } else { T::default() }
     };
     if lights.lights.len() <= MAX_FLAT {
-        return lights.lights.iter().fold(T::default(), |sum, light| sum + visible(*light, xi()));
+        let mut mean = |light: &dyn Light| {
+            // A light of one direction is the same at each try.
+            let tries = if light.delta().is_some() { 1 } else { tries };
+            (0..tries).fold(T::default(), |sum, _| sum + visible(light, xi())) / tries as f64
+        };
+        return lights.lights.iter().fold(T::default(), |sum, light| sum + mean(*light));
     }
     let choice = LightChoice::new(lights, &ReceiverBounds::point(at), NODES_PER_POINT);
     let [shift, _] = xi();
