@@ -21,7 +21,7 @@ EXPOSURE_piglet  := 0.4
 EXPOSURE_candle  := 0.3
 
 # Paths per pixel, unless SPP is given: with these the gallery is done in five minutes on two cores.
-GALLERY_SPP := $(if $(filter file,$(origin SPP)),10,$(SPP))
+GALLERY_SPP := $(if $(filter file,$(origin SPP)),8,$(SPP))
 
 comma := ,
 space := $(subst ,, )

@@ -27,6 +27,8 @@ pub enum Purpose {
     CutCorrection,
     /// Directions towards lights, and of what is mirrored, at the first surface of a path that has many.
     FirstSurface,
+    /// Light that surfaces mirror to rough ones, which tells where highlights are looked for.
+    Highlight,
     /// Pixels by which phase two chooses the accuracy of the cut, and their gathers.
     Balance,
     /// Rounds the numbers of paths of pixels.
@@ -76,6 +78,7 @@ impl Purpose {
             Purpose::FirstSurface => u64::MAX - 12,
             Purpose::Balance => u64::MAX - 11,
             Purpose::Allotment => u64::MAX - 13,
+            Purpose::Highlight => u64::MAX - 14,
             Purpose::Lens => u64::MAX - 20,
             Purpose::HalfSpaceTable => u64::MAX - 3,
             Purpose::Remainder(k) => 7 + k,

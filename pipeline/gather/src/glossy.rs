@@ -39,7 +39,7 @@ impl Renderer<'_> {
             }
             state.throughput /= survival;
         }
-        mirror(&meeting, tries, state, counts)
+        self.mirror(&meeting, tries, state, light, counts)
     }
 
     /// Follows the reflection lobe of a translucent surface, whose share the path has accounted for.
@@ -51,7 +51,7 @@ impl Renderer<'_> {
         counts: &mut Counts,
     ) -> bool {
         let tries = if meeting.bsdf.is_specular() { 0 } else { self.add_lights(state, meeting, None, light, counts) };
-        mirror(meeting, tries, state, counts)
+        self.mirror(meeting, tries, state, light, counts)
     }
 
     /// Adds the light of sampled lights: what a surface mirrors, and what its base reflects. Returns the number of
@@ -82,26 +82,48 @@ impl Renderer<'_> {
         let rays = self.input.rays;
         let reflected = all_lights_at(&self.lights, rays, &at, (tries, xi), &mut counts.shadow_rays, reflect);
         light.add(state, Layer::Diffuse, reflected.diffuse);
-        light.add(state, Layer::Specular, reflected.mirrored);
+        light.add(state, Layer::Specular, reflected.mirrored * state.mirrored_share);
         tries
     }
 
     /// The share of the light of an emitting surface that is left to a ray which meets it.
     pub(crate) fn share_of(&self, state: &PathState, material: u16) -> f64 {
-        state
+        let of_lights = state
             .drawn
             .as_ref()
-            .map_or(1.0, |drawn| self.lights.share_of_surface(material, &drawn.at, state.direction, drawn.density))
+            .map_or(1.0, |drawn| self.lights.share_of_surface(material, &drawn.at, state.direction, drawn.density));
+        of_lights * state.emitted_share
     }
-}
 
-/// Sends the path on in a mirrored direction; false if there is none. Each light was sampled in `tries` directions.
-fn mirror(meeting: &Meeting, tries: usize, state: &mut PathState, counts: &mut Counts) -> bool {
-    let follows = meeting.scatter(state, Lobe::Reflection, Layer::Specular, counts);
-    if follows && !meeting.bsdf.is_specular() {
-        let at = SurfacePoint { normal: meeting.view.normal, ..*meeting.point };
-        let density = meeting.bsdf.density(&meeting.view, state.direction) / tries as f64;
-        state.drawn = Some(Drawn { at, density });
+    /// Sends the path on in a mirrored direction; false if there is none. Each light was sampled in `tries` directions. One
+    /// more ray looks for highlights if this is the first surface that mirrors, and rough.
+    fn mirror(
+        &self,
+        meeting: &Meeting,
+        tries: usize,
+        state: &mut PathState,
+        light: &mut PathLight,
+        counts: &mut Counts,
+    ) -> bool {
+        let (view, bsdf) = (&meeting.view, &meeting.bsdf);
+        let looks = state.layer.is_none() && state.inside.is_none() && !bsdf.is_specular();
+        // The highlight is seen by the third ray of a path.
+        let looks = looks && self.settings.max_depth > 2;
+        let lobes = looks.then(|| self.highlights.lobes(meeting.point.position, bsdf, view)).flatten();
+        if let Some(lobes) = &lobes {
+            self.look_for_highlights(lobes, state, meeting, light, counts);
+        }
+        let left = state.mirrored_share;
+        if !meeting.scatter(state, Lobe::Reflection, Layer::Specular, counts) {
+            return false;
+        }
+        state.emitted_share = left;
+        if !bsdf.is_specular() {
+            let at = SurfacePoint { normal: view.normal, ..*meeting.point };
+            let density = bsdf.density(view, state.direction);
+            state.drawn = Some(Drawn { at, density: density / tries as f64 });
+            state.mirrored_share = lobes.map_or(1.0, |lobes| density / (density + lobes.density(state.direction)));
+        }
+        true
     }
-    follows
 }

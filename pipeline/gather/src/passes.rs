@@ -8,6 +8,7 @@ use crate::{
     edge::{self, Corner},
     errors::Errors,
     film::Pixel,
+    highlights::Highlights,
     image::{Filter, Input, Rendered, Settings},
     known::Known,
     objects::objects,
@@ -81,6 +82,7 @@ impl<'a> Passes<'a> {
             settings: settings.clone(),
             lights: LightTree::new(input.scene.lights()),
             surroundings,
+            highlights: Highlights::default(),
             known: Known::new([settings.width, settings.height]),
             objects,
             drawn: DrawnCounts::of(input.clouds),
@@ -115,6 +117,10 @@ impl<'a> Passes<'a> {
         };
         let walks = passes.renderer.objects.iter().flatten().filter_map(|object| object.walks.as_ref());
         passes.counts.reflections_left_out = walks.map(Walks::incomplete).sum();
+        if passes.streams.surface.is_some() {
+            let pixels = (settings.width * settings.height) as u64;
+            passes.renderer.highlights = Highlights::find(&passes.renderer, pixels, stream(Purpose::Highlight));
+        }
         passes.find_edges();
         if settings.balances {
             passes.balance();

@@ -40,8 +40,11 @@ impl Renderer<'_> {
             inside: None,
             throughput: DVec3::ONE,
             drawn: None,
+            mirrored_share: 1.0,
+            emitted_share: 1.0,
             layer: None,
             events: 0,
+            splits: true,
             half,
             shard_pick: self.pick_shard(index),
             walks: index.walks,
@@ -129,7 +132,7 @@ impl Renderer<'_> {
     }
 
     /// Adds the environment for a ray that meets no further surface.
-    fn escape(&self, state: &PathState, light: &mut PathLight, counts: &mut Counts) {
+    pub(crate) fn escape(&self, state: &PathState, light: &mut PathLight, counts: &mut Counts) {
         if let Some(backdrop) = self.settings.backdrop.filter(|_| state.layer.is_none() && state.inside.is_none()) {
             return light.add(state, Layer::Emission, backdrop);
         }
@@ -144,7 +147,7 @@ impl Renderer<'_> {
             let clear = object.unscattered.map(|sigma| f64::from(u8::from(sigma == 0.0)));
             seen *= DVec3::from_array(clear) * (3.0 / clear.iter().sum::<f64>().max(1.0));
         }
-        light.add(state, Layer::Emission, seen);
+        light.add(state, Layer::Emission, seen * state.emitted_share);
     }
 
     /// Multiplies the throughput by the transmittance `e^{−σ̃_t s}` of a medium (docs/method.md 6.9) over the
@@ -225,7 +228,8 @@ impl Renderer<'_> {
         let meeting = Meeting::new(point, surface, Side::Outside, -state.direction, counts);
         let transmittance = meeting.transmittance();
         let (mut way, from) = (None, state.origin);
-        let splits = state.layer.is_none() && transmittance > 0.0;
+        let first = state.layer.is_none();
+        let splits = state.splits && transmittance > 0.0;
         if !splits && state.uniform() >= transmittance {
             return self.reflect(state, &meeting, &mut trace.light, counts);
         }
@@ -236,16 +240,18 @@ impl Renderer<'_> {
                     events: state.events + 1,
                     walks: None,
                     near: None,
+                    splits: false,
                     ..*state
                 };
                 branch.throughput *= 1.0 - transmittance;
-                branch.mirrors = if meeting.bsdf.is_specular() { 1.0 - transmittance } else { 0.0 };
+                branch.mirrors = if first && meeting.bsdf.is_specular() { 1.0 - transmittance } else { 0.0 };
                 let follows = self.reflect(&mut branch, &meeting, &mut trace.light, counts);
                 trace.mirrored = (follows && branch.events < self.settings.max_depth).then_some(branch);
                 counts.cut_by_depth += u64::from(follows && trace.mirrored.is_none());
             }
+            state.splits = false;
             state.throughput *= transmittance;
-            way = Some((Way::Direct, transmittance));
+            way = first.then_some((Way::Direct, transmittance));
         } else if state.mirrors > 0.0 && state.events == 1 {
             way = Some((Way::Mirrored, state.mirrors));
         }

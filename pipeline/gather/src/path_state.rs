@@ -67,9 +67,15 @@ pub struct PathState {
     pub throughput: DVec3,
     /// Where the direction was drawn from, if the light at that point was sampled as well.
     pub drawn: Option<Drawn>,
+    /// The share that is left to this path of the light which the next surface mirrors of lamps and the environment.
+    pub mirrored_share: f64,
+    /// The share that is left to this path of the light which the next surface emits, or which comes from afar.
+    pub emitted_share: f64,
     /// The layer of all further light, after the first event.
     pub layer: Option<Layer>,
     pub events: u32,
+    /// Whether it follows both branches at the next interface that it meets from outside.
+    pub splits: bool,
     /// The half of the cloud that it gathers from, if paths alternate between the halves.
     pub half: usize,
     /// The shard that it gathers from, if paths alternate between the shards.
@@ -124,6 +130,7 @@ impl PathState {
         self.direction = direction;
         self.from = Some(point.triangle);
         self.drawn = None;
+        (self.mirrored_share, self.emitted_share) = (1.0, 1.0);
         self.layer.get_or_insert(event);
     }
 }

@@ -1,6 +1,7 @@
 //! The data that all camera paths of an image share: the scene, and translucent objects with their media and samples.
 
 use crate::{
+    highlights::Highlights,
     image::{Input, Settings},
     known::Known,
     reference::Walks,
@@ -23,6 +24,8 @@ pub struct Renderer<'a> {
     pub lights: LightTree<'a>,
     /// What lights near fields; none if there is no near field.
     pub surroundings: Option<Surroundings<'a>>,
+    /// Where surfaces mirror lights towards rough ones.
+    pub highlights: Highlights,
     /// What is known of the light at the centers of pixels.
     pub known: Known,
     /// The translucent object of each material; none for opaque materials.
