@@ -66,7 +66,7 @@ impl Lit<'_> {
             return DVec3::ZERO;
         };
         let at = Place { surface: *point, position: point.position, normal: point.smooth_normal, crossing: DVec3::ONE };
-        let one = |k: u32| near.light(surroundings, &at, &numbers(k), item, scratch);
+        let one = |k: u32| near.light(surroundings, (&at, 1.0), &numbers(k), item, scratch);
         (0..ESTIMATES).map(one).sum::<DVec3>() / f64::from(ESTIMATES)
     }
 }

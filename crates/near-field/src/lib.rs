@@ -123,11 +123,12 @@ impl NearField {
     }
 
     /// One estimate of the radiance without `T21` that leaves at a place and entered near it, W/(m² sr) (docs/method.md
-    /// 17.3). `random` lights what reflects light to the points.
+    /// 17.3), of which a `share` is seen: the less, the fewer times the points are lit. `random` lights what reflects light
+    /// to the points.
     pub fn light(
         &self,
         surroundings: &Surroundings,
-        at: &Place,
+        (at, share): (&Place, f64),
         numbers: &Numbers,
         random: Item,
         scratch: &mut Scratch,
@@ -152,7 +153,9 @@ impl NearField {
         };
         let interface = (self.eta, self.rough.as_ref());
         let mut sum = DVec3::ZERO;
-        for numbers in surroundings.lightings(light, random) {
+        let lightings = surroundings.lightings(share, light, random);
+        let count = lightings.len() as f64;
+        for numbers in lightings {
             let mut lit = |point: &SurfacePoint| lamp.light(point, interface, &numbers);
             let mut plane = lit(&exitant).map_or(DVec3::ZERO, |light| around.plane(drawn, &light));
             if self.tint.is_some() {
@@ -164,7 +167,7 @@ impl NearField {
                 sum += found.crossings.get(k).map_or(light, |crossing| light * *crossing);
             }
         }
-        sum / surroundings.lightings as f64
+        sum / count
     }
 
     /// `(1 − w) S_bare` of the channels, 1/(m² sr).

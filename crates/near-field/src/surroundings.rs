@@ -41,9 +41,14 @@ impl<'a> Surroundings<'a> {
         Surroundings { scene, surface, bounce, lightings }
     }
 
-    /// The numbers of all lightings, which those of the first are followed by.
-    pub(crate) fn lightings(&self, [choice, a, b]: [f64; 3], random: Item) -> impl Iterator<Item = Lighting> + use<> {
-        let count = self.lightings;
+    /// The numbers of all lightings, which those of the first are followed by, where a share of the light is seen.
+    pub(crate) fn lightings(
+        &self,
+        share: f64,
+        [choice, a, b]: [f64; 3],
+        random: Item,
+    ) -> impl ExactSizeIterator<Item = Lighting> + use<> {
+        let count = ((share * self.lightings as f64).ceil() as usize).clamp(1, self.lightings);
         (0..count).map(move |k| {
             let [a, b] = turned([a, b], k);
             let light = [(choice + k as f64) / count as f64, a, b];

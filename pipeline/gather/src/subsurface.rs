@@ -121,13 +121,14 @@ impl Renderer<'_> {
     fn nearby(&self, state: &PathState, part: &Scattering, at: &Place, context: &mut ThreadContext) -> [DVec3; 2] {
         let random =
             |k: usize, half: u64| state.near_points.uniform(LATER + NUMBERS * (2 * state.dimension + half) + k as u64);
+        let share = state.throughput.max_element();
         let first = state.near.map_or_else(|| std::array::from_fn(|k| random(k, 0)), |near| near.numbers());
-        let one = self.nearby_once(part, at, &first, state.near_points, context);
+        let one = self.nearby_once(part, (at, share), &first, state.near_points, context);
         if self.gathers_by_shard() {
             return [one; 2];
         }
         let second = std::array::from_fn(|k| random(k, 1));
-        [one, self.nearby_once(part, at, &second, state.key, context)]
+        [one, self.nearby_once(part, (at, share), &second, state.key, context)]
     }
 
     /// The same at a point of the surface, with the random numbers of an item.
@@ -140,13 +141,13 @@ impl Renderer<'_> {
     ) -> DVec3 {
         let numbers = std::array::from_fn(|k| item.uniform(LATER + k as u64));
         let at = Place { surface: *point, position: point.position, normal: point.smooth_normal, crossing: DVec3::ONE };
-        self.nearby_once(part, &at, &numbers, item, context)
+        self.nearby_once(part, (&at, 1.0), &numbers, item, context)
     }
 
     fn nearby_once(
         &self,
         part: &Scattering,
-        at: &Place,
+        (at, share): (&Place, f64),
         numbers: &Numbers,
         random: Item,
         context: &mut ThreadContext,
@@ -154,7 +155,7 @@ impl Renderer<'_> {
         let (Some(near), Some(surroundings)) = (&part.near, &self.surroundings) else {
             return DVec3::ZERO;
         };
-        near.light(surroundings, at, numbers, random, &mut context.near)
+        near.light(surroundings, (at, share), numbers, random, &mut context.near)
     }
 
     /// Whether each path of a pixel gathers from one half of one shard, round-robin, instead of from all samples.
