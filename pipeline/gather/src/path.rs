@@ -15,6 +15,20 @@ use sums::drawn::ShardPick;
 /// The second branch of a path uses the random numbers from this dimension on.
 const BRANCH: u64 = 1 << 32;
 
+/// How much likelier than its light a ray reaches the end of a medium, at most: chance does not decide about paths of more than
+/// the inverse of this, as a share of the light.
+const LIKELIER: f64 = 8.0;
+
+/// The factor by which the transmittance of a channel is multiplied to be the probability of a ray.
+fn boost(state: &PathState) -> f64 {
+    (LIKELIER * state.throughput.max_element()).clamp(1.0, LIKELIER)
+}
+
+/// The probability with which a ray reaches the surface behind such a transmittance: the mean over the channels.
+fn reached(transmittance: DVec3, boost: f64) -> f64 {
+    (boost * transmittance).min(DVec3::ONE).element_sum() / 3.0
+}
+
 impl Renderer<'_> {
     /// Light that arrives at the camera along one path. At its first interface the path splits into a refracted and a
     /// reflected branch.
@@ -119,16 +133,15 @@ impl Renderer<'_> {
         }
     }
 
-    /// Distance at which a ray inside a medium is scattered or absorbed, m, drawn by the extinction of one of the three
-    /// channels (docs/method.md 6.9). The ray therefore reaches a surface with a probability that is the mean of
-    /// the three transmittances.
+    /// Distance at which a ray inside a medium ends, m, drawn by the extinction of one of the three channels (docs/method.md
+    /// 6.9), so that it reaches a surface with the probability [`reached`].
     fn free_path(&self, state: &mut PathState) -> f64 {
         let Some(object) = state.inside.and_then(|m| self.objects[m as usize].as_ref()) else {
             return f64::INFINITY;
         };
         let channel = ((3.0 * state.uniform()) as usize).min(2);
         let sigma = object.unscattered[channel];
-        if sigma > 0.0 { -(1.0 - state.uniform()).ln() / sigma } else { f64::INFINITY }
+        if sigma > 0.0 { (boost(state).ln() - (1.0 - state.uniform()).ln()) / sigma } else { f64::INFINITY }
     }
 
     /// Adds the environment for a ray that meets no further surface.
@@ -162,7 +175,7 @@ impl Renderer<'_> {
             return true;
         };
         let transmittance = DVec3::from_array(object.unscattered.map(|sigma| (-sigma * distance).exp()));
-        let survival = transmittance.element_sum() / 3.0;
+        let survival = reached(transmittance, boost(state));
         if !chosen && survival < 1.0 && state.uniform() >= survival {
             return false;
         }
