@@ -15,7 +15,7 @@ use test_support::{
 };
 
 /// Pairs of images; each image has a cloud and camera paths of its own.
-const PAIRS: u64 = 48 * EFFORT;
+const PAIRS: u64 = 80 * EFFORT;
 /// The number of samples, so small that the cloud's part of the variance is about as large as that of the paths.
 const SAMPLES: u64 = 150;
 
