@@ -56,6 +56,7 @@ mod image;
 mod known;
 mod lobes;
 mod meeting;
+mod mirrors;
 mod objects;
 mod passes;
 mod path;

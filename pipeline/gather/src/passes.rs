@@ -119,7 +119,7 @@ impl<'a> Passes<'a> {
         passes.counts.reflections_left_out = walks.map(Walks::incomplete).sum();
         if passes.streams.surface.is_some() {
             let pixels = (settings.width * settings.height) as u64;
-            passes.renderer.highlights = Highlights::find(&passes.renderer, pixels, stream(Purpose::Highlight));
+            passes.renderer.highlights = passes.renderer.find_highlights(pixels, stream(Purpose::Highlight));
         }
         passes.find_edges();
         if settings.balances {
