@@ -81,7 +81,7 @@ mod tests {
     /// The mean of five functions over drawn directions is their integral with the density, over cells of equal solid
     /// angle; the density integrates to 1. Within 4.5 standard errors and 10⁻³: by chance once in 30,000 runs.
     ///
-    /// Seen to catch: `c` for `c + 2`; the angle for half its square; weights that are not of their own lobe.
+    /// Seen to catch: `c` for `c + 2`; draws of another distribution; weights that are not of their own lobe.
     #[test]
     fn directions_have_their_density() {
         let (lobes, item) = (mixture(), Stream::new(1, Purpose::Highlight));
