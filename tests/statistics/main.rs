@@ -12,6 +12,7 @@ mod cut;
 mod edges;
 mod environment;
 mod error_bars;
+mod glossy;
 mod half_space;
 mod knob;
 mod lens;

@@ -95,9 +95,13 @@ pub fn all_lights_at<T: Default + Add<Output = T> + Div<f64, Output = T>>(
     };
     if lights.lights.len() <= MAX_FLAT {
         let mut mean = |light: &dyn Light| {
-            // A light of one direction is the same at each try.
-            let tries = if light.delta().is_some() { 1 } else { tries };
-            (0..tries).fold(T::default(), |sum, _| sum + visible(light, xi())) / tries as f64
+            let numbers = (0..tries).map(|_| xi());
+            // A light of one direction is the same at each try. It takes as many numbers, so that those of the next light
+            // stay together.
+            if light.delta().is_some() {
+                return numbers.last().map_or_else(T::default, |xi| visible(light, xi));
+            }
+            numbers.fold(T::default(), |sum, xi| sum + visible(light, xi)) / tries as f64
         };
         return lights.lights.iter().fold(T::default(), |sum, light| sum + mean(*light));
     }
