@@ -23,10 +23,10 @@ pub(super) const PADDING: f32 = 2.0 * MIN_PADDING;
 const MAX_CROWDING: f64 = 64.0;
 
 /// A tree over triangles whose bounding box has this diagonal, or less.
-pub(super) fn build(triangles: &[[Vec3; 3]], diagonal: f32) -> (Tree, Vec<Leaf>) {
+pub(super) fn build(triangles: &[[Vec3; 3]], diagonal: f32) -> Tree {
     let (mut nodes, mut leaves) = (vec![], vec![]);
     if triangles.is_empty() {
-        return (Tree { nodes }, leaves);
+        return Tree { nodes, leaves };
     }
     let wide = Wide::new(binary(triangles, diagonal));
     let mut open = vec![(0, wide.root())];
@@ -45,7 +45,7 @@ pub(super) fn build(triangles: &[[Vec3; 3]], diagonal: f32) -> (Tree, Vec<Leaf>)
             nodes[index].set(slot, bounds.min.into(), bounds.max.into(), code);
         }
     }
-    (Tree { nodes }, leaves)
+    Tree { nodes, leaves }
 }
 
 fn binary(triangles: &[[Vec3; 3]], diagonal: f32) -> Bvh2 {

@@ -6,7 +6,7 @@
 //! depends on that of the scene. No ray needs an offset: one that starts on a triangle names it.
 //!
 //! obvhs builds a binary tree; the walk is our own. Those of obvhs lose hits near the origin and along axes, and have
-//! little more than half the speed.
+//! about half the speed.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;

@@ -4,7 +4,7 @@ use super::{
     ray::{Hit, Ray},
     scaled_mesh::ScaledMesh,
     tree::Visitor,
-    triangle::{Crossing, Leaf, TriangleTest},
+    triangle::{Crossings, Leaf, TriangleTest},
     vectors::{Query, Vectors},
 };
 use crate::cutouts::Cutouts;
@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 
 /// Tells whether a point of a triangle is solid or a hole.
 pub(super) trait Solid: Copy {
-    fn is_solid(self, ray: &Ray, triangle: u32, crossing: &Crossing) -> bool;
+    fn is_solid(self, ray: &Ray, triangle: u32, weights: impl FnOnce() -> [f64; 3]) -> bool;
 }
 
 /// Triangles without holes.
@@ -21,15 +21,15 @@ pub(super) struct Whole;
 
 impl Solid for Whole {
     #[inline(always)]
-    fn is_solid(self, _: &Ray, _: u32, _: &Crossing) -> bool {
+    fn is_solid(self, _: &Ray, _: u32, _: impl FnOnce() -> [f64; 3]) -> bool {
         true
     }
 }
 
 impl Solid for &Cutouts<'_> {
     #[inline(always)]
-    fn is_solid(self, ray: &Ray, triangle: u32, crossing: &Crossing) -> bool {
-        !self.is_hole(triangle, (ray.origin, ray.direction), || crossing.weights())
+    fn is_solid(self, ray: &Ray, triangle: u32, weights: impl FnOnce() -> [f64; 3]) -> bool {
+        !self.is_hole(triangle, (ray.origin, ray.direction), weights)
     }
 }
 
@@ -45,9 +45,9 @@ pub(super) struct Segment<'a, S> {
 impl<S: Solid> Segment<'_, S> {
     /// Whether a crossing with a triangle is a hit, apart from the limit.
     #[inline(always)]
-    fn is_hit(&self, leaf: &Leaf, lane: usize, crossing: &Crossing) -> bool {
-        self.mesh.counts(crossing.distance, leaf, lane, self.ray)
-            && self.solid.is_solid(self.ray, leaf.triangles[lane], crossing)
+    fn is_hit(&self, leaf: &Leaf, lane: usize, crossings: &Crossings) -> bool {
+        self.mesh.counts(crossings.distances[lane], leaf, lane, self.ray)
+            && self.solid.is_solid(self.ray, leaf.triangles[lane], || crossings.weights(lane))
     }
 }
 
@@ -83,20 +83,19 @@ struct SearchClosest<'a, V, S> {
 }
 
 impl<V: Vectors, S: Solid> Visitor for SearchClosest<'_, V, S> {
-    const ORDERED: bool = true;
+    const NEAREST_FIRST: bool = true;
 
     #[inline(always)]
-    fn visit(&mut self, leaf: u32) -> ControlFlow<(), f32> {
-        let leaf = &self.segment.mesh.leaves[leaf as usize];
-        for lane in lanes(self.vectors.triangles(leaf, &self.test)) {
-            let (crossing, triangle) = (self.test.crossing(leaf, lane), leaf.triangles[lane]);
-            let distance = crossing.distance;
+    fn visit(&mut self, leaf: &Leaf) -> ControlFlow<(), f32> {
+        let (crossings, met) = self.vectors.triangles(leaf, &self.test, self.segment.limit);
+        for lane in lanes(met) {
+            let (distance, triangle) = (crossings.distances[lane], leaf.triangles[lane]);
             // The result must not depend on the order in which leaves are visited.
             let limit = self.segment.limit;
             let first = distance < limit || distance == limit && self.best.is_none_or(|b| triangle < b.triangle);
-            if first && self.segment.is_hit(leaf, lane, &crossing) {
+            if first && self.segment.is_hit(leaf, lane, &crossings) {
                 self.segment.limit = distance;
-                self.best = Some(Hit { distance, triangle, weights: crossing.weights() });
+                self.best = Some(Hit { distance, triangle, weights: crossings.weights(lane) });
             }
         }
         ControlFlow::Continue(self.segment.limit as f32)
@@ -124,16 +123,15 @@ struct SearchAll<'a, 'f, V, S> {
 }
 
 impl<V: Vectors, S: Solid> Visitor for SearchAll<'_, '_, V, S> {
-    const ORDERED: bool = false;
+    const NEAREST_FIRST: bool = false;
 
     #[inline(always)]
-    fn visit(&mut self, leaf: u32) -> ControlFlow<(), f32> {
-        let leaf = &self.segment.mesh.leaves[leaf as usize];
-        for lane in lanes(self.vectors.triangles(leaf, &self.test)) {
-            let crossing = self.test.crossing(leaf, lane);
-            if crossing.distance <= self.segment.limit && self.segment.is_hit(leaf, lane, &crossing) {
-                let (distance, triangle) = (crossing.distance, leaf.triangles[lane]);
-                self.found.push(Hit { distance, triangle, weights: crossing.weights() });
+    fn visit(&mut self, leaf: &Leaf) -> ControlFlow<(), f32> {
+        let (crossings, met) = self.vectors.triangles(leaf, &self.test, self.segment.limit);
+        for lane in lanes(met) {
+            if self.segment.is_hit(leaf, lane, &crossings) {
+                let (distance, triangle) = (crossings.distances[lane], leaf.triangles[lane]);
+                self.found.push(Hit { distance, triangle, weights: crossings.weights(lane) });
             }
         }
         ControlFlow::Continue(self.segment.limit as f32)
@@ -159,14 +157,13 @@ struct SearchAny<'a, V, S> {
 }
 
 impl<V: Vectors, S: Solid> Visitor for SearchAny<'_, V, S> {
-    const ORDERED: bool = false;
+    const NEAREST_FIRST: bool = false;
 
     #[inline(always)]
-    fn visit(&mut self, leaf: u32) -> ControlFlow<(), f32> {
-        let leaf = &self.segment.mesh.leaves[leaf as usize];
-        for lane in lanes(self.vectors.triangles(leaf, &self.test)) {
-            let crossing = self.test.crossing(leaf, lane);
-            if crossing.distance < self.segment.limit && self.segment.is_hit(leaf, lane, &crossing) {
+    fn visit(&mut self, leaf: &Leaf) -> ControlFlow<(), f32> {
+        let (crossings, met) = self.vectors.triangles(leaf, &self.test, self.segment.limit);
+        for lane in lanes(met) {
+            if crossings.distances[lane] < self.segment.limit && self.segment.is_hit(leaf, lane, &crossings) {
                 return ControlFlow::Break(());
             }
         }

@@ -39,18 +39,17 @@ impl Ray {
     #[inline(always)]
     pub fn new(origin: DVec3, direction: DVec3, from: Option<u32>, [low, high]: [DVec3; 2]) -> Option<Ray> {
         let inverse = 1.0 / direction;
-        let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
-        for axis in 0..3 {
-            // For a component of zero these are infinite, of the same sign if the ray stays outside.
-            let one = (low[axis] - origin[axis]) * inverse[axis];
-            let two = (high[axis] - origin[axis]) * inverse[axis];
-            enter = enter.max(one.min(two));
-            leave = leave.min(one.max(two));
-        }
-        let origin = origin + direction * enter;
-        // A ray without a direction (0, or not a number) never leaves.
-        let valid = enter <= leave && leave < f64::INFINITY && (origin + direction).is_finite();
-        valid.then_some(Ray { origin, direction, inverse, skipped: enter, from })
+        let inside = origin.cmpge(low).all() && origin.cmple(high).all();
+        // Most rays start inside: what follows must not wait for reciprocals then.
+        let (skipped, origin) = if inside {
+            (0.0, origin)
+        } else {
+            let skipped = entry(origin, inverse, [low, high])?;
+            (skipped, origin + direction * skipped)
+        };
+        let valid =
+            direction.abs().element_sum() >= f64::MIN_POSITIVE && (origin + direction).element_sum().is_finite();
+        valid.then_some(Ray { origin, direction, inverse, skipped, from })
     }
 
     #[inline(always)]
@@ -58,4 +57,18 @@ impl Ray {
         let inverse = self.inverse.as_vec3().to_array();
         BoxRay { origin: self.origin.as_vec3().to_array(), inverse, first: inverse.map(|x| usize::from(x < 0.0)) }
     }
+}
+
+/// The distance at which a ray that starts outside the box `[low, high]` enters it; none if it misses the box.
+#[inline(always)]
+fn entry(origin: DVec3, inverse: DVec3, [low, high]: [DVec3; 2]) -> Option<f64> {
+    let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
+    for axis in 0..3 {
+        // For a component of zero these are infinite, of the same sign if the ray stays outside.
+        let one = (low[axis] - origin[axis]) * inverse[axis];
+        let two = (high[axis] - origin[axis]) * inverse[axis];
+        enter = enter.max(one.min(two));
+        leave = leave.min(one.max(two));
+    }
+    (enter <= leave && leave < f64::INFINITY).then_some(enter)
 }

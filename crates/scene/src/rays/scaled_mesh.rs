@@ -16,7 +16,6 @@ pub(super) const ROUNDING: f64 = 1e-14;
 /// A mesh that is scaled to [`DIAGONAL`], in its tree.
 pub(super) struct ScaledMesh {
     pub tree: Tree,
-    pub leaves: Vec<Leaf>,
     /// For each triangle of the mesh, four times the index of its leaf plus its lane there.
     slots: Vec<u32>,
 }
@@ -24,13 +23,13 @@ pub(super) struct ScaledMesh {
 impl ScaledMesh {
     /// Builds the tree over triangles that are scaled already.
     pub fn new(corners: &[[Vec3; 3]]) -> ScaledMesh {
-        let (tree, leaves) = build(corners, DIAGONAL as f32);
+        let tree = build(corners, DIAGONAL as f32);
         let mut slots = vec![0; corners.len()];
-        for (k, leaf) in leaves.iter().enumerate() {
+        for (k, leaf) in tree.leaves.iter().enumerate() {
             // Lanes that fill a leaf up repeat its first triangle: the lane of that is written last.
             (0..4).rev().for_each(|lane| slots[leaf.triangles[lane] as usize] = (4 * k + lane) as u32);
         }
-        ScaledMesh { tree, leaves, slots }
+        ScaledMesh { tree, slots }
     }
 
     /// False for crossings behind the origin, for the triangle that the ray left, and for its neighbors where only
@@ -50,7 +49,7 @@ impl ScaledMesh {
     #[inline(never)]
     fn is_ahead(&self, leaf: &Leaf, lane: usize, from: u32, direction: DVec3) -> bool {
         let slot = self.slots[from as usize] as usize;
-        let [a, b, c] = self.leaves[slot / 4].triangle(slot % 4);
+        let [a, b, c] = self.tree.leaves[slot / 4].triangle(slot % 4);
         let normal = (b - a).cross(c - a);
         let normal = if normal.dot(direction) < 0.0 { -normal } else { normal };
         let threshold = ROUNDING * normal.length();

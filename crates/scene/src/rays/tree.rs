@@ -1,20 +1,22 @@
 //! The tree of boxes, eight to a node, and the walk through it.
 
-use super::{node::Node, ray::BoxRay, vectors::Vectors};
+use super::{node::Node, ray::BoxRay, triangle::Leaf, vectors::Vectors};
 use std::ops::ControlFlow;
 
 pub(super) struct Tree {
     /// The root first; empty for a mesh without triangles.
     pub nodes: Vec<Node>,
+    pub leaves: Vec<Leaf>,
 }
 
 /// The action of a walk at the leaves.
 pub(super) trait Visitor {
-    /// Whether nearer children are visited first. Where any hit will do, the order costs more than it saves.
-    const ORDERED: bool;
+    /// Whether of the children of a node the nearest is visited first, or the farthest. Where any hit will do, that is
+    /// better: a ray that starts on a surface is more likely to meet the far side than what is beside it.
+    const NEAREST_FIRST: bool;
 
     /// Looks at a leaf that the ray may meet and returns the limit from now on, or ends the walk.
-    fn visit(&mut self, leaf: u32) -> ControlFlow<(), f32>;
+    fn visit(&mut self, leaf: &Leaf) -> ControlFlow<(), f32>;
 }
 
 impl Tree {
@@ -33,13 +35,19 @@ impl Tree {
         let mut next = 0;
         while !self.nodes.is_empty() {
             if let Some(leaf) = Node::leaf_of(next) {
-                limit = visitor.visit(leaf)?;
+                limit = visitor.visit(&self.leaves[leaf as usize])?;
             } else {
                 let node = &self.nodes[next as usize];
                 let (near, met) = vectors.boxes(node, ray, limit);
+                if met.is_power_of_two() {
+                    next = node.children[slot(met)];
+                    continue;
+                }
                 if met != 0 {
-                    let entry = |k| entry(if V::ORDERED { near[k] } else { 0.0 }, node.children[k]);
-                    next = pending.all_but_one(&mut count, met, entry);
+                    next = pending.all_but_one::<V>(&mut count, met, |slot| {
+                        self.prefetch(vectors, node.children[slot]);
+                        entry(near[slot], node.children[slot])
+                    });
                     continue;
                 }
             }
@@ -48,6 +56,20 @@ impl Tree {
         }
         ControlFlow::Continue(())
     }
+
+    #[inline(always)]
+    fn prefetch(&self, vectors: impl Vectors, child: u32) {
+        match Node::leaf_of(child) {
+            Some(leaf) => vectors.prefetch(&self.leaves[leaf as usize]),
+            None => vectors.prefetch(&self.nodes[child as usize]),
+        }
+    }
+}
+
+/// The first of eight slots whose bit is set.
+#[inline(always)]
+fn slot(bits: u32) -> usize {
+    bits.trailing_zeros() as usize & 7
 }
 
 /// A child with the distance at which the ray enters its box in the upper bits: entries are ordered by distance, which
@@ -64,7 +86,7 @@ struct Pending {
 }
 
 impl Pending {
-    const FIRST: usize = 64;
+    const FIRST: usize = 32;
 
     #[inline(always)]
     fn new() -> Pending {
@@ -103,22 +125,21 @@ impl Pending {
         }
     }
 
-    /// Returns the nearest of the children whose bits are set, and pushes the others.
+    /// Returns the first to visit of the children whose bits are set, and pushes the others.
     #[inline(always)]
-    fn all_but_one(&mut self, count: &mut usize, mut bits: u32, entry: impl Fn(usize) -> u64) -> u32 {
-        let mut take = || {
-            let slot = bits.trailing_zeros() as usize & 7;
+    fn all_but_one<V: Visitor>(&mut self, count: &mut usize, mut bits: u32, entry: impl Fn(usize) -> u64) -> u32 {
+        let mut first = entry(slot(bits));
+        loop {
             bits &= bits.wrapping_sub(1);
-            (entry(slot), bits != 0)
-        };
-        let (mut min, mut more) = take();
-        while more {
-            let other;
-            (other, more) = take();
-            self.push(count, min.max(other));
-            min = min.min(other);
+            if bits == 0 {
+                return first as u32;
+            }
+            let other = entry(slot(bits));
+            let (near, far) = (first.min(other), first.max(other));
+            let later;
+            (first, later) = if V::NEAREST_FIRST { (near, far) } else { (far, near) };
+            self.push(count, later);
         }
-        min as u32
     }
 }
 
@@ -137,14 +158,30 @@ mod tests {
         }
     }
 
+    struct Visits<const NEAREST: bool>;
+
+    impl<const NEAREST: bool> Visitor for Visits<NEAREST> {
+        const NEAREST_FIRST: bool = NEAREST;
+
+        fn visit(&mut self, _: &Leaf) -> ControlFlow<(), f32> {
+            ControlFlow::Continue(f32::INFINITY)
+        }
+    }
+
+    /// Seen to catch: the nearest child where the farthest is asked for.
     #[test]
-    fn the_nearest_child_is_next_and_those_beyond_the_limit_are_left_out() {
-        let (mut pending, mut count) = (Pending::new(), 0);
-        let near = [5.0, 2.0, 0.0, 7.0, 1.0, 3.0, 9.0, 4.0];
-        let next = pending.all_but_one(&mut count, 0b1010_1010, |k| entry(near[k], k as u32));
-        assert_eq!((next, count), (1, 3));
-        let mut left: Vec<u32> = std::iter::from_fn(|| pending.nearer(&mut count, 4.0)).collect();
-        left.sort();
-        assert_eq!(left, [5, 7]);
+    fn one_child_is_next_and_those_beyond_the_limit_are_left_out() {
+        fn visited<const NEAREST: bool>() -> (u32, Vec<u32>) {
+            let (mut pending, mut count) = (Pending::new(), 0);
+            let near = [5.0, 2.0, 0.0, 7.0, 1.0, 3.0, 9.0, 4.0];
+            let entry = |k: usize| entry(near[k], k as u32);
+            let next = pending.all_but_one::<Visits<NEAREST>>(&mut count, 0b1010_1010, entry);
+            assert_eq!(count, 3);
+            let mut left: Vec<u32> = std::iter::from_fn(|| pending.nearer(&mut count, 4.0)).collect();
+            left.sort();
+            (next, left)
+        }
+        assert_eq!(visited::<true>(), (1, vec![5, 7]));
+        assert_eq!(visited::<false>(), (3, vec![1, 5, 7]));
     }
 }

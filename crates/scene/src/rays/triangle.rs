@@ -20,12 +20,12 @@ pub(super) struct TriangleTest {
     pub shear: [f64; 3],
 }
 
-/// Where a ray meets the plane of a triangle, within it.
-pub(super) struct Crossing {
-    /// Distance along the ray, of any sign.
-    pub distance: f64,
-    /// Twice the areas opposite the corners, as seen along the axis; no two have opposite signs.
-    areas: [f64; 3],
+/// Where the line of a ray meets the planes of the triangles of a leaf.
+pub(super) struct Crossings {
+    /// Distances along the ray, of any sign.
+    pub distances: [f64; 4],
+    /// Twice the areas opposite the corners, as seen along the axis: by corner, then triangle.
+    pub areas: [[f64; 4]; 3],
 }
 
 impl Leaf {
@@ -50,32 +50,33 @@ impl TriangleTest {
     #[inline(always)]
     pub fn new(origin: DVec3, direction: DVec3) -> Self {
         let [x, y, z] = direction.abs().to_array();
-        let axes = if z > x && z > y {
-            [0, 1, 2]
-        } else if y > x {
-            [2, 0, 1]
-        } else {
-            [1, 2, 0]
-        };
+        // Without branches, which no processor could predict.
+        let along_z = usize::from((z > x) & (z > y));
+        let along_y = usize::from(y > x) & !along_z;
+        let along = 2 * along_z + along_y;
+        let axes = [(along + 1) % 3, (along + 2) % 3, along];
         let [x, y, z] = axes.map(|axis| direction[axis]);
         TriangleTest { axes, origin: axes.map(|axis| origin[axis]), shear: [x / z, y / z, 1.0 / z] }
     }
 
-    /// Whether the line of the ray meets a triangle, edges and corners included. One seen edge-on is not met.
+    /// The crossings with the triangles, and the bits of those that the ray meets from its start up to `limit`, edges
+    /// and corners included. A triangle that is seen edge-on is not met.
     #[inline(always)]
-    pub fn meets(&self, leaf: &Leaf, lane: usize) -> bool {
-        let areas = areas(&self.sheared(leaf, lane));
-        areas.iter().any(|x| *x < 0.0) != areas.iter().any(|x| *x > 0.0)
-    }
-
-    /// The crossing with a triangle that is met.
-    #[inline(always)]
-    pub fn crossing(&self, leaf: &Leaf, lane: usize) -> Crossing {
-        let corners = self.sheared(leaf, lane);
-        let areas = areas(&corners);
-        let [u, v, w] = areas;
-        let [a, b, c] = corners.map(|corner| corner[2]);
-        Crossing { distance: self.shear[2] * ((u * a + v * b + w * c) / (u + v + w)), areas }
+    pub fn crossings(&self, leaf: &Leaf, limit: f64) -> (Crossings, u32) {
+        let mut crossings = Crossings { distances: [0.0; 4], areas: [[0.0; 4]; 3] };
+        let mut met = 0;
+        for lane in 0..4 {
+            let corners = self.sheared(leaf, lane);
+            let areas = areas(&corners);
+            let [u, v, w] = areas;
+            let [a, b, c] = corners.map(|corner| corner[2]);
+            let distance = self.shear[2] * ((u * a + v * b + w * c) / (u + v + w));
+            let crosses = areas.iter().any(|x| *x < 0.0) != areas.iter().any(|x| *x > 0.0);
+            met |= u32::from(crosses && 0.0 <= distance && distance <= limit) << lane;
+            crossings.distances[lane] = distance;
+            (0..3).for_each(|corner| crossings.areas[corner][lane] = areas[corner]);
+        }
+        (crossings, met)
     }
 
     #[inline(always)]
@@ -93,11 +94,35 @@ fn areas([a, b, c]: &[[f64; 3]; 3]) -> [f64; 3] {
     [c[0] * b[1] - c[1] * b[0], a[0] * c[1] - a[1] * c[0], b[0] * a[1] - b[1] * a[0]]
 }
 
-impl Crossing {
-    /// Barycentric weights.
+impl Crossings {
+    /// Barycentric weights of the point where a triangle is met.
     #[inline(always)]
-    pub fn weights(&self) -> [f64; 3] {
-        let sum = self.areas.iter().sum::<f64>();
-        self.areas.map(|area| area / sum)
+    pub fn weights(&self, lane: usize) -> [f64; 3] {
+        let areas = self.areas.map(|areas| areas[lane]);
+        let sum = areas.iter().sum::<f64>();
+        areas.map(|area| area / sum)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Seen to catch: z taken where it is larger than x alone.
+    #[test]
+    fn rays_are_sheared_along_their_largest_component() {
+        for k in 0..5 * 5 * 5 {
+            let component = |place: i32| f64::from(k / place % 5 - 2);
+            let direction = DVec3::new(component(1), component(5), component(25));
+            if direction == DVec3::ZERO {
+                continue;
+            }
+            let TriangleTest { axes, origin, shear } = TriangleTest::new(DVec3::new(7.0, 8.0, 9.0), direction);
+            let along = axes[2];
+            assert_eq!(direction[along].abs(), direction.abs().max_element(), "{direction}");
+            assert_eq!([axes[0], axes[1]], [(along + 1) % 3, (along + 2) % 3]);
+            assert_eq!(origin, axes.map(|axis| 7.0 + axis as f64));
+            assert_eq!(shear, [direction[axes[0]], direction[axes[1]], 1.0].map(|x| x / direction[along]));
+        }
     }
 }

@@ -6,7 +6,7 @@
 use super::{
     node::Node,
     ray::BoxRay,
-    triangle::{Leaf, TriangleTest},
+    triangle::{Crossings, Leaf, TriangleTest},
 };
 use std::array::from_fn;
 
@@ -15,8 +15,12 @@ pub(super) trait Vectors: Copy {
     /// The distances at which the ray enters the boxes of a node, and the bits of those that it meets within `limit`.
     fn boxes(self, node: &Node, ray: &BoxRay, limit: f32) -> ([f32; 8], u32);
 
-    /// The bits of the triangles of a leaf that the line of the ray meets.
-    fn triangles(self, leaf: &Leaf, test: &TriangleTest) -> u32;
+    /// [`TriangleTest::crossings`].
+    fn triangles(self, leaf: &Leaf, test: &TriangleTest, limit: f64) -> (Crossings, u32);
+
+    /// Asks for what will be read later. The default is to do without.
+    #[inline(always)]
+    fn prefetch<T>(self, _: &T) {}
 }
 
 /// A walk through the tree. `run` must be `#[inline(always)]`, and so must all it calls: it is compiled anew for each
@@ -44,8 +48,8 @@ impl Vectors for Plain {
     }
 
     #[inline(always)]
-    fn triangles(self, leaf: &Leaf, test: &TriangleTest) -> u32 {
-        (0..4).map(|lane| u32::from(test.meets(leaf, lane)) << lane).sum()
+    fn triangles(self, leaf: &Leaf, test: &TriangleTest, limit: f64) -> (Crossings, u32) {
+        test.crossings(leaf, limit)
     }
 }
 
