@@ -5,11 +5,12 @@
 //! of their common edge, so no ray slips between them. The mesh is first scaled, exactly, to one size: nothing here
 //! depends on that of the scene. No ray needs an offset: one that starts on a triangle names it.
 //!
-//! obvhs builds a binary tree; the walk is our own. Those of obvhs lose hits near the origin and along axes, and have
-//! about half the speed.
+//! obvhs optimizes the tree; the first tree and the walk are our own. The walks of obvhs lose hits near the origin and
+//! along axes, and have about half the speed.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+mod binary;
 mod build;
 mod dispatch;
 mod node;
