@@ -3,6 +3,10 @@
 use glam::{DVec3, Vec3};
 use std::array::from_fn;
 
+/// The least weight of a corner. A ray that starts on an edge itself would cross the neighbor there or not, as rounding
+/// has it: so far off the edge, ten thousand rounding steps, it is on one side of the neighbor.
+const MIN_WEIGHT: f64 = 1e-12;
+
 /// The triangles of a leaf: up to four.
 #[repr(align(32))]
 pub(super) struct Leaf {
@@ -95,13 +99,22 @@ fn areas([a, b, c]: &[[f64; 3]; 3]) -> [f64; 3] {
 }
 
 impl Crossings {
-    /// Barycentric weights of the point where a triangle is met.
+    /// Barycentric weights of the point where a triangle is met, moved off its edges by [`MIN_WEIGHT`].
     #[inline(always)]
     pub fn weights(&self, lane: usize) -> [f64; 3] {
         let areas = self.areas.map(|areas| areas[lane]);
         let sum = areas.iter().sum::<f64>();
-        areas.map(|area| area / sum)
+        let weights = areas.map(|area| area / sum);
+        if weights.iter().all(|weight| *weight >= MIN_WEIGHT) { weights } else { off_the_edges(weights) }
     }
+}
+
+#[cold]
+#[inline(never)]
+fn off_the_edges(weights: [f64; 3]) -> [f64; 3] {
+    let weights = weights.map(|weight| weight.max(MIN_WEIGHT));
+    let sum = weights.iter().sum::<f64>();
+    weights.map(|weight| weight / sum)
 }
 
 #[cfg(test)]
