@@ -29,7 +29,7 @@ THREADS ?= $(shell nproc)
 # What runs a program: empty for this machine, or a command such as srun.
 SUBMIT  ?=
 CARGO   ?= cargo
-# Samples and seed of a cloud; paths for each pixel (of the gallery 10, unless given) and BSSRDF model of an image.
+# Samples and seed of a cloud; paths for each pixel (of the gallery 8, unless given) and BSSRDF model of an image.
 SAMPLES ?= 1M
 SEED    ?= 0
 SPP     ?= 16

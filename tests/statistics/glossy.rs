@@ -221,3 +221,19 @@ fn an_interface_in_a_mirror_reflects_without_noise() {
     let expected = 1.0 - bsdf::fresnel::transmittance(0.5 * (2.0 + 2f64.sqrt()).sqrt(), 1.5);
     assert!((got.mean / expected - 1.0).abs() < 0.01 && got.relative_error() < 1e-3, "{got:?} {expected}");
 }
+
+/// Beside a camera that sees nothing lies a mirror below a constant sky: the rays of an image are one for each path and, for
+/// each shadow ray of the search for highlights, one for the sky's light and one that is mirrored.
+///
+/// Seen to catch: none of the search counted; shadow rays alone; the mirrored ones left out.
+#[test]
+fn rays_that_look_for_highlights_are_counted() {
+    let mut mirror = quad(0.3, 0.0, 1);
+    mirror.positions.iter_mut().for_each(|p| p.z -= 60.0);
+    let mut world = world(&[Part::opaque(mirror), aside()], &[], DVec3::ONE);
+    world.scene.materials[0].gloss = gloss(1.0, 0.0);
+    world.scene.materials[1].gloss = gloss(0.0, 1.0);
+    let counts = render(&world, &orthographic(DVec3::X, 1e-2), 4).counts;
+    assert_eq!((counts.paths, counts.rays - counts.paths), (4 * 256, 2 * counts.shadow_rays));
+    assert!((2048..=4096).contains(&counts.shadow_rays), "{counts:?}");
+}

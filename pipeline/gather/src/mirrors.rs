@@ -37,9 +37,24 @@ const LIGHT: [u64; 3] = [3, 4, 5];
 const KEPT: u64 = 6;
 const MIRRORED: u64 = 8;
 
+/// What was found by light that was sent, each with a number that decides whether it is kept, and the rays of it.
+#[derive(Default)]
+struct Sent {
+    found: Vec<(Highlight, f64)>,
+    counts: Counts,
+}
+
+impl Sent {
+    fn and(mut self, next: Sent) -> Sent {
+        self.found.extend(next.found);
+        self.counts.add(&next.counts);
+        self
+    }
+}
+
 impl Renderer<'_> {
-    /// The highlights that an image of so many pixels looks for.
-    pub(crate) fn find_highlights(&self, pixels: u64, stream: Stream) -> Highlights {
+    /// The highlights that an image of so many pixels looks for, and the rays that found them.
+    pub(crate) fn find_highlights(&self, pixels: u64, stream: Stream) -> (Highlights, Counts) {
         let mesh = &self.input.scene.mesh;
         let mut areas = vec![0.0; self.objects.len()];
         let mirrors = || (0u32..).zip(&mesh.triangles).filter(|(_, triangle)| self.may_mirror(triangle.material));
@@ -54,18 +69,20 @@ impl Renderer<'_> {
         let shares: Vec<(f64, u32)> = mirrors().map(share_so_far).collect();
         let all = shares.last().map_or(0.0, |(share, _)| *share);
         if all == 0.0 {
-            return Highlights::default();
+            return Default::default();
         }
         let tries = pixels.clamp(TRIES[0], TRIES[1]);
-        let send = |index: u64| {
+        let send = |mut sent: Sent, index: u64| {
             let item = stream.item(index);
             let at = (index as f64 + item.uniform(0)) / tries as f64 * all;
             let (_, triangle) = shares[shares.partition_point(|(sum, _)| *sum <= at).min(shares.len() - 1)];
             let area = areas[mesh.triangles[triangle as usize].material as usize];
-            self.send(triangle, area, item).map(|found| (found, item.uniform(KEPT)))
+            let found = self.send(triangle, area, item, &mut sent.counts);
+            sent.found.extend(found.map(|found| (found, item.uniform(KEPT))));
+            sent
         };
-        let found: Vec<(Highlight, f64)> = (0..tries).into_par_iter().filter_map(send).collect();
-        Highlights::bright(found)
+        let sent = (0..tries).into_par_iter().fold(Sent::default, send).reduce(Sent::default, Sent::and);
+        (Highlights::bright(sent.found), sent.counts)
     }
 
     /// Whether a material may mirror like [`MIRROR`], by what it states.
@@ -92,7 +109,7 @@ impl Renderer<'_> {
 
     /// Sends the light of a lamp or the environment by a point of a triangle, if that mirrors, to a rough surface. The point
     /// stands for an area, m².
-    fn send(&self, triangle: u32, area: f64, item: Item) -> Option<Highlight> {
+    fn send(&self, triangle: u32, area: f64, item: Item, counts: &mut Counts) -> Option<Highlight> {
         let (scene, rays) = (self.input.scene, self.input.rays);
         let hit = Hit { triangle, weights: warp::triangle(PLACE.map(|d| item.uniform(d))), distance: 0.0 };
         if self.slope_scale(&hit) > MIRROR {
@@ -101,8 +118,9 @@ impl Renderer<'_> {
         let at = scene.mesh.point(triangle, hit.weights, self.settings.normals);
         let surface = self.mirror_at(at.material, Side::Outside, &hit)?;
         let choice = LightChoice::new(&self.lights, &ReceiverBounds::point(&at), NODES);
-        let lit = light_at(&choice, rays, &at, LIGHT.map(|d| item.uniform(d)), &mut 0);
+        let lit = light_at(&choice, rays, &at, LIGHT.map(|d| item.uniform(d)), &mut counts.shadow_rays);
         let Lit::Light { direction, irradiance } = lit else { return None };
+        counts.rays += 1;
         let light = match rays.closest(at.position, direction, Some(triangle)) {
             None => self.lights.distant_radiance(at.position, direction),
             Some(lamp) => scene.emission(lamp.triangle, lamp.weights),
@@ -120,6 +138,7 @@ impl Renderer<'_> {
         if sample.direction.dot(at.geometric_normal) <= 0.0 || power <= 0.0 || radiance <= 0.0 {
             return None;
         }
+        counts.rays += 1;
         let met = rays.closest(at.position, sample.direction, Some(triangle))?;
         let material = scene.mesh.triangles[met.triangle as usize].material;
         let is_rough =

@@ -119,7 +119,9 @@ impl<'a> Passes<'a> {
         passes.counts.reflections_left_out = walks.map(Walks::incomplete).sum();
         if passes.streams.surface.is_some() {
             let pixels = (settings.width * settings.height) as u64;
-            passes.renderer.highlights = passes.renderer.find_highlights(pixels, stream(Purpose::Highlight));
+            let (highlights, counts) = passes.renderer.find_highlights(pixels, stream(Purpose::Highlight));
+            passes.renderer.highlights = highlights;
+            passes.counts.add(&counts);
         }
         passes.find_edges();
         if settings.balances {
