@@ -29,7 +29,7 @@ THREADS ?= $(shell nproc)
 # What runs a program: empty for this machine, or a command such as srun.
 SUBMIT  ?=
 CARGO   ?= cargo
-# Samples and seed of a cloud; paths for each pixel (of the gallery 8, unless given) and BSSRDF model of an image.
+# Samples and seed of a cloud; paths for each pixel (of some of the gallery more, unless given) and BSSRDF model of an image.
 SAMPLES ?= 1M
 SEED    ?= 0
 SPP     ?= 16
@@ -84,5 +84,5 @@ help:
 	@sed -n 's/^## /  make /p' $(MAKEFILE_LIST)
 	@echo "  make SCENE=path.glb MEDIUM=marble [SIZE=0.1] [SAMPLES=4M] [TRANSLUCENT=Wax] [EXPOSURE=1] [TIME=0.5] [ANIMATION=walk]: your own file, one image a camera"
 	@echo "  make SCENE=path.glb MEDIUM=marble VIEWS='views/*.json': the same, one image a view file"
-	@echo "  variables: OUT=$(OUT) THREADS=$(THREADS) SUBMIT=$(SUBMIT) SAMPLES=$(SAMPLES) SEED=$(SEED) SPP=$(SPP) (the gallery: $(GALLERY_SPP)) MODEL=$(MODEL)"
+	@echo "  variables: OUT=$(OUT) THREADS=$(THREADS) SUBMIT=$(SUBMIT) SAMPLES=$(SAMPLES) SEED=$(SEED) SPP=$(SPP) (peach and chess: more) MODEL=$(MODEL)"
 	@echo "    CALIBRATE=$(CALIBRATE) WALKS=$(WALKS); of truth also WIDTH=$(WIDTH) ERROR=$(ERROR)"

@@ -17,7 +17,7 @@ const BRANCH: u64 = 1 << 32;
 
 /// How much likelier than its light a ray reaches the end of a medium, at most: chance does not decide about paths of more than
 /// the inverse of this, as a share of the light.
-const LIKELIER: f64 = 8.0;
+const LIKELIER: f64 = 512.0;
 
 /// The factor by which the transmittance of a channel is multiplied to be the probability of a ray.
 fn boost(state: &PathState) -> f64 {
