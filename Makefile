@@ -84,5 +84,5 @@ help:
 	@sed -n 's/^## /  make /p' $(MAKEFILE_LIST)
 	@echo "  make SCENE=path.glb MEDIUM=marble [SIZE=0.1] [SAMPLES=4M] [TRANSLUCENT=Wax] [EXPOSURE=1] [TIME=0.5] [ANIMATION=walk]: your own file, one image a camera"
 	@echo "  make SCENE=path.glb MEDIUM=marble VIEWS='views/*.json': the same, one image a view file"
-	@echo "  variables: OUT=$(OUT) THREADS=$(THREADS) SUBMIT=$(SUBMIT) SAMPLES=$(SAMPLES) SEED=$(SEED) SPP=$(SPP) (peach and chess: more) MODEL=$(MODEL)"
+	@echo "  variables: OUT=$(OUT) THREADS=$(THREADS) SUBMIT=$(SUBMIT) SAMPLES=$(SAMPLES) SEED=$(SEED) SPP=$(SPP)$(if $(filter file,$(origin SPP)), (peach: $(PATHS_peach), chess: $(PATHS_chess))) MODEL=$(MODEL)"
 	@echo "    CALIBRATE=$(CALIBRATE) WALKS=$(WALKS); of truth also WIDTH=$(WIDTH) ERROR=$(ERROR)"

@@ -68,9 +68,7 @@ impl Passes<'_> {
         }
         let (own, stream) = (self.renderer().gathers, Stream::new(settings.seed, Purpose::Balance));
         let pixels = self.pixels_to_try(count, stream);
-        let tried = |passes: &Self| -> Vec<PixelSum> {
-            pixels.par_iter().with_max_len(1).map(|pixel| passes.tried(pixel)).collect()
-        };
+        let tried = |passes: &Self| -> Vec<PixelSum> { pixels.par_iter().map(|pixel| passes.tried(pixel)).collect() };
         let [first, again] = [own, stream].map(|gathers| self.trying(PATHS, gathers, tried));
         relative_noise(pixels.iter().map(|pixel| pixel.weight).zip(first.iter().zip(&again)))
     }

@@ -9,10 +9,10 @@ pub struct Counts {
     /// Paths that met their first translucent surface from within: the camera is inside a medium, or looks into an open
     /// mesh.
     pub from_inside: u64,
-    /// Rays that tell what paths meet, and what light meets that is sent to find highlights; those of edge pixels and near
-    /// points are counted apart.
+    /// Rays that tell what paths meet, and what light meets that is sent to find highlights. Rays of edge pixels and near
+    /// points are counted apart; those through pixel centers, for normals and positions, are not counted.
     pub rays: u64,
-    /// Rays to lights.
+    /// Rays that tell whether a light is visible, of paths and of the light that is sent.
     pub shadow_rays: u64,
     pub gathers: u64,
     pub evaluations: u64,

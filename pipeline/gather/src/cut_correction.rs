@@ -136,7 +136,7 @@ fn measure(
         let target = accuracy * f64::from(summation.correction.factor(predicted));
         Measured { mean, predicted, excess: variance / (mean * target).powi(2) }
     };
-    points.par_iter().enumerate().with_max_len(1).map(at).collect()
+    points.par_iter().enumerate().map(at).collect()
 }
 
 /// Length of the mean color with the light that leaves besides, and the variance of one sum.

@@ -37,7 +37,7 @@ const LIGHT: [u64; 3] = [3, 4, 5];
 const KEPT: u64 = 6;
 const MIRRORED: u64 = 8;
 
-/// What was found by light that was sent, each with a number that decides whether it is kept, and the rays of it.
+/// The highlights that some tries found, each with a uniform number that decides whether it is kept, and the tries' rays.
 #[derive(Default)]
 struct Sent {
     found: Vec<(Highlight, f64)>,
@@ -53,7 +53,7 @@ impl Sent {
 }
 
 impl Renderer<'_> {
-    /// The highlights that an image of so many pixels looks for, and the rays that found them.
+    /// The highlights that an image of so many pixels looks for, and counts of the rays that were sent to find them.
     pub(crate) fn find_highlights(&self, pixels: u64, stream: Stream) -> (Highlights, Counts) {
         let mesh = &self.input.scene.mesh;
         let mut areas = vec![0.0; self.objects.len()];

@@ -172,7 +172,7 @@ impl<'a> Passes<'a> {
             let corner = |x: usize, counts: &mut Counts| self.seen_at_corner([left + x, upper + y], counts);
             ((0..=width).map(|x| corner(x, &mut counts)).collect::<Vec<Corner>>(), counts)
         };
-        let rows: Vec<(Vec<Corner>, Counts)> = (0..height + 1).into_par_iter().with_max_len(1).map(row).collect();
+        let rows: Vec<(Vec<Corner>, Counts)> = (0..=height).into_par_iter().map(row).collect();
         for index in 0..width * height {
             let (x, y) = (index % width, index / width);
             let corners = [rows[y].0[x], rows[y].0[x + 1], rows[y + 1].0[x], rows[y + 1].0[x + 1]];
@@ -300,7 +300,8 @@ impl<'a> Passes<'a> {
             context.counts.near_field(&context.near.work);
             Some((sums, context.counts))
         };
-        // Tiles differ much in their work: a thread that is done takes single ones of another's.
+        // Tiles differ much in their work. A thread that has none left takes single ones from another; without a limit, rayon
+        // makes a few pieces of many tiles, and a piece that a thread has begun stays with it.
         let tiles: Option<Vec<_>> = (0..self.tiles()).into_par_iter().with_max_len(1).map(tile).collect();
         let Some(tiles) = tiles else { return false };
         for (sums, counts) in tiles {

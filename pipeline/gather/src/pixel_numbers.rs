@@ -111,8 +111,8 @@ impl PixelNumbers {
     }
 }
 
-/// Directions towards each light at the first surface of a path that has many. Of four, eight and sixteen, eight have the
-/// least error for their time over the scenes of data/ (docs/method.md 13).
+/// Directions towards each light at the first surface of a path that has many. Of one to sixteen, eight have the least error
+/// for their time over the scenes of data/ together (docs/method.md 13).
 const LIGHT_TRIES: usize = 8;
 
 impl SurfaceNumbers {
